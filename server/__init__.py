@@ -1,0 +1,1 @@
+"""The studio: recordings, annotations, jobs, tracks and the viewer behind one API."""

@@ -1,0 +1,1 @@
+"""Handloom's science: frames and scans in, poses and models out. Runs without the server."""

@@ -1,0 +1,1 @@
+"""Cameras, frames, sequences and importers: bytes in, frames out."""

@@ -1,0 +1,25 @@
+"""One moment of one camera."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Images of one camera at one frame number.
+
+    Attributes:
+        index: Frame number, from 0.
+        camera: Id of the camera.
+        color: (H, W, 3) uint8 RGB, or None.
+        depth: (H, W) float32, m along the optical axis, 0 where there is no value, or None.
+    """
+
+    index: int
+    camera: str
+    color: npt.NDArray[np.uint8] | None
+    depth: npt.NDArray[np.float32] | None

@@ -1,0 +1,52 @@
+"""Errors of the tracker: bad input from outside, said with the facts.
+
+A broken promise between two of our own functions is an `assert`, never one of these.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class TrackerError(Exception):
+    """Base of every error that bad input can cause."""
+
+
+class FrameError(TrackerError):
+    """A frame cannot be read or used."""
+
+
+class SequenceError(TrackerError):
+    """A recording folder or one of the files that describe it is not usable."""
+
+
+class CalibrationError(TrackerError):
+    """A camera calibration is missing or impossible."""
+
+
+class ImportRefusedError(TrackerError):
+    """A recording was refused before anything of it was stored."""
+
+
+class AnnotationError(TrackerError):
+    """An annotation file or item is not usable."""
+
+
+class ModelFileError(TrackerError):
+    """A hand or object model file is not usable.
+
+    Args:
+        path: The file.
+        found: What was found in it.
+        needed: What a file of this kind must have.
+    """
+
+    def __init__(self, path: Path | str, found: str, needed: str) -> None:
+        self.path = str(path)
+        self.found = found
+        self.needed = needed
+        super().__init__(f"{path}: found {found}; needed {needed}.")
+
+
+class TrackingError(TrackerError):
+    """A recording cannot be tracked as asked."""

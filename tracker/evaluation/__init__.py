@@ -1,0 +1,1 @@
+"""Metrics of a track against annotations or truth."""

@@ -1,0 +1,1 @@
+"""Geometry: rigid motions, lines, meshes. Knows nothing of hands or cameras."""

@@ -1,0 +1,1 @@
+"""Z-buffer rendering of posed models."""

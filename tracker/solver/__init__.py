@@ -1,0 +1,1 @@
+"""Gauss-Newton on residual blocks. Knows nothing about hands."""

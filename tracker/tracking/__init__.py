@@ -1,0 +1,1 @@
+"""Algorithm 1 of T16: start, follow, calibrate."""

@@ -1,0 +1,64 @@
+"""A scene moves as [T16] Eq. 1-4 say, and its Jacobian is exact."""
+
+import numpy as np
+
+from tests.tracker.toys import tube
+from tracker.geometry import se3
+from tracker.model.kinematics import vertex_jacobian
+from tracker.model.scene import Scene
+
+
+def random_pose(scene: Scene, rng: np.random.Generator) -> np.ndarray:
+    return rng.normal(scale=0.5, size=scene.num_dofs)
+
+
+def skin_plainly(scene: Scene, pose: np.ndarray) -> np.ndarray:
+    """[T16] Eq. 1 in NumPy, one model and one bone at a time."""
+    vertices = []
+    for model, where in zip(scene.models, scene.pose_slices, strict=True):
+        own, skeleton = pose[where], model.skeleton
+        Ms = np.zeros((skeleton.num_bones, 4, 4))
+        for bone, parent in enumerate(skeleton.parents):
+            Ms[bone] = se3.exp(own[:6]) if parent < 0 else Ms[parent]
+            for k in np.flatnonzero(skeleton.dof_bones == bone):
+                axis, point = skeleton.dof_axes[k], skeleton.joints_rest[bone]
+                Ms[bone] = Ms[bone] @ se3.exp(own[6 + k] * np.concatenate([np.cross(point, axis), axis]))
+        homogeneous = np.c_[model.vertices, np.ones(len(model.vertices))]
+        vertices.append(np.einsum("vb,bij,vj->vi", model.skinning_weights, Ms, homogeneous)[:, :3])
+    return np.concatenate(vertices)
+
+
+def test_kernels_agree_with_plain_skinning(rng):
+    scene = Scene((tube(3), tube(4)))
+    pose = random_pose(scene, rng)
+    np.testing.assert_allclose(scene.pose_at(pose).vertices, skin_plainly(scene, pose), atol=1e-12)
+
+
+def test_the_rest_pose_leaves_every_vertex_where_it_is():
+    scene = Scene((tube(),))
+    np.testing.assert_allclose(scene.pose_at(scene.rest_pose()).vertices, tube().vertices, atol=1e-15)
+
+
+def test_vertex_jacobian_agrees_with_finite_differences(rng):
+    scene = Scene((tube(3), tube(4)))
+    pose = random_pose(scene, rng)
+    posed = scene.pose_at(pose)
+    ids = np.arange(len(posed.vertices), dtype=np.int32)
+    jacobian = vertex_jacobian(scene.arrays, posed.bone_vertices, posed.twists, ids)
+    step = 1e-6
+    for dof in range(scene.num_dofs):
+        delta = np.zeros(scene.num_dofs)
+        delta[dof] = step
+        ahead = scene.pose_at(scene.retract(pose, delta)).vertices
+        behind = scene.pose_at(scene.retract(pose, -delta)).vertices
+        np.testing.assert_allclose(jacobian[:, :, dof], (ahead - behind) / (2 * step), atol=1e-8)
+
+
+def test_normals_of_a_closed_tube_point_outward(rng):
+    scene = Scene((tube(),))
+    posed = scene.pose_at(scene.rest_pose())
+    nearest_axis = posed.vertices.copy()
+    nearest_axis[:, 1:] = 0.0
+    nearest_axis[:, 0] = np.clip(nearest_axis[:, 0], 0.0, 0.09)
+    assert np.all(np.einsum("vi,vi->v", posed.normals, posed.vertices - nearest_axis) > 0)
+    np.testing.assert_allclose(np.linalg.norm(posed.normals, axis=1), 1.0)

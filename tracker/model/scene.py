@@ -1,0 +1,201 @@
+"""Several models with one stacked pose, and the scene at one pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.geometry import se3
+from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel
+from tracker.model.kinematics import SceneArrays, move_bones_into, normals_into, skin_into
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Models that are tracked together; their poses are stacked in order, [T16] §3.1.
+
+    Attributes:
+        models: At least one.
+    """
+
+    models: tuple[ArticulatedModel, ...]
+
+    @cached_property
+    def num_dofs(self) -> int:
+        return sum(model.num_dofs for model in self.models)
+
+    @cached_property
+    def pose_slices(self) -> tuple[slice, ...]:
+        """Where each model's parameters stand in the pose."""
+        return _slices([model.num_dofs for model in self.models])
+
+    @cached_property
+    def vertex_slices(self) -> tuple[slice, ...]:
+        return _slices([len(model.vertices) for model in self.models])
+
+    @cached_property
+    def bone_slices(self) -> tuple[slice, ...]:
+        return _slices([model.skeleton.num_bones for model in self.models])
+
+    @cached_property
+    def face_models(self) -> npt.NDArray[np.int32]:
+        """(F,) index of the model that a face belongs to."""
+        return np.repeat(np.arange(len(self.models), dtype=np.int32), [len(model.faces) for model in self.models])
+
+    @cached_property
+    def vertex_models(self) -> npt.NDArray[np.int32]:
+        """(V,) index of the model that a vertex belongs to."""
+        return np.repeat(np.arange(len(self.models), dtype=np.int32), [len(model.vertices) for model in self.models])
+
+    @cached_property
+    def angle_dofs(self) -> npt.NDArray[np.int64]:
+        """(K,) places of the joint angles in the pose."""
+        return np.concatenate([np.arange(s.start + 6, s.stop) for s in self.pose_slices])
+
+    @cached_property
+    def lower(self) -> Array:
+        """(D,) lower limits, rad; -inf for the roots."""
+        return np.concatenate([np.r_[np.full(6, -np.inf), model.skeleton.lower] for model in self.models])
+
+    @cached_property
+    def upper(self) -> Array:
+        """(D,) upper limits, rad; +inf for the roots."""
+        return np.concatenate([np.r_[np.full(6, np.inf), model.skeleton.upper] for model in self.models])
+
+    @cached_property
+    def arrays(self) -> SceneArrays:
+        return _stack(self)
+
+    def rest_pose(self) -> Array:
+        """(D,) every model as in its file."""
+        return np.zeros(self.num_dofs)
+
+    def pose_at(self, pose: Array) -> PosedScene:
+        """The scene at the pose (D,)."""
+        assert pose.shape == (self.num_dofs,)
+        arrays = self.arrays
+        Ms = np.zeros((len(arrays.parents), 3, 4))
+        twists = np.zeros((self.num_dofs, 6))
+        vertices = np.zeros((len(arrays.vertices), 3))
+        bone_vertices = np.zeros((*arrays.weights.shape, 3))
+        normals = np.zeros_like(vertices)
+        pose = np.ascontiguousarray(pose, dtype=np.float64)
+        move_bones_into(Ms, twists, arrays, pose)
+        skin_into(vertices, bone_vertices, arrays, Ms)
+        normals_into(normals, vertices, arrays.faces)
+        return PosedScene(self, pose, Ms, twists, vertices, bone_vertices, normals)
+
+    def retract(self, pose: Array, step: Array) -> Array:
+        """The pose after an increment (D,): angles add, roots are turned from the left about their joint."""
+        assert pose.shape == step.shape == (self.num_dofs,)
+        result = pose + step
+        for model, where in zip(self.models, self.pose_slices, strict=True):
+            root = slice(where.start, where.start + 6)
+            T = se3.exp(pose[root])
+            center = se3.transform(T, model.skeleton.joints_rest[0])
+            increment = se3.exp(step[root])
+            increment[:3, 3] += center - increment[:3, :3] @ center
+            result[root] = se3.log(increment @ T)
+        return result
+
+
+@dataclass(frozen=True)
+class PosedScene:
+    """A scene at one pose.
+
+    Attributes:
+        scene: The scene.
+        pose: (D,).
+        Ms: (B, 3, 4) motion of each bone from rest to world, m.
+        twists: (D, 6) world twist (u, ω) of each degree of freedom.
+        vertices: (V, 3) world, m.
+        bone_vertices: (V, W, 3) each vertex carried by each of its bones alone, world, m.
+        normals: (V, 3) unit, world.
+    """
+
+    scene: Scene
+    pose: Array
+    Ms: Array
+    twists: Array
+    vertices: Array
+    bone_vertices: Array
+    normals: Array
+
+    def bone_joints(self, model: int) -> Array:
+        """(B, 3) joints of the bones of one model, world, m."""
+        rest = self.scene.models[model].skeleton.joints_rest
+        Ms = self.Ms[self.scene.bone_slices[model]]
+        return np.einsum("bij,bj->bi", Ms[:, :, :3], rest) + Ms[:, :, 3]
+
+    def hand_joints(self, model: int) -> Array:
+        """(21, 3) the joints of a hand in the order of HAND_JOINTS, world, m."""
+        hand = self.scene.models[model].hand
+        assert hand is not None, "only hands have the 21 joints"
+        bones = self.bone_joints(model)
+        vertices = self.vertices[self.scene.vertex_slices[model]]
+        return np.where((hand.joint_bones >= 0)[:, None], bones[hand.joint_bones], vertices[hand.joint_vertices])
+
+    def T_world_model(self, model: int) -> Array:
+        """(4, 4) motion of the root of one model: its file's coordinates to world, m."""
+        T = np.eye(4)
+        T[:3] = self.Ms[self.scene.bone_slices[model].start]
+        return T
+
+
+def _slices(lengths: list[int]) -> tuple[slice, ...]:
+    ends = np.cumsum(lengths)
+    return tuple(slice(int(end - length), int(end)) for end, length in zip(ends, lengths, strict=True))
+
+
+def _stack(scene: Scene) -> SceneArrays:
+    vertices, faces, weight_bones, weights, parents, root_joints = [], [], [], [], [], []
+    joint_counts, joint_dofs, axes, points, bone_roots = [], [], [], [], []
+    for model, vs, bs, ps in zip(scene.models, scene.vertex_slices, scene.bone_slices, scene.pose_slices, strict=True):
+        skeleton = model.skeleton
+        order = np.argsort(-model.skinning_weights, axis=1, kind="stable")[:, :MAX_WEIGHTS]
+        if order.shape[1] < MAX_WEIGHTS:
+            order = np.pad(order, ((0, 0), (0, MAX_WEIGHTS - order.shape[1])), mode="edge")
+        kept = np.take_along_axis(model.skinning_weights, order, axis=1)
+        kept[:, min(MAX_WEIGHTS, skeleton.num_bones) :] = 0.0
+        vertices.append(model.vertices)
+        faces.append(model.faces + vs.start)
+        weight_bones.append(order + bs.start)
+        weights.append(kept / kept.sum(axis=1, keepdims=True))
+        parents.append(np.where(skeleton.parents < 0, -1, skeleton.parents + bs.start))
+        root_joints.append(skeleton.joints_rest)
+        bone_roots.append(np.full(skeleton.num_bones, ps.start))
+        for bone in range(skeleton.num_bones):
+            own = np.flatnonzero(skeleton.dof_bones == bone)
+            joint_counts.append(len(own))
+            joint_dofs.append(own + ps.start + 6)
+            axes.append(skeleton.dof_axes[own])
+            points.append(np.repeat(skeleton.joints_rest[bone][None], len(own), axis=0))
+    stacked_parents = np.concatenate(parents).astype(np.int32)
+    return SceneArrays(
+        vertices=np.ascontiguousarray(np.concatenate(vertices), dtype=np.float64),
+        faces=np.ascontiguousarray(np.concatenate(faces), dtype=np.int32),
+        weight_bones=np.ascontiguousarray(np.concatenate(weight_bones), dtype=np.int32),
+        weights=np.ascontiguousarray(np.concatenate(weights), dtype=np.float64),
+        parents=stacked_parents,
+        root_joints=np.ascontiguousarray(np.concatenate(root_joints), dtype=np.float64),
+        joint_starts=np.concatenate([[0], np.cumsum(joint_counts)]).astype(np.int32),
+        joint_dofs=np.concatenate(joint_dofs).astype(np.int32),
+        axes=np.ascontiguousarray(np.concatenate(axes), dtype=np.float64),
+        points=np.ascontiguousarray(np.concatenate(points), dtype=np.float64),
+        bone_roots=np.concatenate(bone_roots).astype(np.int32),
+        chains=_chains(stacked_parents, joint_dofs, np.concatenate(bone_roots)),
+    )
+
+
+def _chains(parents: npt.NDArray[np.int32], joint_dofs: list, bone_roots: npt.NDArray) -> npt.NDArray[np.int32]:
+    chains: list[list[int]] = []
+    for bone, parent in enumerate(parents):
+        above = list(range(bone_roots[bone], bone_roots[bone] + 6)) if parent < 0 else chains[parent]
+        chains.append([*above, *(int(dof) for dof in joint_dofs[bone])])
+    longest = max(len(chain) for chain in chains)
+    return np.array([chain + [-1] * (longest - len(chain)) for chain in chains], dtype=np.int32)

@@ -1,0 +1,92 @@
+# Handloom: `make demo` serves the studio with a sample project, `make test` runs every test. Everything else hangs on `setup`.
+# Stamps lie inside what they stand for (.venv, node_modules, dist): delete the folder and it is made again.
+
+PYTHON ?= python3
+BIN := .venv/bin
+DEPENDENCIES := .venv/.stamp-dependencies
+PROJECT := .venv/.stamp-project
+COMPILED := .venv/.stamp-compiled
+NODE_MODULES := web/node_modules/.stamp
+WEB := web/dist/.stamp
+TRACKER_SOURCES := $(shell find tracker -name '*.py')
+WEB_SOURCES := $(shell find web -type f -not -path '*/node_modules/*' -not -path '*/dist/*' -not -path '*/test-results/*' -not -name '*.tsbuildinfo')
+
+.PHONY: setup demo test test-python test-web lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench clean
+.DELETE_ON_ERROR:
+
+setup: $(PROJECT) $(WEB) $(COMPILED)
+
+$(DEPENDENCIES): requirements.lock
+	@scripts/require.sh python $(PYTHON)
+	@echo "setup: Python packages, as locked with hashes in requirements.lock ..."
+	@test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	@touch $@
+
+$(PROJECT): $(DEPENDENCIES) pyproject.toml
+	@echo "setup: handloom itself ..."
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
+	@touch $@
+
+$(NODE_MODULES): web/package-lock.json
+	@scripts/require.sh node
+	@echo "setup: packages of the browser app, as locked in web/package-lock.json ..."
+	cd web && npm ci --no-audit --no-fund --loglevel=error
+	@touch $@
+
+$(WEB): $(NODE_MODULES) $(WEB_SOURCES)
+	@echo "setup: building the browser app ..."
+	cd web && npm run --silent build
+	@touch $@
+
+# numba notices a changed file, not a changed callee in another file: start from nothing when anything changed.
+$(COMPILED): $(PROJECT) $(TRACKER_SOURCES)
+	@echo "setup: compiling the tracker's kernels (about a minute, only after they change) ..."
+	@find tracker \( -name '*.nbi' -o -name '*.nbc' \) -delete
+	$(BIN)/handloom warm-up
+	@touch $@
+
+demo: setup
+	$(BIN)/handloom demo
+
+# Both suites run even if one fails; pytest last, so that its closing line closes.
+test: setup
+	@status=0; $(MAKE) --no-print-directory test-web || status=1; $(MAKE) --no-print-directory test-python || status=1; exit $$status
+
+test-python: setup
+	$(BIN)/python -m pytest
+
+test-web: setup
+	cd web && npm test --silent
+
+lint: lint-ruff lint-format lint-types lint-imports lint-web lint-api
+
+lint-ruff: setup
+	$(BIN)/ruff check .
+
+lint-format: setup
+	$(BIN)/ruff format --check .
+
+lint-types: setup
+	$(BIN)/pyright
+
+lint-imports: setup
+	$(BIN)/lint-imports
+
+lint-web: setup
+	cd web && npm run --silent types
+
+# The browser's types come from the server's OpenAPI document; both are committed and must be what the code says.
+lint-api: setup
+	$(BIN)/python scripts/write_openapi.py --check
+	cd web && npm run --silent check:api
+
+api: $(PROJECT) $(NODE_MODULES)
+	$(BIN)/python scripts/write_openapi.py
+	cd web && npm run --silent generate
+
+bench: setup
+	$(BIN)/handloom bench tracking
+
+clean:
+	rm -rf .venv web/node_modules web/dist

@@ -1,0 +1,35 @@
+#!/bin/sh
+# Stop with a clear line unless a tool of the needed version is here: require.sh python [COMMAND] | require.sh node
+set -eu
+
+case "$1" in
+python)
+    command="${2:-python3}"
+    if ! command -v "$command" >/dev/null 2>&1; then
+        echo "Handloom needs Python 3.11 or newer; there is no '$command' here. Install it, or say where it is: make PYTHON=/path/to/python3" >&2
+        exit 1
+    fi
+    if ! "$command" -c 'import sys; sys.exit(sys.version_info < (3, 11))'; then
+        echo "Handloom needs Python 3.11 or newer; '$command' is $("$command" --version 2>&1). Name a newer one: make PYTHON=python3.11" >&2
+        exit 1
+    fi
+    if ! "$command" -c 'import ensurepip, venv' 2>/dev/null; then
+        echo "'$command' cannot make virtual environments. On Debian and Ubuntu: apt install python3-venv" >&2
+        exit 1
+    fi
+    ;;
+node)
+    if ! command -v node >/dev/null 2>&1 || ! command -v npm >/dev/null 2>&1; then
+        echo "Handloom builds its browser app with Node 20.19 or newer and npm; they are not on the PATH. See https://nodejs.org" >&2
+        exit 1
+    fi
+    if ! node -e 'const [a, b] = process.versions.node.split(".").map(Number); process.exit(a > 20 || (a === 20 && b >= 19) ? 0 : 1)'; then
+        echo "Handloom needs Node 20.19 or newer; 'node' is $(node --version)." >&2
+        exit 1
+    fi
+    ;;
+*)
+    echo "usage: require.sh python [COMMAND] | require.sh node" >&2
+    exit 2
+    ;;
+esac

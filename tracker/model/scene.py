@@ -48,9 +48,23 @@ class Scene:
         return np.repeat(np.arange(len(self.models), dtype=np.int32), [len(model.faces) for model in self.models])
 
     @cached_property
+    def landmark_slices(self) -> tuple[slice, ...]:
+        """Where each model's landmarks stand among the scene's vertices, behind the vertices of all models.
+
+        A hand has its 21 joints, an object the joints of its bones. As vertices that no face uses they move, and are
+        differentiated, like any other.
+        """
+        vertices = sum(len(model.vertices) for model in self.models)
+        lengths = [21 if model.hand else model.skeleton.num_bones for model in self.models]
+        return tuple(slice(s.start + vertices, s.stop + vertices) for s in _slices(lengths))
+
+    @cached_property
     def vertex_models(self) -> npt.NDArray[np.int32]:
-        """(V,) index of the model that a vertex belongs to."""
-        return np.repeat(np.arange(len(self.models), dtype=np.int32), [len(model.vertices) for model in self.models])
+        """(V,) index of the model that a vertex, landmarks included, belongs to."""
+        models = np.zeros(self.landmark_slices[-1].stop, dtype=np.int32)
+        for index, (vertices, landmarks) in enumerate(zip(self.vertex_slices, self.landmark_slices, strict=True)):
+            models[vertices] = models[landmarks] = index
+        return models
 
     @cached_property
     def angle_dofs(self) -> npt.NDArray[np.int64]:
@@ -126,19 +140,9 @@ class PosedScene:
     bone_vertices: Array
     normals: Array
 
-    def bone_joints(self, model: int) -> Array:
-        """(B, 3) joints of the bones of one model, world, m."""
-        rest = self.scene.models[model].skeleton.joints_rest
-        Ms = self.Ms[self.scene.bone_slices[model]]
-        return np.einsum("bij,bj->bi", Ms[:, :, :3], rest) + Ms[:, :, 3]
-
-    def hand_joints(self, model: int) -> Array:
-        """(21, 3) the joints of a hand in the order of HAND_JOINTS, world, m."""
-        hand = self.scene.models[model].hand
-        assert hand is not None, "only hands have the 21 joints"
-        bones = self.bone_joints(model)
-        vertices = self.vertices[self.scene.vertex_slices[model]]
-        return np.where((hand.joint_bones >= 0)[:, None], bones[hand.joint_bones], vertices[hand.joint_vertices])
+    def landmarks(self, model: int) -> Array:
+        """The 21 joints of a hand in the order of HAND_JOINTS, or (B, 3) the joints of an object's bones, world, m."""
+        return self.vertices[self.scene.landmark_slices[model]]
 
     def T_world_model(self, model: int) -> Array:
         """(4, 4) motion of the root of one model: its file's coordinates to world, m."""
@@ -154,6 +158,7 @@ def _slices(lengths: list[int]) -> tuple[slice, ...]:
 
 def _stack(scene: Scene) -> SceneArrays:
     vertices, faces, weight_bones, weights, parents, root_joints = [], [], [], [], [], []
+    landmarks: list[tuple[Array, npt.NDArray, npt.NDArray]] = []
     joint_counts, joint_dofs, axes, points, bone_roots = [], [], [], [], []
     for model, vs, bs, ps in zip(scene.models, scene.vertex_slices, scene.bone_slices, scene.pose_slices, strict=True):
         skeleton = model.skeleton
@@ -163,6 +168,7 @@ def _stack(scene: Scene) -> SceneArrays:
         kept = np.take_along_axis(model.skinning_weights, order, axis=1)
         kept[:, min(MAX_WEIGHTS, skeleton.num_bones) :] = 0.0
         vertices.append(model.vertices)
+        landmarks.append(_landmarks(model, bs.start, vs.start))
         faces.append(model.faces + vs.start)
         weight_bones.append(order + bs.start)
         weights.append(kept / kept.sum(axis=1, keepdims=True))
@@ -175,6 +181,14 @@ def _stack(scene: Scene) -> SceneArrays:
             joint_dofs.append(own + ps.start + 6)
             axes.append(skeleton.dof_axes[own])
             points.append(np.repeat(skeleton.joints_rest[bone][None], len(own), axis=0))
+    for index, (points_rest, bones, own_vertices) in enumerate(landmarks):
+        ids = np.where(own_vertices >= 0, own_vertices - scene.vertex_slices[index].start, 0)
+        at_bone = np.zeros((len(bones), MAX_WEIGHTS))
+        at_bone[:, 0] = 1.0
+        is_vertex = (own_vertices >= 0)[:, None]
+        vertices.append(points_rest)
+        weight_bones.append(np.where(is_vertex, weight_bones[index][ids], bones[:, None]))
+        weights.append(np.where(is_vertex, weights[index][ids], at_bone))
     stacked_parents = np.concatenate(parents).astype(np.int32)
     return SceneArrays(
         vertices=np.ascontiguousarray(np.concatenate(vertices), dtype=np.float64),
@@ -189,6 +203,21 @@ def _stack(scene: Scene) -> SceneArrays:
         points=np.ascontiguousarray(np.concatenate(points), dtype=np.float64),
         bone_roots=np.concatenate(bone_roots).astype(np.int32),
         chains=_chains(stacked_parents, joint_dofs, np.concatenate(bone_roots)),
+    )
+
+
+def _landmarks(model: ArticulatedModel, first_bone: int, first_vertex: int) -> tuple[Array, npt.NDArray, npt.NDArray]:
+    """Rest positions, bones (-1 where a vertex is meant) and vertices (-1 where a bone is meant) of the landmarks."""
+    joints, hand = model.skeleton.joints_rest, model.hand
+    if hand is None:
+        bones = np.arange(len(joints))
+        return joints, bones + first_bone, np.full(len(joints), -1)
+    at_bone = hand.joint_bones >= 0
+    rest = np.where(at_bone[:, None], joints[hand.joint_bones], model.vertices[hand.joint_vertices])
+    return (
+        rest,
+        np.where(at_bone, hand.joint_bones + first_bone, 0),
+        np.where(at_bone, -1, hand.joint_vertices + first_vertex),
     )
 
 

@@ -1,0 +1,176 @@
+"""What the tracker keeps of one depth image: the D of [T16] Eq. 5, §3.2.1."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.errors import FrameError
+from tracker.observation.depth_edges import find_depth_edges_into
+from tracker.observation.normals import compute_points_and_normals_into
+from tracker.observation.skin import compute_skin_ratio
+
+HAND, OTHER = 1, 2
+"""Bits of a pixel's label: may be hand, may be something else. Without colour a pixel is both."""
+
+
+@dataclass(frozen=True)
+class Region:
+    """Part of the image and of the depth range in which something is expected.
+
+    Attributes:
+        row, column: First pixel.
+        height, width: px.
+        near, far: Depth range, m.
+    """
+
+    row: int
+    column: int
+    height: int
+    width: int
+    near: float
+    far: float
+
+
+@dataclass(frozen=True)
+class Preprocessing:
+    """How a depth image is prepared, [T16] §3.2.1.
+
+    Attributes:
+        use_skin: Separate hand from other surfaces by colour, where there is colour.
+        skin_threshold: Least smoothed log likelihood ratio skin : non-skin of a hand pixel.
+        bilateral_diameter: px; 0 leaves the depth as it is.
+        bilateral_depth: Depth difference at which smoothing fades, m.
+        edge_jump: Depth step that makes a discontinuity, m.
+    """
+
+    use_skin: bool = True
+    skin_threshold: float = -2.0
+    bilateral_diameter: int = 5
+    bilateral_depth: float = 0.010
+    edge_jump: float = 0.015
+
+
+@dataclass(frozen=True)
+class Observation:
+    """A region of one depth image, prepared.
+
+    Attributes:
+        region: Where it lies in the image.
+        K: (3, 3) intrinsics of the region: pixel (0, 0) is the region's first, px.
+        T_world_camera: (4, 4).
+        points: (H, W, 3) float32 world, m.
+        normals: (H, W, 3) float32 world, unit, towards the camera; 0 where there is none.
+        depth: (H, W) float32 smoothed depth, m; 0 where there is no value in the region's depth range.
+        labels: (H, W) uint8 bits HAND and OTHER; 0 where there is no depth.
+        beyond: (H, W) bool, the sensor saw something behind the region's depth range, so the space before it is free.
+        nearest_hand: (H, W, 2) int16 row and column of the nearest pixel that may be hand.
+        nearest_edge: (H, W, 2) int16 row and column of the nearest depth discontinuity of the hand; -1 if there is none.
+    """
+
+    region: Region
+    K: npt.NDArray[np.float64]
+    T_world_camera: npt.NDArray[np.float64]
+    points: npt.NDArray[np.float32]
+    normals: npt.NDArray[np.float32]
+    depth: npt.NDArray[np.float32]
+    labels: npt.NDArray[np.uint8]
+    beyond: npt.NDArray[np.bool_]
+    nearest_hand: npt.NDArray[np.int16]
+    nearest_edge: npt.NDArray[np.int16]
+
+    @property
+    def hand_count(self) -> int:
+        """Pixels that may be hand."""
+        return int(np.count_nonzero(self.labels & HAND))
+
+
+def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing) -> Observation:
+    """Prepare a region of a frame.
+
+    Raises:
+        FrameError: The frame has no depth, or its size is not the camera's.
+    """
+    if frame.depth is None:
+        raise FrameError(f"Frame {frame.index} of camera {frame.camera} has no depth; this tracker needs depth images.")
+    if frame.depth.shape != (camera.height, camera.width):
+        raise FrameError(
+            f"Frame {frame.index} of camera {frame.camera}: depth is {frame.depth.shape[1]}x{frame.depth.shape[0]}, "
+            f"the camera {camera.width}x{camera.height}."
+        )
+    rows, columns = slice(region.row, region.row + region.height), slice(region.column, region.column + region.width)
+    raw = frame.depth[rows, columns]
+    inside = (raw >= region.near) & (raw <= region.far)
+    beyond = raw > region.far
+    depth = np.where(inside, raw, np.float32(0.0))
+    if how.bilateral_diameter > 0:
+        smooth = cv2.bilateralFilter(depth, how.bilateral_diameter, how.bilateral_depth, how.bilateral_diameter / 2)
+        depth = np.where(inside, smooth, np.float32(0.0))
+    K = camera.K.copy()
+    K[0, 2] -= region.column
+    K[1, 2] -= region.row
+    color = None if frame.color is None or not how.use_skin else frame.color[rows, columns]
+    labels = _label(inside, color, how.skin_threshold)
+    points = np.zeros((*depth.shape, 3), dtype=np.float32)
+    normals = np.zeros_like(points)
+    compute_points_and_normals_into(points, normals, depth, K, camera.T_world_camera)
+    hand = (labels & HAND).astype(np.uint8)
+    edges = np.zeros_like(hand)
+    find_depth_edges_into(edges, depth, hand, how.edge_jump)
+    closed = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+    return Observation(
+        region,
+        K,
+        camera.T_world_camera,
+        points,
+        normals,
+        depth,
+        labels,
+        beyond,
+        _nearest(closed),
+        _nearest(edges),
+    )
+
+
+def undistort(frame: Frame, camera: Camera) -> tuple[Frame, Camera]:
+    """The frame as an ideal pinhole camera of the same K would see it, nearest pixels, and that camera."""
+    if not camera.distortion.size or not np.any(camera.distortion):
+        return frame, camera
+    size = (camera.width, camera.height)
+    maps = cv2.initUndistortRectifyMap(camera.K, camera.distortion, np.eye(3), camera.K, size, cv2.CV_32FC1)
+    depth = None if frame.depth is None else cv2.remap(frame.depth, *maps, cv2.INTER_NEAREST)
+    color = None if frame.color is None else cv2.remap(frame.color, *maps, cv2.INTER_LINEAR)
+    ideal = Camera(camera.id, camera.width, camera.height, camera.K, np.zeros(0), camera.T_world_camera)
+    return Frame(frame.index, frame.camera, color, depth), ideal
+
+
+def _label(
+    inside: npt.NDArray[np.bool_], color: npt.NDArray[np.uint8] | None, threshold: float
+) -> npt.NDArray[np.uint8]:
+    """Hand and other pixels by colour. The log ratio is averaged with its 9x9 neighbourhood: palms are pale in spots."""
+    if color is None:
+        return np.where(inside, np.uint8(HAND | OTHER), np.uint8(0))
+    weight = inside.astype(np.float32)
+    log_ratio = np.clip(np.log(np.maximum(compute_skin_ratio(color), 1e-9)), -4.0, 2.0) * weight
+    mean = cv2.blur(log_ratio, (9, 9)) / np.maximum(cv2.blur(weight, (9, 9)), 1e-3)
+    is_hand = 0.5 * (mean + log_ratio) > threshold
+    return np.where(inside, np.where(is_hand, np.uint8(HAND), np.uint8(OTHER)), np.uint8(0))
+
+
+def _nearest(mask: npt.NDArray[np.uint8]) -> npt.NDArray[np.int16]:
+    """(H, W, 2) row and column of the nearest pixel set in the mask; -1 everywhere if none is."""
+    nearest = np.full((*mask.shape, 2), -1, dtype=np.int16)
+    if mask.any():
+        _, index = cv2.distanceTransformWithLabels(
+            (mask == 0).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
+        )
+        rows, columns = np.nonzero(mask)
+        place = np.zeros((int(index.max()) + 1, 2), dtype=np.int16)
+        place[index[rows, columns]] = np.stack([rows, columns], axis=1)
+        nearest = place[index]
+    return nearest

@@ -1,0 +1,63 @@
+"""Residual kind: functions of the joint angles alone, [T16] Eq. 17 and 18."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class AnatomicalLimits:
+    """Soft joint limits, E = Σ_k exp(p(l_k − θ_k)) + exp(p(θ_k − u_k)), [T16] Eq. 17.
+
+    Weighted by γ_a C_all, C_all the number of correspondences of the other terms. As a sum of squares the residuals are
+    exp(p/2 (l − θ)) and exp(p/2 (θ − u)), which is Eq. 17 exactly.
+
+    Differs from the paper: beyond `linear_from` the residual goes on as its tangent, so that a start far outside its
+    limits cannot overflow; and γ_a is larger: on twins the paper's weight let hidden fingers bend backwards.
+    """
+
+    weight: float = 0.0015
+    """γ_a (§3.2.7), times C_all."""
+
+    steepness: float = 10.0
+    """p (§3.2.7), 1/rad."""
+
+    linear_from: float = 0.35
+    """Outside the limits by more than this the residual is linear, rad."""
+
+    def linearize(self, angles: Array, lower: Array, upper: Array) -> tuple[Array, Array, Array]:
+        """Cost (scalar array), gradient (K,) and Gauss-Newton curvature (K,) of Eq. 17 without its weight.
+
+        Args:
+            angles: (K,) rad.
+            lower: (K,) rad.
+            upper: (K,) rad.
+        """
+        cost, gradient, curvature = np.zeros(()), np.zeros_like(angles), np.zeros_like(angles)
+        for outside, sign in ((lower - angles, -1.0), (angles - upper, 1.0)):
+            bounded = np.minimum(outside, self.linear_from)
+            value = np.exp(0.5 * self.steepness * bounded)
+            slope = 0.5 * self.steepness * value
+            value = value + slope * (outside - bounded)
+            cost = cost + np.sum(value**2)
+            gradient += sign * slope * value
+            curvature += slope**2
+        return cost, gradient, curvature
+
+
+@dataclass(frozen=True)
+class Regularization:
+    """Stay near the angles of the previous frame, E = Σ_k (θ_k − θ̃_k)², [T16] Eq. 18, weighted by γ_r C_all."""
+
+    weight: float = 0.02
+    """γ_r (§3.2.8), times C_all."""
+
+    def linearize(self, angles: Array, previous: Array) -> tuple[Array, Array, Array]:
+        """Cost, gradient (K,) and curvature (K,) of Eq. 18 without its weight; angles and previous (K,) rad."""
+        difference = angles - previous
+        return np.sum(difference**2), difference, np.ones_like(angles)

@@ -1,0 +1,140 @@
+"""Fit the model to the data, [T16] §3.2.2, Eq. 6 and 7."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from tracker.model.scene import PosedScene
+from tracker.terms.point_plane import PointToPlane
+from tracker.terms.point_point import PointToPoint
+from tracker.terms.residual import FrameContext
+
+
+@dataclass(frozen=True)
+class ModelToData:
+    """Pull each visible vertex to the nearest point of the cloud: E = Σ |n_iᵀ(v_i − X_i)|², [T16] Eq. 7 (or Eq. 6).
+
+    Matches farther than `max_distance` or with normals more than `max_angle` apart are left out. The nearest point is
+    looked for in rings of pixels around the vertex's own, ending when no farther ring can hold a nearer point.
+
+    Differs from the paper: the normal n_i(θ) is held fixed at its value when the match was made, as is usual.
+    """
+
+    weight: float = 1.0
+    """Eq. 5 gives this term weight one."""
+
+    max_distance: float = 0.010
+    """m (10 mm, §3.2.2)."""
+
+    max_angle: float = 45.0
+    """deg (§3.2.2)."""
+
+    to_plane: bool = True
+    """Point-to-plane (Eq. 7) or point-to-point (Eq. 6)."""
+
+    visible_within: float = 0.003
+    """A vertex is visible when it is at most this far behind the rendered surface, m."""
+
+    def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane | PointToPoint:
+        """Match visible vertices to the cloud."""
+        view, observation = context.view, context.observation
+        vertices = len(posed.vertices)
+        ids = np.zeros(vertices, dtype=np.int32)
+        targets = np.zeros((vertices, 3))
+        count = _find_into(
+            ids,
+            targets,
+            posed.vertices,
+            posed.normals,
+            context.vertex_labels,
+            view.projected,
+            view.inverse_depth,
+            observation.points,
+            observation.normals,
+            observation.labels,
+            view.K[0, 0],
+            self.max_distance,
+            np.cos(np.deg2rad(self.max_angle)),
+            self.visible_within,
+        )
+        ids, targets = ids[:count], targets[:count]
+        corners = np.repeat(ids[:, None], 3, axis=1)
+        barycentric = np.zeros((count, 3))
+        barycentric[:, 0] = 1.0
+        weights = np.full(count, self.weight)
+        if self.to_plane:
+            return PointToPlane(corners, barycentric, targets, posed.normals[ids], weights)
+        return PointToPoint(corners, barycentric, targets, weights)
+
+
+@njit(cache=True, nogil=True)
+def _find_into(
+    ids,
+    targets,
+    vertices,
+    vertex_normals,
+    vertex_labels,
+    projected,
+    inverse_depth,
+    points,
+    normals,
+    labels,
+    focal,
+    max_distance,
+    min_cosine,
+    visible_within,
+):
+    height, width = labels.shape
+    count = 0
+    for v in range(len(vertices)):
+        inverse = projected[v, 2]
+        if inverse <= 0.0:
+            continue
+        column, row = int(np.rint(projected[v, 0])), int(np.rint(projected[v, 1]))
+        if row < 0 or column < 0 or row >= height or column >= width:
+            continue
+        drawn = inverse_depth[row, column]
+        if drawn > 0.0 and 1.0 / inverse > 1.0 / drawn + visible_within:
+            continue
+        nx, ny, nz = vertex_normals[v, 0], vertex_normals[v, 1], vertex_normals[v, 2]
+        if nx == 0.0 and ny == 0.0 and nz == 0.0:
+            continue
+        x, y, z = vertices[v, 0], vertices[v, 1], vertices[v, 2]
+        wanted = vertex_labels[v]
+        pixel = 1.0 / (inverse * focal)  # width of a pixel at the vertex's depth, m
+        best = max_distance * max_distance
+        best_row, best_column = -1, -1
+        ring = 0
+        while True:
+            nearest_possible = (ring - 0.5) * pixel
+            if ring > 0 and nearest_possible * nearest_possible >= best:
+                break
+            for side in range(2 * ring + 1 if ring > 0 else 1):
+                for edge in range(4 if ring > 0 else 1):
+                    if edge == 0:
+                        r, c = row - ring, column - ring + side
+                    elif edge == 1:
+                        r, c = row + ring, column - ring + side
+                    elif edge == 2:
+                        r, c = row - ring + side, column - ring
+                    else:
+                        r, c = row - ring + side, column + ring
+                    if r < 0 or c < 0 or r >= height or c >= width or labels[r, c] & wanted == 0:
+                        continue
+                    dx, dy, dz = points[r, c, 0] - x, points[r, c, 1] - y, points[r, c, 2] - z
+                    distance = dx * dx + dy * dy + dz * dz
+                    if distance < best:
+                        cosine = normals[r, c, 0] * nx + normals[r, c, 1] * ny + normals[r, c, 2] * nz
+                        if cosine >= min_cosine:
+                            best = distance
+                            best_row, best_column = r, c
+            ring += 1
+        if best_row >= 0:
+            ids[count] = v
+            for i in range(3):
+                targets[count, i] = points[best_row, best_column, i]
+            count += 1
+    return count

@@ -1,0 +1,171 @@
+"""Sums of squared residuals of skinned points, kept per pair of bones until they are needed per degree of freedom.
+
+A residual that moves a skinned point x along n has the derivative Σ_j ξ_d · w_j by degree of freedom d, the sum over
+the point's bones j below d, w_j = κ_j (n, x_j × n) and ξ_d = (u, ω) the world twist. So JᵀJ and Jᵀr follow from the
+6x6 sums of w_j w_kᵀ over pairs of bones that share points, and J is never built.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from tracker.model.scene import PosedScene, Scene
+
+Array = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
+
+MAX_BONES = 12
+"""Bones that one surface point can follow: three vertices of four each."""
+
+
+@dataclass
+class NormalEquations:
+    """A running sum; the solver's terms add to it in any order.
+
+    Attributes:
+        posed: Where everything is linearised.
+        pairs: (P, 2) pairs of bones j <= k that share a face.
+        pair_index: (B, B) row of a pair, -1 for none.
+        blocks: (P, 6, 6) Σ w_j w_kᵀ, mm² per squared unit of twist.
+        gradients: (B, 6) Σ w_j r.
+        cost: Σ weight r², mm².
+        count: Residuals added, the paper's C_all.
+    """
+
+    posed: PosedScene
+    pairs: Ints
+    pair_index: Ints
+    blocks: Array
+    gradients: Array
+    cost: float = 0.0
+    count: int = 0
+
+    @classmethod
+    def at(cls, posed: PosedScene) -> NormalEquations:
+        """An empty sum at a posed scene."""
+        pairs, pair_index = _pairs(posed.scene)
+        return cls(posed, pairs, pair_index, np.zeros((len(pairs), 6, 6)), np.zeros((len(pair_index), 6)))
+
+    def assemble(self) -> tuple[Array, Array]:
+        """JᵀJ (D, D) and Jᵀr (D,) of all that was added."""
+        dofs = self.posed.scene.num_dofs
+        JtJ, Jtr = np.zeros((dofs, dofs)), np.zeros(dofs)
+        _assemble_into(
+            JtJ, Jtr, self.blocks, self.gradients, self.pairs, self.posed.scene.arrays.chains, self.posed.twists
+        )
+        return JtJ, Jtr
+
+
+def _pairs(scene: Scene) -> tuple[Ints, Ints]:
+    """Pairs of bones that have weight on a common face or vertex."""
+    cached = scene.__dict__.get("_bone_pairs")
+    if cached is None:
+        arrays = scene.arrays
+        bones = len(arrays.parents)
+        follows = np.zeros((len(arrays.vertices), bones), dtype=bool)
+        for slot in range(arrays.weights.shape[1]):
+            used = arrays.weights[:, slot] > 0
+            follows[np.flatnonzero(used), arrays.weight_bones[used, slot]] = True
+        on_face = follows[arrays.faces].any(axis=1)
+        shared = (on_face.T.astype(np.int64) @ on_face + follows.T.astype(np.int64) @ follows) > 0
+        j, k = np.nonzero(np.triu(shared))
+        pair_index = np.full((bones, bones), -1, dtype=np.int32)
+        pair_index[j, k] = pair_index[k, j] = np.arange(len(j))
+        cached = np.stack([j, k], axis=1).astype(np.int32), pair_index
+        scene.__dict__["_bone_pairs"] = cached
+    return cached
+
+
+@njit(cache=True, nogil=True)
+def gather_bones(bones, sums, ids, barycentric, weight_bones, weights, bone_vertices):
+    """Collect the bones of a surface point: fills bones (MAX_BONES,) and sums (MAX_BONES, 4) = κ and κ x_j; their number.
+
+    The point is Σ barycentric[i] · vertex ids[i].
+    """
+    count = 0
+    for corner in range(3):
+        share = barycentric[corner]
+        if share == 0.0:
+            continue
+        vertex = ids[corner]
+        for slot in range(weights.shape[1]):
+            weight = weights[vertex, slot]
+            if weight == 0.0:
+                break
+            bone = weight_bones[vertex, slot]
+            place = 0
+            while place < count and bones[place] != bone:
+                place += 1
+            if place == count:
+                bones[place] = bone
+                sums[place, 0] = sums[place, 1] = sums[place, 2] = sums[place, 3] = 0.0
+                count += 1
+            kappa = share * weight
+            sums[place, 0] += kappa
+            sums[place, 1] += kappa * bone_vertices[vertex, slot, 0]
+            sums[place, 2] += kappa * bone_vertices[vertex, slot, 1]
+            sums[place, 3] += kappa * bone_vertices[vertex, slot, 2]
+    return count
+
+
+@njit(cache=True, nogil=True)
+def add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, nx, ny, nz, residual, weight):
+    """Add weight · (residual + n · dx)² for a point gathered by `gather_bones`; wrenches (MAX_BONES, 6) is scratch."""
+    for place in range(count):
+        kappa, x, y, z = sums[place, 0], sums[place, 1], sums[place, 2], sums[place, 3]
+        w = wrenches[place]
+        w[0], w[1], w[2] = kappa * nx, kappa * ny, kappa * nz
+        w[3], w[4], w[5] = y * nz - z * ny, z * nx - x * nz, x * ny - y * nx
+        g = gradients[bones[place]]
+        scale = weight * residual
+        for i in range(6):
+            g[i] += scale * w[i]
+    for first in range(count):
+        for second in range(count):
+            j, k = bones[first], bones[second]
+            if j > k:
+                continue
+            block = blocks[pair_index[j, k]]
+            a, b = wrenches[first], wrenches[second]
+            for i in range(6):
+                scaled = weight * a[i]
+                for m in range(6):
+                    block[i, m] += scaled * b[m]
+
+
+@njit(cache=True, nogil=True)
+def _assemble_into(JtJ, Jtr, blocks, gradients, pairs, chains, twists):
+    half = np.zeros(6)
+    for bone in range(len(gradients)):
+        g = gradients[bone]
+        for slot in range(chains.shape[1]):
+            dof = chains[bone, slot]
+            if dof < 0:
+                break
+            for i in range(6):
+                Jtr[dof] += twists[dof, i] * g[i]
+    for pair in range(len(pairs)):
+        j, k = pairs[pair, 0], pairs[pair, 1]
+        block = blocks[pair]
+        for slot in range(chains.shape[1]):
+            d = chains[j, slot]
+            if d < 0:
+                break
+            for m in range(6):
+                half[m] = 0.0
+                for i in range(6):
+                    half[m] += twists[d, i] * block[i, m]
+            for other in range(chains.shape[1]):
+                e = chains[k, other]
+                if e < 0:
+                    break
+                value = 0.0
+                for m in range(6):
+                    value += half[m] * twists[e, m]
+                JtJ[d, e] += value
+                if j != k:
+                    JtJ[e, d] += value

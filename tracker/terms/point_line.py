@@ -1,0 +1,123 @@
+"""Residual kind: distance of a surface point from a line in Plücker coordinates, r = v × d − m, [T16] Eq. 8."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from tracker.model.kinematics import vertex_jacobian
+from tracker.model.scene import PosedScene
+from tracker.terms.normal_equations import MAX_BONES, NormalEquations, add_row, gather_bones
+from tracker.terms.residual import MILLIMETRES, ResidualBlock
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PointToLine:
+    """Surface points and the viewing rays they should lie on.
+
+    Attributes:
+        ids: (N, 3) vertices that span each surface point.
+        barycentric: (N, 3) their shares.
+        directions: (N, 3) unit direction d of each line, world.
+        moments: (N, 3) moment m = x × d of each line, world, m.
+        weights: (N,).
+    """
+
+    ids: npt.NDArray[np.int32]
+    barycentric: Array
+    directions: Array
+    moments: Array
+    weights: Array
+
+    @property
+    def count(self) -> int:
+        return len(self.ids)
+
+    def points(self, posed: PosedScene) -> Array:
+        """(N, 3) the surface points, world, m."""
+        return np.einsum("nc,nci->ni", self.barycentric, posed.vertices[self.ids])
+
+    def linearize(self, posed: PosedScene) -> ResidualBlock:
+        residual = np.cross(self.points(posed), self.directions) - self.moments  # (N, 3)
+        jacobian = np.zeros((self.count, 3, posed.scene.num_dofs))
+        for corner in range(3):
+            moves = vertex_jacobian(posed.scene.arrays, posed.bone_vertices, posed.twists, self.ids[:, corner])
+            turned = np.cross(moves, self.directions[:, :, None], axis=1)
+            jacobian += self.barycentric[:, corner, None, None] * turned
+        return ResidualBlock(
+            MILLIMETRES * residual.reshape(-1),
+            MILLIMETRES * jacobian.reshape(3 * self.count, -1),
+            np.repeat(self.weights, 3),
+        )
+
+    def add_to(self, equations: NormalEquations) -> None:
+        posed, arrays = equations.posed, equations.posed.scene.arrays
+        equations.cost += _add_rows(
+            equations.blocks,
+            equations.gradients,
+            equations.pair_index,
+            self.ids,
+            self.barycentric,
+            self.directions,
+            self.moments,
+            self.weights,
+            posed.vertices,
+            arrays.weight_bones,
+            arrays.weights,
+            posed.bone_vertices,
+        )
+        equations.count += self.count
+
+    def segments(self, posed: PosedScene) -> Array:
+        points = self.points(posed)
+        feet = np.cross(self.directions, self.moments)  # nearest point of each line to the origin
+        along = np.einsum("ni,ni->n", points - feet, self.directions)
+        return np.stack([points, feet + along[:, None] * self.directions], axis=1)
+
+
+@njit(cache=True, nogil=True)
+def _add_rows(
+    blocks,
+    gradients,
+    pair_index,
+    ids,
+    barycentric,
+    directions,
+    moments,
+    weights,
+    vertices,
+    weight_bones,
+    skinning,
+    bone_vertices,
+):
+    bones = np.zeros(MAX_BONES, dtype=np.int32)
+    sums = np.zeros((MAX_BONES, 4))
+    wrenches = np.zeros((MAX_BONES, 6))
+    cost = 0.0
+    for row in range(len(ids)):
+        x = y = z = 0.0
+        for corner in range(3):
+            share = barycentric[row, corner]
+            if share != 0.0:
+                v = ids[row, corner]
+                x += share * vertices[v, 0]
+                y += share * vertices[v, 1]
+                z += share * vertices[v, 2]
+        dx, dy, dz = directions[row, 0], directions[row, 1], directions[row, 2]
+        rx, ry, rz = (
+            y * dz - z * dy - moments[row, 0],
+            z * dx - x * dz - moments[row, 1],
+            x * dy - y * dx - moments[row, 2],
+        )
+        weight = weights[row] * MILLIMETRES * MILLIMETRES
+        cost += weight * (rx * rx + ry * ry + rz * rz)
+        count = gather_bones(bones, sums, ids[row], barycentric[row], weight_bones, skinning, bone_vertices)
+        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, 0.0, dz, -dy, rx, weight)
+        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, -dz, 0.0, dx, ry, weight)
+        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, dy, -dx, 0.0, rz, weight)
+    return cost

@@ -1,0 +1,57 @@
+"""Residual kind: distance of a surface point from a point, r = v − X, [T16] Eq. 6."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.model.scene import PosedScene
+from tracker.terms.normal_equations import NormalEquations
+from tracker.terms.point_plane import PointToPlane
+from tracker.terms.residual import ResidualBlock
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PointToPoint:
+    """Surface points and the points they should meet: three planes each.
+
+    Attributes:
+        ids: (N, 3) vertices that span each surface point.
+        barycentric: (N, 3) their shares.
+        targets: (N, 3) world, m.
+        weights: (N,).
+    """
+
+    ids: npt.NDArray[np.int32]
+    barycentric: Array
+    targets: Array
+    weights: Array
+
+    @property
+    def count(self) -> int:
+        return len(self.ids)
+
+    def as_planes(self) -> PointToPlane:
+        """The same sum of squares as planes across x, y and z."""
+        return PointToPlane(
+            np.repeat(self.ids, 3, axis=0),
+            np.repeat(self.barycentric, 3, axis=0),
+            np.repeat(self.targets, 3, axis=0),
+            np.tile(np.eye(3), (self.count, 1)),
+            np.repeat(self.weights, 3),
+        )
+
+    def linearize(self, posed: PosedScene) -> ResidualBlock:
+        return self.as_planes().linearize(posed)
+
+    def add_to(self, equations: NormalEquations) -> None:
+        self.as_planes().add_to(equations)
+        equations.count -= 2 * self.count  # a correspondence counts once, whatever its rows
+
+    def segments(self, posed: PosedScene) -> Array:
+        points = np.einsum("nc,nci->ni", self.barycentric, posed.vertices[self.ids])
+        return np.stack([points, self.targets], axis=1)

@@ -1,0 +1,86 @@
+"""What a term returns: correspondences held fixed, and their linearisation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.model.scene import PosedScene
+from tracker.observation import Observation
+from tracker.rendering import View
+from tracker.terms.normal_equations import NormalEquations
+
+Array = npt.NDArray[np.float64]
+
+MILLIMETRES = 1000.0
+"""Residuals are in mm: the paper's weights and thresholds mean something only there."""
+
+
+@dataclass(frozen=True)
+class ResidualBlock:
+    """A linearised residual, weight · |residual + jacobian · step|².
+
+    Attributes:
+        residual: (M,) mm.
+        jacobian: (M, D) mm per unit of each degree of freedom.
+        weights: (M,) of each row.
+    """
+
+    residual: Array
+    jacobian: Array
+    weights: Array
+
+    @property
+    def cost(self) -> float:
+        return float(np.sum(self.weights * self.residual**2))
+
+
+class Residual(Protocol):
+    """Correspondences held fixed; a function of the pose only."""
+
+    @property
+    def count(self) -> int:
+        """Correspondences."""
+        ...
+
+    def linearize(self, posed: PosedScene) -> ResidualBlock:
+        """Residual and Jacobian at a pose, plainly."""
+        ...
+
+    def add_to(self, equations: NormalEquations) -> None:
+        """Add JᵀJ and Jᵀr at `equations.posed` without building J: the hot path, equal to `linearize`."""
+        ...
+
+    def segments(self, posed: PosedScene) -> Array:
+        """(M, 2, 3) from each model point to what it should meet, world, m: for the viewer."""
+        ...
+
+
+@dataclass(frozen=True)
+class FrameContext:
+    """What is known when correspondences are looked for.
+
+    Attributes:
+        view: The scene at the current pose as the camera sees it.
+        observation: The same camera's image.
+        vertex_labels: (V,) uint8 label bits a vertex may match.
+        face_labels: (F,) uint8 label bits a face may match.
+    """
+
+    view: View
+    observation: Observation
+    vertex_labels: npt.NDArray[np.uint8]
+    face_labels: npt.NDArray[np.uint8]
+
+
+class Term(Protocol):
+    """One summand of the objective, [T16] Eq. 5."""
+
+    weight: float
+
+    def find(self, posed: PosedScene, context: FrameContext) -> Residual:
+        """Look for correspondences at the current pose."""
+        ...

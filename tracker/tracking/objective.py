@@ -1,0 +1,76 @@
+"""The objective of [T16] Eq. 5: which terms, and how their sum is linearised."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.model.scene import PosedScene
+from tracker.terms.data_to_model import DataToModel
+from tracker.terms.data_to_surface import DataToSurface
+from tracker.terms.joint_prior import AnatomicalLimits, Regularization
+from tracker.terms.model_to_data import ModelToData
+from tracker.terms.normal_equations import NormalEquations
+from tracker.terms.residual import FrameContext, Residual, Term
+from tracker.terms.silhouette import Silhouette
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Objective:
+    """Terms by name; any of them may be missing.
+
+    Attributes:
+        terms: Terms that find correspondences.
+        anatomy: Joint limits, weighted by the number of correspondences.
+        regularization: Pull towards the previous frame's angles, weighted likewise.
+    """
+
+    terms: dict[str, Term] = field(
+        default_factory=lambda: {
+            "model_to_data": ModelToData(),
+            "data_to_surface": DataToSurface(),
+            "data_to_model": DataToModel(),
+            "silhouette": Silhouette(),
+        }
+    )
+    anatomy: AnatomicalLimits = field(default_factory=AnatomicalLimits)
+    regularization: Regularization = field(default_factory=Regularization)
+
+    def find(self, posed: PosedScene, context: FrameContext) -> dict[str, Residual]:
+        """Correspondences of every term at the current pose."""
+        return {name: term.find(posed, context) for name, term in self.terms.items()}
+
+    def linearize(
+        self, posed: PosedScene, residuals: dict[str, Residual], previous_pose: Array
+    ) -> tuple[Array, Array, dict[str, float]]:
+        """JᵀJ (D, D), Jᵀr (D,) and the cost of each term, mm², at a posed scene."""
+        equations = NormalEquations.at(posed)
+        costs: dict[str, float] = {}
+        for name, residual in residuals.items():
+            before = equations.cost
+            residual.add_to(equations)
+            costs[name] = equations.cost - before
+        JtJ, Jtr = equations.assemble()
+        scene, dofs = posed.scene, posed.scene.angle_dofs
+        angles = posed.pose[dofs]
+        for name, weight, (cost, gradient, curvature) in (
+            (
+                "anatomy",
+                self.anatomy.weight,
+                self.anatomy.linearize(angles, scene.lower[dofs], scene.upper[dofs]),
+            ),
+            (
+                "regularization",
+                self.regularization.weight,
+                self.regularization.linearize(angles, previous_pose[dofs]),
+            ),
+        ):
+            scale = weight * max(equations.count, 1)
+            costs[name] = scale * float(cost)
+            JtJ[dofs, dofs] += scale * curvature
+            Jtr[dofs] += scale * gradient
+        return JtJ, Jtr, costs

@@ -1,0 +1,200 @@
+"""Write a performance as a recording folder, with everything that is exactly known of it."""
+
+from __future__ import annotations
+
+import logging
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cv2
+import numpy as np
+import trimesh
+
+from tracker.capture.annotations import Annotation, save_annotations
+from tracker.capture.frame_pattern import FramePattern
+from tracker.capture.recorded_camera import RecordedCamera
+from tracker.capture.recorded_object import RecordedObject
+from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
+from tracker.capture.truth import Truth
+from tracker.errors import SequenceError
+from tracker.model.articulated import ArticulatedModel
+from tracker.synthesis.actor import Actor
+from tracker.synthesis.performance import Moment, Performance, render_moment
+from tracker.synthesis.sensor import StructuredLight
+from tracker.synthesis.shading import compute_cosines, shade
+from tracker.synthesis.visibility import find_visibility
+
+log = logging.getLogger(__name__)
+
+SaveModel = Callable[[ArticulatedModel, Path], None]
+
+COLOR = FramePattern("color/", 6, ".png")
+DEPTH = FramePattern("depth/", 6, ".png")
+TRUTH_FILE = "truth.npz"
+
+
+@dataclass(frozen=True)
+class RecordingOptions:
+    """How a performance is recorded.
+
+    Attributes:
+        moments: Which moments of the performance become frames, in order.
+        sensor: Noise of the depth camera; None for exact images.
+        seed: Of the noise. The noise of a moment depends on the seed and the moment only, not on what else is recorded.
+        background: Depth of a wall behind everything, m; 0 for none.
+    """
+
+    moments: range
+    sensor: StructuredLight | None = field(default_factory=StructuredLight)
+    seed: int = 0
+    background: float = 0.0
+
+    @property
+    def depth_scale(self) -> float:
+        """m per unit: a sensor of the Carmine kind reports whole millimetres; exact images keep tenths of them."""
+        return 0.001 if self.sensor is not None else 0.0001
+
+
+def write_recording(
+    performance: Performance,
+    folder: Path,
+    options: RecordingOptions,
+    save_model: SaveModel,
+    progress: Callable[[float], None] = lambda share: None,
+) -> Sequence:
+    """Render a performance to a recording folder with `truth.npz`, annotations of every frame and the models.
+
+    The folder appears whole or not at all; it must not exist before.
+
+    Args:
+        performance: What to render.
+        folder: Where to.
+        options: Which moments, and how.
+        save_model: Writes a model to an npz file.
+        progress: Told the share that is done, 0 to 1.
+    """
+    assert len(options.moments) > 0
+    with _appearing(folder) as unfinished:
+        for name in ("color", "depth", "models", *(["objects"] if performance.objects else [])):
+            (unfinished / name).mkdir()
+        moments = []
+        for frame, index in enumerate(options.moments):
+            moment = render_moment(performance, index)
+            _write_images(performance, moment, frame, unfinished, options)
+            moments.append((moment.joints, moment.pixels, find_visibility(performance, moment)))
+            progress((frame + 1) / len(options.moments))
+        joints, pixels, visibility = (np.array(column) for column in zip(*moments, strict=True))
+        truth = Truth(
+            frame=np.arange(len(options.moments)),
+            source_frame=np.array(options.moments),
+            joint_names=performance.joint_names,
+            joints_3d=joints,
+            joints_2d=pixels[:, None],
+            visibility=visibility[:, None],
+            object_names=tuple(actor.name for actor in performance.objects),
+            T_world_object=_object_motion(performance, options.moments),
+        )
+        truth.save(unfinished / TRUTH_FILE)
+        save_annotations(unfinished / "annotations.json", _annotate(performance, truth))
+        for actor in performance.hands:
+            save_model(actor.model, unfinished / "models" / f"{actor.name}.npz")
+        objects = tuple(_write_object(actor, truth, unfinished, save_model) for actor in performance.objects)
+        camera = performance.camera
+        recorded = RecordedCamera(
+            id=camera.id,
+            width=camera.width,
+            height=camera.height,
+            K=camera.K,
+            T_world_camera=camera.T_world_camera,
+            color=COLOR,
+            depth=DEPTH,
+            depth_scale=options.depth_scale,
+        )
+        save_sequence_json(
+            Sequence(
+                folder=unfinished,
+                name=performance.name,
+                fps=performance.fps / options.moments.step,
+                frame_count=len(options.moments),
+                cameras=(recorded,),
+                hands=tuple(actor.name for actor in performance.hands),
+                objects=objects,
+                annotations="annotations.json",
+            )
+        )
+    log.info("wrote %d frames of %s to %s", len(options.moments), performance.name, folder)
+    return load_sequence(folder)
+
+
+def _write_images(
+    performance: Performance, moment: Moment, frame: int, folder: Path, options: RecordingOptions
+) -> None:
+    rng = np.random.default_rng([options.seed, moment.index]) if options.sensor is not None else None
+    cosines = compute_cosines(performance, moment)
+    color = shade(performance, moment, cosines, rng)
+    depth = moment.depth
+    if options.background > 0.0:
+        is_empty = moment.face < 0
+        depth = np.where(is_empty, options.background, depth)
+        cosines = np.where(is_empty, 1.0, cosines)
+    if options.sensor is not None and rng is not None:
+        depth = options.sensor.measure(depth, cosines, performance.camera.K[0, 0], rng)
+    units = np.clip(np.rint(depth / options.depth_scale), 0, np.iinfo(np.uint16).max).astype(np.uint16)
+    fast = [cv2.IMWRITE_PNG_COMPRESSION, 3]
+    for pattern, image in ((COLOR, cv2.cvtColor(color, cv2.COLOR_RGB2BGR)), (DEPTH, units)):
+        path = folder / pattern.path(frame)
+        if not cv2.imwrite(str(path), image, fast):
+            raise SequenceError(f"{path}: the image could not be written; is the disk full?")
+
+
+def _annotate(performance: Performance, truth: Truth) -> list[Annotation]:
+    """The true joints of every hand in every frame as annotations; a joint outside the image is absent."""
+    items = []
+    for hand in performance.hands:
+        own = [truth.joint_names.index(name) for name in hand.joint_names]
+        for frame in truth.frame:
+            visibility = truth.visibility[frame, 0, own]
+            points = np.column_stack([truth.joints_2d[frame, 0, own], visibility.astype(np.float64)])
+            points[visibility == 0] = 0.0
+            items.append(Annotation(int(frame), performance.camera.id, hand.name, points))
+    return items
+
+
+def _object_motion(performance: Performance, moments: range) -> np.ndarray:
+    """(T, O, 4, 4) coordinates of each object's file to world, m."""
+    motion = [[actor.T_world_model(index) for actor in performance.objects] for index in moments]
+    return np.array(motion, dtype=np.float64).reshape(len(moments), len(performance.objects), 4, 4)
+
+
+def _write_object(actor: Actor, truth: Truth, folder: Path, save_model: SaveModel) -> RecordedObject:
+    """The object's file, rigid as a PLY in its own coordinates, articulated as an npz, and where it is at first."""
+    T_world_object = truth.T_world_object[0, truth.object_names.index(actor.name)]
+    bones = actor.model.skeleton.bone_names
+    if len(bones) == 1:
+        path = f"objects/{actor.name}.ply"
+        trimesh.Trimesh(actor.model.vertices, actor.model.faces, process=False).export(str(folder / path))
+        return RecordedObject(actor.name, path, T_world_object)
+    path = f"objects/{actor.name}.npz"
+    save_model(actor.model, folder / path)
+    own = [truth.joint_names.index(name) for name in actor.joint_names]
+    return RecordedObject(actor.name, path, T_world_object, dict(zip(bones, truth.joints_3d[0, own], strict=True)))
+
+
+@contextmanager
+def _appearing(folder: Path) -> Iterator[Path]:
+    """A temporary folder beside `folder` that becomes it if all goes well and is removed otherwise."""
+    if folder.exists():
+        raise SequenceError(f"{folder}: is already there; name a new folder or remove it first.")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = Path(tempfile.mkdtemp(prefix=f".{folder.name[:100]}.", dir=folder.parent))
+    try:
+        unfinished.chmod(0o755)
+        yield unfinished
+        os.rename(unfinished, folder)
+    finally:
+        shutil.rmtree(unfinished, ignore_errors=True)

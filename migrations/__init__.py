@@ -1,0 +1,1 @@
+"""Alembic's migrations; `server.database.migrate` runs them."""

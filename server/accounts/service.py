@@ -1,0 +1,32 @@
+"""Who asks."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Iterable
+from typing import Annotated
+
+from fastapi import Depends
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from server.accounts.models import LOCAL_ACCOUNT_ID, Account
+from server.database import SessionDep
+
+
+def get_current_account(session: SessionDep) -> Account:
+    """The account of a request: the local one, since only this machine can reach the studio."""
+    account = session.get(Account, LOCAL_ACCOUNT_ID)
+    assert account is not None, "the first migration makes the local account"
+    return account
+
+
+CurrentAccount = Annotated[Account, Depends(get_current_account)]
+
+
+def find_names(session: Session, ids: Iterable[uuid.UUID | None]) -> dict[uuid.UUID, str]:
+    """Names of some accounts."""
+    wanted = {id_ for id_ in ids if id_ is not None}
+    if not wanted:
+        return {}
+    return {row.id: row.name for row in session.execute(select(Account.id, Account.name).where(Account.id.in_(wanted)))}

@@ -1,0 +1,1 @@
+"""Joints that people mark in images: the current ones and every one before."""

@@ -1,0 +1,66 @@
+"""The app factory."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
+
+from fastapi import FastAPI
+from fastapi.routing import APIRoute
+from starlette.concurrency import run_in_threadpool
+
+from server.app.browser_app import BrowserApp
+from server.app.error_handler import install_error_handler
+from server.app.guard import Guard
+from server.app.parts import LIFESPANS, PAGE_ROUTERS, ROUTERS
+from server.database import Database
+from server.database.migrate import upgrade
+from server.settings import Settings
+from server.storage import Storage
+
+log = logging.getLogger(__name__)
+
+API = "/api/v1"
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """The whole application. Its tables are brought up to date when it starts, not here."""
+    settings = settings or Settings()
+    app = FastAPI(
+        title="Handloom",
+        version="1",
+        description="A studio that captures hands in action: recordings, annotations, tracking.",
+        openapi_url=f"{API}/openapi.json",
+        docs_url=None,  # both of FastAPI's pages load scripts from elsewhere
+        redoc_url=None,
+        generate_unique_id_function=_operation_id,
+        lifespan=_lifespan,
+    )
+    app.state.settings = settings
+    install_error_handler(app)
+    for router in ROUTERS:
+        app.include_router(router, prefix=API)
+    for router in PAGE_ROUTERS:
+        app.include_router(router)
+    app.mount("/", BrowserApp(settings.web_dist))
+    app.add_middleware(Guard, settings=settings)
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    settings: Settings = app.state.settings
+    async with AsyncExitStack() as stack:
+        app.state.storage = await run_in_threadpool(Storage, settings.data_dir)
+        database = app.state.database = Database(settings.sqlalchemy_url)
+        stack.callback(database.close)
+        await run_in_threadpool(upgrade, database)
+        for lifespan in LIFESPANS:
+            await stack.enter_async_context(lifespan(app))
+        log.info("The studio's data: %s", settings.data_dir)
+        yield
+
+
+def _operation_id(route: APIRoute) -> str:
+    return route.name

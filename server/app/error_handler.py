@@ -1,0 +1,63 @@
+"""The one handler: every error leaves as `{"error", "detail"}` with its status."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
+from starlette.responses import JSONResponse, Response
+
+from server.errors import StudioError
+from tracker import TrackerError
+
+log = logging.getLogger(__name__)
+
+_NAMES = {404: "NotFoundError", 405: "MethodNotAllowedError", 413: "TooLargeError"}
+
+
+def install_error_handler(app: FastAPI) -> None:
+    """Have the app answer all errors by `answer_error`."""
+    for kind in (StudioError, TrackerError, RequestValidationError, HTTPException, Exception):
+        app.add_exception_handler(kind, answer_error)
+
+
+def answer_error(request: Request, error: Exception) -> Response:
+    """The answer to a request that failed with this error."""
+    if isinstance(error, StudioError):
+        body = {"error": type(error).__name__, "detail": error.detail, **error.extra}
+        return JSONResponse(body, error.status_code, headers=error.headers)
+    if isinstance(error, TrackerError):
+        # its messages name files in full; where the studio keeps them is nobody's business
+        detail = str(error).replace(f"{request.app.state.settings.data_dir}/", "")
+        return _answer(422, type(error).__name__, detail)
+    if isinstance(error, RequestValidationError):
+        return _answer(422, "InvalidError", describe_faults(error.errors()))
+    if isinstance(error, HTTPException):
+        name = _NAMES.get(error.status_code, "RequestError")
+        detail = str(error.detail)
+        if error.status_code in (404, 405) and detail in ("Not Found", "Method Not Allowed"):
+            detail = f"There is nothing to {request.method} at {request.url.path}."
+        return _answer(error.status_code, name, detail, dict(error.headers or {}))
+    log.error("%s %s failed", request.method, request.url.path, exc_info=error)
+    return _answer(500, "InternalError", "The studio failed at this; its log says why. What was saved before is safe.")
+
+
+def describe_faults(faults: Sequence[Any]) -> str:
+    """The first few of pydantic's findings, one sentence each, with the place and the value."""
+    sentences = []
+    for fault in faults[:5]:
+        place = ".".join(str(part) for part in fault["loc"])
+        value = repr(fault.get("input"))
+        value = value if len(value) <= 80 else value[:77] + "..."
+        sentences.append(f"{place}: {fault['msg']} (got {value}).")
+    if len(faults) > 5:
+        sentences.append(f"And {len(faults) - 5} more.")
+    return " ".join(sentences)
+
+
+def _answer(status: int, error: str, detail: str, headers: dict[str, str] | None = None) -> Response:
+    return JSONResponse({"error": error, "detail": detail}, status, headers=headers)

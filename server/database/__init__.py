@@ -1,0 +1,7 @@
+"""Tables, engine, sessions and migrations."""
+
+from server.database.base import Base, UtcDateTime, utc_now
+from server.database.database import Database
+from server.database.session import DatabaseDep, SessionDep
+
+__all__ = ["Base", "Database", "DatabaseDep", "SessionDep", "UtcDateTime", "utc_now"]

@@ -1,0 +1,56 @@
+"""Alembic without its command line: the same from a clone and from an installed package."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from alembic import command
+from alembic.config import Config
+from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from sqlalchemy import Connection, text
+
+from server.database.database import Database
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "migrations"
+LOCK = 0x68616E646C6F6F6D
+"""PostgreSQL's advisory lock of a migration; spells `handloom`."""
+
+
+def upgrade(database: Database, revision: str = "head") -> None:
+    """Bring the tables to a revision, in one transaction. Processes that start together wait for the first."""
+    _run(database, lambda config: command.upgrade(config, revision))
+
+
+def downgrade(database: Database, revision: str) -> None:
+    """Take the tables back to a revision, in one transaction; `base` leaves none."""
+    _run(database, lambda config: command.downgrade(config, revision))
+
+
+def find_head() -> str:
+    """The newest revision there is."""
+    head = ScriptDirectory.from_config(_config()).get_current_head()
+    assert head is not None
+    return head
+
+
+def find_current(connection: Connection) -> str | None:
+    """The revision of a database; None when it has no tables yet."""
+    return MigrationContext.configure(connection).get_current_revision()
+
+
+def _config() -> Config:
+    assert (SCRIPTS / "env.py").is_file(), f"no migrations at {SCRIPTS}"
+    config = Config()
+    config.set_main_option("script_location", str(SCRIPTS).replace("%", "%%"))
+    return config
+
+
+def _run(database: Database, migrate: Callable[[Config], None]) -> None:
+    config = _config()
+    with database.engine.connect().execution_options(is_writing=True) as connection, connection.begin():
+        if not database.is_sqlite:
+            connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": LOCK})
+        config.attributes["connection"] = connection
+        migrate(config)

@@ -1,0 +1,1 @@
+"""Hand models that recordings can be tracked with."""

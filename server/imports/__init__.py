@@ -1,0 +1,1 @@
+"""Uploads on their way to become recordings: checked, reported, confirmed or refused."""

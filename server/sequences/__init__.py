@@ -1,0 +1,1 @@
+"""Recordings: their rows, their files, their images."""

@@ -1,0 +1,80 @@
+"""Every setting of the studio. The only module that reads the environment; `docs/settings.md` explains each to its users."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field
+from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
+
+
+def _split(value: object) -> object:
+    return [part.strip() for part in value.split(",") if part.strip()] if isinstance(value, str) else value
+
+
+Names = Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)]
+LOOPBACK_HOSTS = ("127.0.0.1", "localhost", "::1")
+
+
+class Settings(BaseSettings):
+    """Read from variables `HANDLOOM_<NAME>`; an argument of the same name wins."""
+
+    model_config = SettingsConfigDict(env_prefix="HANDLOOM_", frozen=True, extra="forbid", env_ignore_empty=True)
+
+    data_dir: Path = Field(
+        default=Path("~/.local/share/handloom"), description="Folder of everything the studio keeps."
+    )
+    database_url: str | None = Field(
+        default=None,
+        description="`postgresql://user@host/name`, or `sqlite:////path`; without it SQLite in the data folder.",
+    )
+    host: str = Field(default="127.0.0.1", description="Address to listen at.")
+    port: int = Field(default=8000, ge=0, le=65535, description="Port to listen at; 0 takes a free one.")
+    log_level: Literal["DEBUG", "INFO", "WARNING", "ERROR"] = Field(
+        default="INFO", description="Least severity of the lines that are logged."
+    )
+    allowed_hosts: Names = Field(
+        default=(), description="Further host names, separated by commas, that a request may be addressed to."
+    )
+    allowed_origins: Names = Field(
+        default=(), description="Further origins (`http://localhost:5173`), separated by commas, whose pages may write."
+    )
+    web_dist: Path | None = Field(
+        default=None, description="Folder of the built browser app; without it the one that came with the server."
+    )
+    max_upload_bytes: int = Field(
+        default=20 * 1024**3, gt=0, description="Most bytes of one upload, and of what is unpacked from it."
+    )
+    max_upload_files: int = Field(
+        default=100_000, gt=0, description="Most files of one upload, and of what is unpacked from it."
+    )
+    abandoned_import_hours: float = Field(
+        default=24.0,
+        gt=0,
+        description="Hours after which an upload nobody confirmed is removed, when the server starts.",
+    )
+    image_cache_mb: int = Field(
+        default=256, ge=0, description="Memory in MB for images that had to be encoded for the browser."
+    )
+
+    def model_post_init(self, _context: object) -> None:
+        """Make paths absolute once, so that a later change of folder moves nothing."""
+        object.__setattr__(self, "data_dir", self.data_dir.expanduser().absolute())
+        if self.web_dist is not None:
+            object.__setattr__(self, "web_dist", self.web_dist.expanduser().absolute())
+
+    @property
+    def is_loopback(self) -> bool:
+        """Whether only this machine can reach the address."""
+        return self.host in LOOPBACK_HOSTS
+
+    @property
+    def sqlalchemy_url(self) -> str:
+        """The database as SQLAlchemy names it, with the drivers that come with Handloom."""
+        if self.database_url is None:
+            return f"sqlite+pysqlite:///{self.data_dir / 'handloom.sqlite3'}"
+        for prefix in ("postgresql://", "postgres://"):
+            if self.database_url.startswith(prefix):
+                return "postgresql+psycopg://" + self.database_url.removeprefix(prefix)
+        return self.database_url

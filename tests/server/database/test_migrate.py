@@ -1,0 +1,65 @@
+"""Migrations on both databases."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.runtime.migration import MigrationContext
+from sqlalchemy import inspect, select
+
+import server.annotations.models
+import server.app
+import server.imports.models
+import server.sequences.models  # noqa: F401 (they define the tables)
+from server.accounts.models import LOCAL_ACCOUNT_ID, Account
+from server.database import Base, Database
+from server.database.migrate import SCRIPTS, downgrade, find_current, find_head, upgrade
+
+
+def own_tables(database: Database) -> set[str]:
+    return {name for name in inspect(database.engine).get_table_names() if name != "alembic_version"}
+
+
+def test_migrations_make_exactly_the_tables_that_the_code_declares(database: Database) -> None:
+    with database.engine.connect() as connection:
+        context = MigrationContext.configure(connection, opts={"compare_type": True})
+        assert compare_metadata(context, Base.metadata) == []
+        assert find_current(connection) == find_head()
+
+
+def test_migrations_go_down_to_nothing_and_up_again(database: Database) -> None:
+    downgrade(database, "base")
+    assert own_tables(database) == set()
+    upgrade(database)
+    assert own_tables(database) == set(Base.metadata.tables)
+
+
+def test_every_migration_can_be_taken_back_alone(empty_database: Database) -> None:
+    revisions = sorted(path.name.split("_")[0] for path in Path(SCRIPTS, "versions").glob("0*.py"))
+    for previous, revision in zip(["base", *revisions], revisions, strict=False):
+        upgrade(empty_database, revision)
+        tables = own_tables(empty_database)
+        downgrade(empty_database, previous)
+        upgrade(empty_database, revision)
+        assert own_tables(empty_database) == tables
+
+
+def test_processes_that_start_together_migrate_once(settings) -> None:
+    databases = [Database(settings.sqlalchemy_url) for _ in range(4)]
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(upgrade, databases))
+    with databases[0].reading() as session:
+        assert session.scalars(select(Account.id)).all() == [LOCAL_ACCOUNT_ID]
+    for database in databases:
+        database.close()
+
+
+def test_a_migration_that_fails_leaves_the_tables_as_they_were(empty_database: Database) -> None:
+    with empty_database.writing() as session:
+        session.connection().exec_driver_sql("CREATE TABLE annotations (id INTEGER)")
+    with pytest.raises(Exception, match="already exists"):
+        upgrade(empty_database)
+    assert own_tables(empty_database) == {"annotations"}

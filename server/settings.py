@@ -1,4 +1,4 @@
-"""Every setting of the studio. The only module that reads the environment; `docs/settings.md` explains each to its users."""
+"""Every setting of the studio. The only module that reads the environment; `docs/settings.md` lists them for users."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Settings(BaseSettings):
     abandoned_import_hours: float = Field(
         default=24.0,
         gt=0,
-        description="Hours after which an upload nobody confirmed is removed, when the server starts.",
+        description="Hours after which an unconfirmed upload is removed, when the server starts.",
     )
     image_cache_mb: int = Field(
         default=256, ge=0, description="Memory in MB for images that had to be encoded for the browser."

@@ -1,6 +1,6 @@
 """Handloom's science: frames and scans in, poses and models out. Runs without the server.
 
-What other programs may use is listed here and loaded when it is first asked for, so that `import tracker` costs nothing.
+What other programs may use is listed here and loaded when it is first asked for: `import tracker` costs nothing.
 """
 
 from __future__ import annotations

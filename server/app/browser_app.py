@@ -21,8 +21,9 @@ IMMUTABLE = "public, max-age=31536000, immutable"
 NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Handloom</title>
 <body style="font: 16px system-ui; max-width: 40em; margin: 4em auto">
 <h1>The browser app is not built</h1>
-<p>The server works: its API answers at <a href="/api/v1/health">/api/v1/health</a>. To build the app, run <code>make setup</code>
-in the project's folder and load this page again. An app built elsewhere is named by <code>HANDLOOM_WEB_DIST</code>.</p>"""
+<p>The server works: its API answers at <a href="/api/v1/health">/api/v1/health</a>. To build the app, run
+<code>make setup</code> in the project's folder and load this page again. An app built elsewhere is named by
+<code>HANDLOOM_WEB_DIST</code>.</p>"""
 
 mimetypes.add_type("text/javascript", ".js")  # some systems say text/plain, and nosniff then refuses to run it
 mimetypes.add_type("application/wasm", ".wasm")
@@ -31,7 +32,8 @@ mimetypes.add_type("application/wasm", ".wasm")
 class BrowserApp:
     """An ASGI app for all that no route takes.
 
-    The files are listed anew whenever `index.html` changes; an address is looked up in that list and never becomes a path.
+    The files are listed anew whenever `index.html` changes; an address is looked up in that list, it never becomes a
+    path.
     """
 
     def __init__(self, folder: Path | None) -> None:

@@ -40,8 +40,8 @@ class Database:
     def writing(self) -> Iterator[Session]:
         """A session that commits when the block ends, and keeps nothing when it raises.
 
-        On SQLite it waits at its first statement until no other writes: a transaction that reads first and writes later could
-        not be made to wait, it would fail.
+        On SQLite it waits at its start until no other writes: a transaction that reads first and writes later could not
+        be made to wait, it would fail.
         """
         with self._sessions() as session, session.begin():
             if self.is_sqlite:
@@ -65,8 +65,8 @@ def _create_sqlite_engine(url: str) -> Engine:
 
 
 def _configure_sqlite(connection: DBAPIConnection, _entry: ConnectionPoolEntry) -> None:
-    """WAL: readers and a writer don't wait for each other. FULL: what was answered as saved survives a power cut, at the price of
-    one fsync a commit (NORMAL may lose the last commits). Foreign keys are off in SQLite unless asked for."""
+    """WAL: readers and a writer don't wait for each other. FULL: what was answered as saved survives a power cut, at the
+    price of one fsync a commit (NORMAL may lose the last commits). Foreign keys are off unless asked for."""
     assert isinstance(connection, sqlite3.Connection)
     cursor: Any = connection.cursor()
     for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):

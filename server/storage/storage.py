@@ -1,7 +1,7 @@
 """Folders and files below the data folder, named by the studio alone: `<area>/<uuid>/...`.
 
-Nothing a client sends is ever part of a path here but a UUID that was parsed. The areas: `sequences` (recording folders), `uploads`,
-and those of other rooms.
+Nothing a client sends is ever part of a path here but a UUID that was parsed. The areas: `sequences` (recording
+folders), `uploads`, and those of other rooms.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from starlette.requests import HTTPConnection
 
 
 class Storage:
-    """The studio's files. `fs` is the fsspec view of them; `folder` is where the tracker, which needs local files, finds them."""
+    """The studio's files: `fs` is the fsspec view of them, `folder` where the tracker, which needs local files, finds them."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
@@ -44,7 +44,7 @@ class Storage:
         return target
 
     def remove(self, area: str, id_: uuid.UUID) -> None:
-        """Remove the folder of one thing; it may be gone already. It loses its name first, so that no half of it is ever seen."""
+        """Remove the folder of one thing, which may be gone already. It loses its name first: no half of it is seen."""
         target = self.folder(area, id_)
         doomed = target.with_name(f".removed-{uuid.uuid4().hex}")
         try:

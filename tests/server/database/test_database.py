@@ -27,10 +27,14 @@ def test_a_moment_comes_back_in_utc_with_its_zone(database: Database) -> None:
 
 
 def test_nothing_is_kept_of_a_session_that_raises(database: Database) -> None:
-    with pytest.raises(RuntimeError), database.writing() as session:
-        session.add(Account(name="anna"))
-        session.flush()
-        raise RuntimeError
+    def fail() -> None:
+        with database.writing() as session:
+            session.add(Account(name="anna"))
+            session.flush()
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        fail()
     with database.reading() as session:
         assert session.scalars(select(Account).where(Account.name == "anna")).all() == []
 

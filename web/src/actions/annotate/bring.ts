@@ -1,0 +1,18 @@
+import { isEmpty, parseKey } from "../../model/pose";
+import { withActivePose, type Action, type AnnotatorState } from "../../state/annotator";
+
+/** Frames of this camera with an annotation of the given hand (or any), in order. */
+export function annotatedFrames(state: AnnotatorState, hand?: string): number[] {
+  const frames = Object.entries(state.poses).flatMap(([text, pose]) => {
+    const key = parseKey(text);
+    return key.camera === state.camera && (!hand || key.hand === hand) && !isEmpty(pose) ? [key.frame] : [];
+  });
+  return [...new Set(frames)].sort((a, b) => a - b);
+}
+
+/** The pose of the last annotated frame before this one, flags and all. One step for undo. */
+export const bringPose: Action = (state) => {
+  const from = annotatedFrames(state, state.hand).findLast((frame) => frame < state.frame);
+  const pose = from === undefined ? undefined : state.poses[`${from}|${state.hand}|${state.camera}`];
+  return pose ? withActivePose(state, pose) : state;
+};

@@ -1,0 +1,44 @@
+import { JOINT_COUNT, jointsOfFinger, otherHand, WRIST } from "../../model/joints";
+import { activePose, poseAt, type Action } from "../../state/annotator";
+import { emptyPose, statusOf } from "../../model/pose";
+import { nextOpenJoint } from "./place";
+
+export const selectJoint: Action<number> = (state, joint) => ({ ...state, joint });
+
+/** Next (+1) or previous (-1) joint, around. */
+export const stepJoint: Action<1 | -1> = (state, step) => ({ ...state, joint: (state.joint + step + JOINT_COUNT) % JOINT_COUNT });
+
+/** A finger by number (0..4); again: the next joint along it. -1 is the wrist. */
+export const selectFinger: Action<number> = (state, finger) => {
+  if (finger < 0) return { ...state, joint: WRIST };
+  const joints = jointsOfFinger(finger);
+  const at = joints.indexOf(state.joint);
+  return { ...state, joint: joints[(at + 1) % joints.length] ?? WRIST };
+};
+
+/** The other hand, at its first open joint. */
+export const switchHand: Action = (state) => {
+  const hand = otherHand(state.hand);
+  const next = { ...state, hand, draft: null };
+  return { ...next, joint: openJoint(next) };
+};
+
+/** Go to a frame; the active joint stays when it is open there, otherwise the first open one is next. */
+export const goToFrame: Action<number> = (state, frame) => {
+  const within = Math.min(state.frameCount - 1, Math.max(0, Math.round(frame)));
+  if (within === state.frame) return state;
+  const next = { ...state, frame: within, draft: null };
+  return { ...next, joint: openJoint(next) };
+};
+
+export const selectCamera: Action<string> = (state, camera) => {
+  if (camera === state.camera) return state;
+  const next = { ...state, camera, draft: null };
+  return { ...next, joint: openJoint(next) };
+};
+
+function openJoint(state: Parameters<Action>[0]): number {
+  const pose = poseAt(state, { camera: state.camera, frame: state.frame, hand: state.hand }) ?? emptyPose();
+  if (statusOf(activePose(state)[state.joint]) === "unset" && pose.some((point) => statusOf(point) !== "unset")) return state.joint;
+  return statusOf(pose[WRIST]) === "unset" ? WRIST : nextOpenJoint(pose, WRIST);
+}

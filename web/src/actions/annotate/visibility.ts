@@ -1,0 +1,54 @@
+import { activePose, withActivePose, type Action } from "../../state/annotator";
+import { hasPlace, statusOf, withJoint, withStatus, type JointStatus } from "../../model/pose";
+import { nextOpenJoint } from "./place";
+
+const setStatus = (state: Parameters<Action>[0], joint: number, status: JointStatus): ReturnType<Action> => {
+  const pose = activePose(state);
+  const point = pose[joint];
+  return point ? withActivePose(state, withJoint(pose, joint, withStatus(point, status))) : state;
+};
+
+/** Right click: visible, occluded, outside, visible ... */
+export const cycleVisibility: Action<number> = (state, joint) => {
+  const point = activePose(state)[joint];
+  switch (statusOf(point)) {
+    case "visible":
+      return { ...setStatus(state, joint, "occluded"), joint };
+    case "occluded":
+      return { ...setStatus(state, joint, "outside"), joint };
+    case "outside":
+      return point && hasPlace(point) ? { ...setStatus(state, joint, "visible"), joint } : state;
+    case "unset":
+      return state;
+  }
+};
+
+/** Hidden but estimated, or visible again. */
+export const toggleOccluded: Action = (state) => {
+  const point = activePose(state)[state.joint];
+  switch (statusOf(point)) {
+    case "visible":
+      return setStatus(state, state.joint, "occluded");
+    case "occluded":
+      return setStatus(state, state.joint, "visible");
+    case "outside":
+      return point && hasPlace(point) ? setStatus(state, state.joint, "occluded") : state;
+    case "unset":
+      return state;
+  }
+};
+
+/** Not in the image, or back. A joint that was open is decided by this, so the next open one follows. */
+export const toggleOutside: Action = (state) => {
+  const point = activePose(state)[state.joint];
+  switch (statusOf(point)) {
+    case "outside":
+      return setStatus(state, state.joint, point && hasPlace(point) ? "visible" : "unset");
+    case "unset": {
+      const next = setStatus(state, state.joint, "outside");
+      return { ...next, joint: nextOpenJoint(activePose(next), state.joint) };
+    }
+    default:
+      return setStatus(state, state.joint, "outside");
+  }
+};

@@ -1,0 +1,49 @@
+import { useQuery } from "@tanstack/react-query";
+import { parseKey } from "../model/pose";
+import type { PendingSave } from "../state/journal";
+import type { Outcome } from "../state/saveQueue";
+import { ApiError, requestWithHeaders } from "./client";
+import { fetchAll } from "./recordings";
+import type { Annotation } from "./types";
+
+export const annotationKeys = { of: (recording: string) => ["annotations", recording] as const };
+
+export const fetchAnnotations = (recording: string): Promise<Annotation[]> =>
+  fetchAll<Annotation>(`/sequences/${recording}/annotations`);
+
+export const useAnnotations = (recording: string | undefined) =>
+  useQuery({
+    queryKey: annotationKeys.of(recording ?? ""),
+    queryFn: () => fetchAnnotations(recording ?? ""),
+    enabled: Boolean(recording),
+  });
+
+const revisionOf = (headers: Headers): number | null => {
+  const match = /\d+/.exec(headers.get("ETag") ?? "");
+  return match ? Number(match[0]) : null;
+};
+
+/** One save as the server wants it: on the revision it was made on, repeatable by its operation id. */
+export async function sendAnnotation(recording: string, key: string, save: PendingSave): Promise<Outcome> {
+  const { camera, frame, hand } = parseKey(key);
+  const path = `/sequences/${recording}/annotations/${encodeURIComponent(camera)}/${frame}/${hand}`;
+  const headers: Record<string, string> = save.base === null ? { "If-None-Match": "*" } : { "If-Match": `"${save.base}"` };
+  try {
+    if (save.points === null) {
+      if (save.base === null) return { kind: "saved", revision: null };
+      await requestWithHeaders("DELETE", path, { headers });
+      return { kind: "saved", revision: null };
+    }
+    const body = { points: save.points, operation_id: save.operationId };
+    const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers });
+    return { kind: "saved", revision: revisionOf(answer.headers) ?? answer.data.revision };
+  } catch (failure) {
+    if (!(failure instanceof ApiError) || failure.isOffline || failure.status >= 500) return { kind: "unreachable" };
+    if (failure.status === 409 || failure.status === 412) {
+      const theirs = failure.body["theirs"] as Annotation | null | undefined;
+      return { kind: "conflict", theirs: { points: theirs?.points ?? null, revision: theirs?.revision ?? null } };
+    }
+    if (failure.status === 404 && save.points === null) return { kind: "saved", revision: null };
+    return { kind: "refused", reason: failure.detail };
+  }
+}

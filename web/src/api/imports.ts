@@ -1,0 +1,62 @@
+import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { request, upload } from "./client";
+import { recordingKeys } from "./recordings";
+import type { Import, Recording } from "./types";
+
+/** What a person can say about files that don't say it themselves. */
+export interface ImportOptions {
+  format?: string;
+  name?: string;
+  fps?: number | undefined;
+  fx?: number | undefined;
+  fy?: number | undefined;
+  cx?: number | undefined;
+  cy?: number | undefined;
+  depth_scale?: number | undefined;
+  depth_pattern?: string;
+  color_pattern?: string;
+  world_unit_m?: number | undefined;
+  allow_gaps?: boolean | undefined;
+  hands?: string[];
+}
+
+/** A file with its path below the dropped folder. */
+export interface DroppedFile {
+  path: string;
+  file: File;
+}
+
+const importKey = (id: string) => ["imports", id] as const;
+
+export const useImport = (id: string) =>
+  useQuery({ queryKey: importKey(id), queryFn: () => request<Import>("GET", `/imports/${id}`), retry: false });
+
+export function sendFiles(
+  files: readonly DroppedFile[],
+  options: ImportOptions,
+  onProgress: (part: number) => void,
+  signal: AbortSignal,
+): Promise<Import> {
+  const form = new FormData();
+  if (Object.keys(options).length > 0) form.append("options", JSON.stringify(options));
+  for (const { path, file } of files) form.append("files", file, path);
+  return upload<Import>("/imports", form, onProgress, signal);
+}
+
+export function useCheckAgain(id: string) {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: (options: ImportOptions) => request<Import>("POST", `/imports/${id}/check`, { body: { options } }),
+    onSuccess: (checked) => client.setQueryData(importKey(id), checked),
+  });
+}
+
+export function useConfirmImport(id: string) {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: (name: string) => request<Recording>("POST", `/imports/${id}/confirm`, { body: { name } }),
+    onSuccess: () => client.invalidateQueries({ queryKey: recordingKeys.all }),
+  });
+}
+
+export const discardImport = (id: string): Promise<void> => request("DELETE", `/imports/${id}`);

@@ -1,0 +1,154 @@
+/** The resources of `/api/v1`, under the names the pages use. */
+
+export type Side = "right" | "left";
+
+export interface Camera {
+  id: string;
+  width: number;
+  height: number;
+  K: number[][];
+  distortion: number[];
+  T_world_camera: number[][];
+  has_color: boolean;
+  has_depth: boolean;
+  depth_scale: number | null;
+}
+
+/** What the server found in an import; every sentence is meant to be read by people. */
+export interface ImportReport {
+  ok: boolean;
+  format: string | null;
+  problems: string[];
+  warnings: string[];
+  [fact: string]: unknown;
+}
+
+export interface Recording {
+  id: string;
+  name: string;
+  fps: number;
+  frame_count: number;
+  cameras: Camera[];
+  hands: string[];
+  objects: { name: string }[];
+  created_at: string;
+  revision: number;
+  report: ImportReport | null;
+  annotated_frames: number;
+  best_track: BestTrack | null;
+  content_key: string;
+}
+
+export interface BestTrack {
+  id: string;
+  summary: TrackSummary;
+  error_px: number | null;
+}
+
+export interface Page<T> {
+  items: T[];
+  next_cursor: string | null;
+}
+
+export interface Import {
+  id: string;
+  state: "checked" | "refused";
+  report: ImportReport;
+}
+
+export interface HandSkeleton {
+  joints: string[];
+  edges: [number, number][];
+  fingers: string[];
+}
+
+/** Image pixels, (0, 0) at the centre of the top-left pixel; v is 0 absent, 1 occluded, 2 visible. */
+export type WirePoint = [x: number, y: number, v: number];
+
+export interface Annotation {
+  frame: number;
+  camera: string;
+  hand: Side;
+  points: WirePoint[];
+  revision: number;
+  updated_at: string;
+  author: string | null;
+}
+
+export type JobState = "queued" | "running" | "succeeded" | "failed" | "cancelled";
+
+export interface Job {
+  id: string;
+  kind: string;
+  state: JobState;
+  progress: number;
+  stage: string | null;
+  frames_done: number | null;
+  frames_total: number | null;
+  seconds_left: number | null;
+  params: Record<string, unknown>;
+  sequence_id: string | null;
+  track_id: string | null;
+  error: string | null;
+  created_at: string;
+  started_at: string | null;
+  ended_at: string | null;
+}
+
+export interface LogLine {
+  n: number;
+  time: string;
+  level: string;
+  text: string;
+}
+
+export interface FormField {
+  name: string;
+  type: string;
+  default: unknown;
+  help: string;
+}
+
+export interface TrackSummary {
+  frames: number;
+  lost: number;
+  median_ms: number | null;
+  p95_ms: number | null;
+  stages_ms: Record<string, number> | null;
+  depth_residual_mm: number | null;
+  silhouette_iou: number | null;
+  threads: number | null;
+}
+
+export interface Track {
+  id: string;
+  sequence_id: string;
+  job_id: string | null;
+  name: string;
+  frame_first: number;
+  frame_count: number;
+  summary: TrackSummary;
+  created_at: string;
+  hands: string[];
+  error_px: number | null;
+}
+
+export interface TrackFrames {
+  frame: number[];
+  status: ("ok" | "lost" | "recovered")[];
+  seconds: (number | null)[];
+  depth_residual_mm: (number | null)[];
+  silhouette_iou: (number | null)[];
+  iterations: (number | null)[];
+}
+
+export interface TrackJoints {
+  joint_names: string[];
+  frames: number[];
+  points: [number, number][][];
+}
+
+export interface ViewerSession {
+  id: string;
+  url: string;
+}

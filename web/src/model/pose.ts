@@ -1,0 +1,93 @@
+/** One hand in one image: 21 points in image pixels. Human labels only; predictions have types of their own. */
+
+import type { Side, WirePoint } from "../api/types";
+import { JOINT_COUNT } from "./joints";
+
+/** As in COCO: 0 absent, 1 occluded, 2 visible. */
+export type Visibility = 0 | 1 | 2;
+
+export interface JointPoint {
+  /** px, (0, 0) is the centre of the top-left pixel */
+  readonly x: number;
+  readonly y: number;
+  readonly v: Visibility;
+}
+
+export type Pose = readonly JointPoint[];
+
+/** `unset`: nobody has looked yet. `outside`: somebody looked, and it is not in the image. */
+export type JointStatus = "unset" | "outside" | "occluded" | "visible";
+
+const UNSET: JointPoint = { x: 0, y: 0, v: 0 };
+/** Absent by decision: told from unset by its place outside the image, because v = 0 says both in COCO. */
+const OUTSIDE: JointPoint = { x: -1, y: -1, v: 0 };
+
+export const emptyPose = (): Pose => Array.from({ length: JOINT_COUNT }, () => UNSET);
+
+export function statusOf(point: JointPoint | undefined): JointStatus {
+  if (!point) return "unset";
+  if (point.v === 2) return "visible";
+  if (point.v === 1) return "occluded";
+  return point.x === 0 && point.y === 0 ? "unset" : "outside";
+}
+
+export const isPlaced = (point: JointPoint | undefined): point is JointPoint => point !== undefined && point.v > 0;
+
+export const placedCount = (pose: Pose | undefined): number => pose?.filter(isPlaced).length ?? 0;
+
+/** Joints that somebody has decided about. */
+export const decidedCount = (pose: Pose | undefined): number =>
+  pose?.filter((point) => statusOf(point) !== "unset").length ?? 0;
+
+export const isEmpty = (pose: Pose | undefined): boolean => decidedCount(pose) === 0;
+
+export const withJoint = (pose: Pose, joint: number, point: JointPoint): Pose => pose.with(joint, point);
+
+/** The same joint, with another status; a joint that goes outside keeps its place so that it can come back. */
+export function withStatus(point: JointPoint, status: JointStatus): JointPoint {
+  switch (status) {
+    case "unset":
+      return UNSET;
+    case "outside":
+      return statusOf(point) === "unset" ? OUTSIDE : { ...point, v: 0 };
+    case "occluded":
+      return { ...point, v: 1 };
+    case "visible":
+      return { ...point, v: 2 };
+  }
+}
+
+/** Whether an outside joint still knows where it was. */
+export const hasPlace = (point: JointPoint): boolean => !(point.x === 0 && point.y === 0) && !(point.x === -1 && point.y === -1);
+
+export const samePose = (a: Pose | undefined, b: Pose | undefined): boolean =>
+  a === b ||
+  (a !== undefined &&
+    b !== undefined &&
+    a.every((point, joint) => {
+      const other = b[joint];
+      return other !== undefined && point.x === other.x && point.y === other.y && point.v === other.v;
+    }));
+
+/** Hundredths of a pixel are finer than any hand or eye. */
+const round = (value: number): number => Math.round(value * 100) / 100;
+
+export const toWire = (pose: Pose): WirePoint[] => pose.map(({ x, y, v }) => [round(x), round(y), v]);
+
+export const fromWire = (points: readonly (readonly number[])[]): Pose =>
+  points.map(([x = 0, y = 0, v = 0]) => ({ x, y, v: v >= 2 ? 2 : v >= 1 ? 1 : 0 }));
+
+/** Which hand in which image. */
+export interface PoseKey {
+  readonly camera: string;
+  readonly frame: number;
+  readonly hand: Side;
+}
+
+/** `frame|hand|camera`: the camera's name may hold anything, so it stands last. */
+export const keyText = ({ camera, frame, hand }: PoseKey): string => `${frame}|${hand}|${camera}`;
+
+export function parseKey(text: string): PoseKey {
+  const [frame = "0", hand = "right", ...camera] = text.split("|");
+  return { frame: Number(frame), hand: hand as Side, camera: camera.join("|") };
+}

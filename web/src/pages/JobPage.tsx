@@ -1,0 +1,115 @@
+import { Code, Group, Progress, ScrollArea, SimpleGrid, Stack, Text, Title } from "@mantine/core";
+import { useEffect, useRef } from "react";
+import { Link, useParams } from "react-router";
+import { isActive, useJob, useJobLog } from "../api/jobs";
+import { useRecording } from "../api/recordings";
+import { formatAgo, formatDuration, formatName } from "../model/format";
+import { Failure } from "./parts/Failure";
+import { JobActions, JobBadge, jobProgress } from "./parts/JobRow";
+import { PageSkeleton } from "./parts/PageSkeleton";
+import { Fact } from "./parts/Fact";
+import { useTitle } from "./parts/useTitle";
+import classes from "./JobPage.module.css";
+
+function Log({ jobId, isLive }: { jobId: string; isLive: boolean }) {
+  const { data, error } = useJobLog(jobId, isLive);
+  const end = useRef<HTMLDivElement>(null);
+  const count = data?.length ?? 0;
+  useEffect(() => end.current?.scrollIntoView({ block: "nearest" }), [count]);
+  if (error) return <Text className="quiet">The log could not be loaded: {error.message}</Text>;
+  return (
+    <ScrollArea.Autosize mah={420} className={classes.log} tabIndex={0} aria-label="Log of the job">
+      {count === 0 && <Text className="quiet">{isLive ? "Nothing logged yet." : "The job logged nothing."}</Text>}
+      {data?.map((line) => (
+        <div key={line.n} className={classes.line} data-level={line.level.toLowerCase()}>
+          <span className="quiet">{new Date(line.time).toLocaleTimeString()}</span> <span className={classes.level}>{line.level.toLowerCase()}</span> {line.text}
+        </div>
+      ))}
+      <div ref={end} />
+    </ScrollArea.Autosize>
+  );
+}
+
+export function JobPage() {
+  const { jobId = "" } = useParams();
+  const { data: job, error, refetch } = useJob(jobId);
+  const recording = useRecording(job?.sequence_id ?? undefined).data;
+  useTitle(job ? `${formatName(job.kind)} ${recording?.name ?? ""}` : "Job");
+  if (error && !job) return <Failure what="The job could not be loaded" error={error} safe="If it runs, it goes on by itself." onRetry={() => void refetch()} />;
+  if (!job) return <PageSkeleton />;
+  const params = Object.entries(job.params);
+  return (
+    <div className="page">
+      <Group mb="lg" justify="space-between" wrap="nowrap" align="flex-start">
+        <div style={{ minWidth: 0 }}>
+          <Group gap="md" wrap="nowrap">
+            <Title order={1} className="one-line">
+              {formatName(job.kind)} {recording?.name}
+            </Title>
+            <JobBadge state={job.state} />
+          </Group>
+          {recording && (
+            <Text size="sm" mt={4}>
+              <Link to={`/recordings/${recording.id}`} className={classes.link}>
+                To the recording
+              </Link>
+            </Text>
+          )}
+        </div>
+        <JobActions job={job} />
+      </Group>
+      {isActive(job) && (
+        <Stack gap="sm" className="card" p="md" mb="md" role="status" aria-live="polite">
+          <Group justify="space-between">
+            <Text>{jobProgress(job)}</Text>
+            <Text fw={600}>{Math.round(100 * job.progress)} %</Text>
+          </Group>
+          <Progress value={100 * job.progress} size="lg" animated={job.state === "running"} aria-label="Part done" />
+        </Stack>
+      )}
+      {job.error && (
+        <Stack gap={4} className="card" p="md" mb="md" role="alert" style={{ borderColor: "var(--bad)" }}>
+          <Text fw={600} c="var(--bad-text)">
+            The job failed
+          </Text>
+          <Text style={{ overflowWrap: "anywhere" }}>{job.error}</Text>
+          <Text size="sm" className="quiet">
+            The recording and its annotations are untouched. Try again with the same parameters, or start from the recording with other ones.
+          </Text>
+        </Stack>
+      )}
+      <SimpleGrid cols={{ base: 2, sm: 4 }} spacing="md" mb="lg">
+        <Fact label="Made">{formatAgo(job.created_at)}</Fact>
+        <Fact label="Started">{job.started_at ? formatAgo(job.started_at) : "–"}</Fact>
+        <Fact label="Took">
+          {job.started_at && job.ended_at ? formatDuration((Date.parse(job.ended_at) - Date.parse(job.started_at)) / 1000) : "–"}
+        </Fact>
+        <Fact label="Frames">{job.frames_total ? `${job.frames_done ?? 0} of ${job.frames_total}` : "–"}</Fact>
+      </SimpleGrid>
+      <div className={classes.columns}>
+        <section aria-label="Log">
+          <Title order={2} mb="sm">
+            Log
+          </Title>
+          <Log jobId={jobId} isLive={isActive(job)} />
+        </section>
+        <section aria-label="Parameters">
+          <Title order={2} mb="sm">
+            Parameters
+          </Title>
+          <Stack gap={4} className="card" p="md">
+            {params.length === 0 && <Text className="quiet">All at their defaults.</Text>}
+            {params.map(([name, value]) => (
+              <Group key={name} justify="space-between" wrap="nowrap" align="flex-start">
+                <Text size="sm" className="quiet">
+                  {formatName(name)}
+                </Text>
+                <Code>{typeof value === "string" ? value : JSON.stringify(value)}</Code>
+              </Group>
+            ))}
+          </Stack>
+        </section>
+      </div>
+    </div>
+  );
+}

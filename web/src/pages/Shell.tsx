@@ -1,0 +1,102 @@
+import { ActionIcon, Badge, Group, Kbd, Text, Tooltip, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
+import { IconKeyboard, IconMoon, IconPlugConnectedX, IconSearch, IconSun } from "@tabler/icons-react";
+import { Suspense, useState } from "react";
+import { NavLink, Outlet } from "react-router";
+import { useKeymap } from "../actions/useKeymap";
+import { isActive, useJobs, useJobStream } from "../api/jobs";
+import { DropAnywhere } from "./parts/DropAnywhere";
+import { KeyboardMap } from "./parts/KeyboardMap";
+import { PageSkeleton } from "./parts/PageSkeleton";
+import { openSearch, Search } from "./parts/Search";
+import classes from "./Shell.module.css";
+
+const ROOMS = [
+  { to: "/recordings", label: "Recordings" },
+  { to: "/annotate", label: "Annotate" },
+  { to: "/tracks", label: "Tracks" },
+  { to: "/jobs", label: "Jobs" },
+] as const;
+
+function ThemeSwitch() {
+  const { setColorScheme } = useMantineColorScheme();
+  const isDark = useComputedColorScheme("dark") === "dark";
+  const label = isDark ? "Light colours" : "Dark colours";
+  return (
+    <Tooltip label={label}>
+      <ActionIcon size="lg" aria-label={label} onClick={() => setColorScheme(isDark ? "light" : "dark")}>
+        {isDark ? <IconSun size={18} /> : <IconMoon size={18} />}
+      </ActionIcon>
+    </Tooltip>
+  );
+}
+
+function Brand() {
+  return (
+    <NavLink to="/recordings" className={classes.brand} aria-label="Handloom, to the recordings">
+      <img src="/icon.svg" width={24} height={24} alt="" />
+      <Text fw={650} size="md" span>
+        Handloom
+      </Text>
+    </NavLink>
+  );
+}
+
+/** Header, navigation and what is true on every page; the page itself is the outlet. */
+export function Shell() {
+  const [isHelpOpen, setHelpOpen] = useState(false);
+  const isLinked = useJobStream();
+  const running = useJobs().data?.filter(isActive).length ?? 0;
+  useKeymap("everywhere", { help: () => setHelpOpen(true), search: openSearch });
+
+  return (
+    <div className={classes.shell}>
+      <a className="skip" href="#main">
+        To the content
+      </a>
+      <header className={classes.header}>
+        <Brand />
+        <nav aria-label="Rooms" className={classes.rooms}>
+          {ROOMS.map(({ to, label }) => (
+            <NavLink key={to} to={to} className={({ isActive: isHere }) => `${classes.room} ${isHere ? classes.here : ""}`}>
+              {label}
+              {to === "/jobs" && running > 0 && (
+                <Badge size="sm" circle variant="filled" ml={6} aria-label={`${running} running`}>
+                  {running}
+                </Badge>
+              )}
+            </NavLink>
+          ))}
+        </nav>
+        <Group gap={4} ml="auto" wrap="nowrap">
+          {!isLinked && (
+            <Tooltip label="No live connection to the studio's server; trying again by itself">
+              <Group gap={6} px="sm" c="var(--bad-text)" role="status" wrap="nowrap">
+                <IconPlugConnectedX size={16} aria-hidden />
+                <Text size="sm">Server away</Text>
+              </Group>
+            </Tooltip>
+          )}
+          <UnstyledButton className={classes.search} onClick={openSearch} aria-label="Search recordings and pages">
+            <IconSearch size={15} aria-hidden />
+            <span>Search</span>
+            <Kbd size="xs">Ctrl K</Kbd>
+          </UnstyledButton>
+          <Tooltip label="Keyboard map (F1)">
+            <ActionIcon size="lg" aria-label="Keyboard map" onClick={() => setHelpOpen(true)}>
+              <IconKeyboard size={18} />
+            </ActionIcon>
+          </Tooltip>
+          <ThemeSwitch />
+        </Group>
+      </header>
+      <main id="main" className={classes.main}>
+        <Suspense fallback={<PageSkeleton />}>
+          <Outlet />
+        </Suspense>
+      </main>
+      <KeyboardMap isOpen={isHelpOpen} onClose={() => setHelpOpen(false)} />
+      <Search />
+      <DropAnywhere />
+    </div>
+  );
+}

@@ -1,0 +1,112 @@
+import { Button, Checkbox, Collapse, Group, NumberInput, SegmentedControl, SimpleGrid, Stack, Text, TextInput, Title, UnstyledButton } from "@mantine/core";
+import { IconChevronDown, IconChevronRight } from "@tabler/icons-react";
+import { useState } from "react";
+import type { ImportOptions } from "../../api/imports";
+import type { ImportReport } from "../../api/types";
+
+interface ImportOptionsFormProps {
+  report: ImportReport;
+  /** Open from the start, because something has to be said. */
+  isOpen: boolean;
+  isBusy: boolean;
+  failure: Error | null;
+  onCheck: (options: ImportOptions) => void;
+}
+
+type NumberName = "fx" | "fy" | "cx" | "cy" | "fps" | "depth_scale" | "world_unit_m";
+
+const NUMBERS: readonly { name: NumberName; label: string; help: string; step: number }[] = [
+  { name: "fx", label: "fx", help: "Focal length along x, px", step: 1 },
+  { name: "fy", label: "fy", help: "Focal length along y, px", step: 1 },
+  { name: "cx", label: "cx", help: "Principal point x, px", step: 1 },
+  { name: "cy", label: "cy", help: "Principal point y, px", step: 1 },
+  { name: "fps", label: "Frames per second", help: "30 for most depth cameras", step: 1 },
+  { name: "depth_scale", label: "Depth unit, m", help: "0.001 when a unit is a millimetre", step: 0.001 },
+  { name: "world_unit_m", label: "Calibration unit, m", help: "0.001 for mm, or a checkerboard square", step: 0.001 },
+];
+
+const HANDS: Record<string, string[]> = { right: ["right"], left: ["left"], both: ["right", "left"] };
+
+/** What files don't say themselves: intrinsics, units, where images lie. */
+export function ImportOptionsForm({ report, isOpen, isBusy, failure, onCheck }: ImportOptionsFormProps) {
+  const said = (report["options"] ?? {}) as ImportOptions;
+  const [isShown, setShown] = useState(isOpen);
+  const [options, setOptions] = useState<ImportOptions>(said);
+  const set = (change: Partial<ImportOptions>): void => setOptions((now) => ({ ...now, ...change }));
+  const hands = Object.keys(HANDS).find((key) => HANDS[key]?.join() === options.hands?.join()) ?? "right";
+  const Chevron = isShown ? IconChevronDown : IconChevronRight;
+
+  const check = (): void => {
+    const known = Object.entries(options).filter(([, value]) => value !== undefined && value !== "" && value !== null);
+    onCheck(Object.fromEntries(known) as ImportOptions);
+  };
+
+  return (
+    <section className="card" style={{ padding: 16 }} aria-label="What the files do not say">
+      <UnstyledButton onClick={() => setShown(!isShown)} aria-expanded={isShown} w="100%">
+        <Group gap="sm">
+          <Chevron size={18} aria-hidden />
+          <Title order={2}>What the files do not say</Title>
+        </Group>
+      </UnstyledButton>
+      <Collapse expanded={isShown}>
+        <form
+          onSubmit={(event) => {
+            event.preventDefault();
+            check();
+          }}
+        >
+          <Stack gap="md" pt="md">
+            <Text className="quiet" size="sm">
+              Fill in what you know and look again; what is empty is found out from the files where that is possible.
+            </Text>
+            <SimpleGrid cols={4} spacing="md">
+              {NUMBERS.map(({ name, label, help, step }) => (
+                <NumberInput
+                  key={name}
+                  name={name}
+                  label={label}
+                  description={help}
+                  value={options[name] ?? ""}
+                  step={step}
+                  hideControls
+                  onChange={(value) => set({ [name]: typeof value === "number" ? value : undefined })}
+                />
+              ))}
+              <TextInput label="Format" description="Found by itself when empty" value={options.format ?? ""} onChange={(event) => set({ format: event.currentTarget.value })} />
+            </SimpleGrid>
+            <SimpleGrid cols={2} spacing="md">
+              <TextInput
+                label="Depth images"
+                description="Such as depth/depth_*.png"
+                value={options.depth_pattern ?? ""}
+                onChange={(event) => set({ depth_pattern: event.currentTarget.value })}
+              />
+              <TextInput
+                label="Colour images"
+                description="Such as color/*.png, or none"
+                value={options.color_pattern ?? ""}
+                onChange={(event) => set({ color_pattern: event.currentTarget.value })}
+              />
+            </SimpleGrid>
+            <Group justify="space-between">
+              <Group gap="md">
+                <Text size="sm">Hands seen</Text>
+                <SegmentedControl aria-label="Hands seen" value={hands} data={Object.keys(HANDS)} onChange={(key) => set({ hands: HANDS[key] ?? ["right"] })} />
+                <Checkbox label="Import although frames are missing" checked={options.allow_gaps ?? false} onChange={(event) => set({ allow_gaps: event.currentTarget.checked || undefined })} />
+              </Group>
+              <Button type="submit" variant={isOpen ? "filled" : "default"} loading={isBusy}>
+                Look again
+              </Button>
+            </Group>
+            {failure && (
+              <Text size="sm" c="var(--bad-text)" role="alert">
+                {failure.message}
+              </Text>
+            )}
+          </Stack>
+        </form>
+      </Collapse>
+    </section>
+  );
+}

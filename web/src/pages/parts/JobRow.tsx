@@ -1,0 +1,81 @@
+import { Badge, Button, Group, Progress, Text } from "@mantine/core";
+import { IconBan, IconCheck, IconClock, IconPlayerPlay, IconX } from "@tabler/icons-react";
+import { Link } from "react-router";
+import { isActive, useJobAction } from "../../api/jobs";
+import type { Job, JobState } from "../../api/types";
+import { formatAgo, formatDuration, formatName } from "../../model/format";
+import classes from "./JobRow.module.css";
+
+const STATES: Record<JobState, { color: string; icon: typeof IconCheck; label: string }> = {
+  queued: { color: "gray", icon: IconClock, label: "waiting" },
+  running: { color: "teal", icon: IconPlayerPlay, label: "running" },
+  succeeded: { color: "teal", icon: IconCheck, label: "done" },
+  failed: { color: "red", icon: IconX, label: "failed" },
+  cancelled: { color: "gray", icon: IconBan, label: "cancelled" },
+};
+
+export function JobBadge({ state }: { state: JobState }) {
+  const { color, icon: Icon, label } = STATES[state];
+  return (
+    <Badge variant={state === "running" ? "filled" : "light"} color={color} leftSection={<Icon size={12} aria-hidden />} tt="none" miw={96}>
+      {label}
+    </Badge>
+  );
+}
+
+/** "tracking, 40 of 200 frames, 1:20 left". */
+export function jobProgress(job: Job): string {
+  const parts = [];
+  if (job.stage && isActive(job)) parts.push(formatName(job.stage));
+  if (job.frames_total) parts.push(`${job.frames_done ?? 0} of ${job.frames_total} frames`);
+  if (job.state === "running" && job.seconds_left !== null) parts.push(`${formatDuration(job.seconds_left)} left`);
+  if (job.state === "queued") parts.push("a worker takes it as soon as one is free");
+  return parts.join(" · ");
+}
+
+const tookOf = (job: Job): string =>
+  job.started_at && job.ended_at ? ` in ${formatDuration((Date.parse(job.ended_at) - Date.parse(job.started_at)) / 1000)}` : "";
+
+export function JobActions({ job }: { job: Job }) {
+  const cancel = useJobAction("cancel");
+  const retry = useJobAction("retry");
+  return (
+    <Group gap="sm" wrap="nowrap">
+      {job.track_id && (
+        <Button size="xs" component={Link} to={`/tracks/${job.track_id}`}>
+          Open the track
+        </Button>
+      )}
+      {isActive(job) && (
+        <Button size="xs" variant="default" loading={cancel.isPending} onClick={() => cancel.mutate(job.id)}>
+          Cancel
+        </Button>
+      )}
+      {(job.state === "failed" || job.state === "cancelled") && (
+        <Button size="xs" variant="default" loading={retry.isPending} onClick={() => retry.mutate(job.id)}>
+          Try again
+        </Button>
+      )}
+    </Group>
+  );
+}
+
+export function JobRow({ job, recording }: { job: Job; recording: string | undefined }) {
+  return (
+    <div className={`card ${classes.row}`}>
+      <JobBadge state={job.state} />
+      <Link to={`/jobs/${job.id}`} className={classes.link}>
+        <Text fw={600} className="one-line">
+          {formatName(job.kind)} {recording ?? "a recording"}
+        </Text>
+        <Text size="xs" className={job.error ? "one-line" : "quiet one-line"} c={job.error ? "var(--bad-text)" : undefined}>
+          {job.error ?? (isActive(job) ? jobProgress(job) : `ended ${formatAgo(job.ended_at ?? job.created_at)}${tookOf(job)}`)}
+        </Text>
+      </Link>
+      {isActive(job) && (
+        <Progress value={100 * job.progress} w={200} animated={job.state === "running"} aria-label={`${Math.round(100 * job.progress)} % done`} />
+      )}
+      <JobActions job={job} />
+    </div>
+  );
+}

@@ -1,0 +1,78 @@
+import { Group, Kbd, Modal, SimpleGrid, Stack, Text, Title } from "@mantine/core";
+import { Fragment } from "react";
+import { KEYMAP, type KeyBinding } from "../../model/keymap";
+
+const MOUSE: readonly (readonly [string, string])[] = [
+  ["Click", "Place the next joint, or choose the one under the cursor"],
+  ["Drag a joint", "Move it"],
+  ["Alt + drag", "Move the whole hand"],
+  ["Right click on a joint", "Visible, occluded, outside"],
+  ["Wheel", "Zoom at the cursor"],
+  ["Drag the ground, or Ctrl + drag", "Pan"],
+];
+
+/** "Ctrl+Shift+Z" as keys to look at. */
+export function Keys({ chord }: { chord: string }) {
+  return (
+    <Group gap={2} wrap="nowrap" component="span">
+      {chord.split(/\+(?=.)/).map((key) => (
+        <Kbd key={key} size="xs">
+          {key}
+        </Kbd>
+      ))}
+    </Group>
+  );
+}
+
+function Row({ keys, label }: { keys: readonly string[]; label: string }) {
+  return (
+    <Group justify="space-between" wrap="nowrap" gap="md" py={2}>
+      <Text size="sm">{label}</Text>
+      <Group gap={6} wrap="nowrap">
+        {keys.map((chord, index) => (
+          <Fragment key={chord}>
+            {index > 0 && (
+              <Text size="xs" className="quiet" span>
+                or
+              </Text>
+            )}
+            <Keys chord={chord} />
+          </Fragment>
+        ))}
+      </Group>
+    </Group>
+  );
+}
+
+/** The keyboard map, made from the same table as the handlers. */
+export function KeyboardMap({ isOpen, onClose }: { isOpen: boolean; onClose: () => void }) {
+  const map: readonly KeyBinding[] = KEYMAP;
+  const groups = [...new Set(map.map((binding) => binding.group))];
+  return (
+    <Modal opened={isOpen} onClose={onClose} title={<Title order={2}>Keyboard map</Title>} size={1040}>
+      <SimpleGrid cols={{ base: 1, sm: 2 }} spacing="xl" verticalSpacing="lg">
+        {groups.map((group) => (
+          <Stack key={group} gap={2}>
+            <Title order={3}>{group === "Track" ? "Track page" : group}</Title>
+            {map
+              .filter((binding) => binding.group === group)
+              .map((binding) => (
+                <Row key={binding.id} keys={binding.keys} label={binding.label} />
+              ))}
+          </Stack>
+        ))}
+        <Stack gap={2}>
+          <Title order={3}>Mouse, on the picture</Title>
+          {MOUSE.map(([gesture, label]) => (
+            <Group key={gesture} justify="space-between" wrap="nowrap" gap="md" py={2}>
+              <Text size="sm">{label}</Text>
+              <Text size="xs" className="quiet" ta="right">
+                {gesture}
+              </Text>
+            </Group>
+          ))}
+        </Stack>
+      </SimpleGrid>
+    </Modal>
+  );
+}

@@ -1,0 +1,178 @@
+/**
+ * The way of every annotation to the server: one at a time for each hand and frame, kept in the journal until
+ * acknowledged, sent again when the server does not answer, held back when somebody else was faster.
+ */
+
+import type { WirePoint } from "../api/types";
+import type { Journal, PendingSave } from "./journal";
+
+/** What the server did with a save. */
+export type Outcome =
+  | { readonly kind: "saved"; readonly revision: number | null }
+  | { readonly kind: "conflict"; readonly theirs: Theirs }
+  | { readonly kind: "refused"; readonly reason: string }
+  | { readonly kind: "unreachable" };
+
+/** The version that the server holds; points null when it was deleted. */
+export interface Theirs {
+  readonly points: WirePoint[] | null;
+  readonly revision: number | null;
+}
+
+export type Send = (key: string, save: PendingSave) => Promise<Outcome>;
+
+export interface SaveStatus {
+  /** Hands whose newest version the server does not have yet. */
+  readonly waiting: number;
+  readonly isSending: boolean;
+  readonly isOffline: boolean;
+  /** False when the browser refuses to keep what waits. */
+  readonly isKept: boolean;
+  readonly conflicts: ReadonlyMap<string, Theirs>;
+  readonly refusals: ReadonlyMap<string, string>;
+  readonly lastSavedAt: number | null;
+}
+
+export interface SaveQueue {
+  /** The server's revisions as loaded; keys that still wait keep the revision they were made on. */
+  learn(revisions: ReadonlyMap<string, number>): void;
+  put(key: string, points: WirePoint[] | null): void;
+  /** What waits, newest version by key. */
+  waiting(): ReadonlyMap<string, WirePoint[] | null>;
+  /** Settle a conflict with these points (null deletes); "theirs" drops what waits. */
+  settle(key: string, choice: WirePoint[] | null | "theirs"): void;
+  /** Drop what the server refuses to take. */
+  discard(key: string): void;
+  /** Try everything now. */
+  flush(): void;
+  status(): SaveStatus;
+  watch(watcher: () => void): () => void;
+  stop(): void;
+}
+
+const RETRY_MS = [1000, 2000, 4000, 8000, 15000] as const;
+
+export function createSaveQueue(send: Send, journal: Journal, newId: () => string = () => crypto.randomUUID()): SaveQueue {
+  const pending = journal.load();
+  const revisions = new Map<string, number | null>();
+  const sending = new Set<string>();
+  const conflicts = new Map<string, Theirs>();
+  const refusals = new Map<string, string>();
+  const watchers = new Set<() => void>();
+  let failures = 0;
+  let isKept = true;
+  let lastSavedAt: number | null = null;
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  let isStopped = false;
+  let status: SaveStatus = describe();
+
+  function describe(): SaveStatus {
+    return {
+      waiting: pending.size,
+      isSending: sending.size > 0,
+      isOffline: failures > 0,
+      isKept,
+      conflicts: new Map(conflicts),
+      refusals: new Map(refusals),
+      lastSavedAt,
+    };
+  }
+
+  function tell(): void {
+    status = describe();
+    watchers.forEach((watcher) => watcher());
+  }
+
+  function keep(key: string, saves: readonly PendingSave[]): void {
+    if (saves.length === 0) pending.delete(key);
+    else pending.set(key, [...saves]);
+    isKept = journal.keep(key, saves);
+  }
+
+  async function drain(key: string): Promise<void> {
+    const save = pending.get(key)?.[0];
+    if (!save || sending.has(key) || conflicts.has(key) || refusals.has(key) || isStopped) return;
+    sending.add(key);
+    if (!save.isSent) keep(key, [{ ...save, isSent: true }, ...(pending.get(key) ?? []).slice(1)]);
+    tell();
+    const outcome = await send(key, save);
+    sending.delete(key);
+    if (isStopped) return;
+    const rest = (pending.get(key) ?? []).filter((one) => one.operationId !== save.operationId);
+    switch (outcome.kind) {
+      case "saved":
+        failures = 0;
+        lastSavedAt = Date.now();
+        revisions.set(key, outcome.revision);
+        keep(key, rest.map((one) => ({ ...one, base: outcome.revision })));
+        break;
+      case "conflict":
+        failures = 0;
+        conflicts.set(key, outcome.theirs);
+        break;
+      case "refused":
+        failures = 0;
+        refusals.set(key, outcome.reason);
+        break;
+      case "unreachable":
+        failures += 1;
+        clearTimeout(timer);
+        timer = setTimeout(drainAll, RETRY_MS[Math.min(failures, RETRY_MS.length) - 1]);
+        tell();
+        return;
+    }
+    tell();
+    void drain(key);
+  }
+
+  function drainAll(): void {
+    for (const key of [...pending.keys()]) void drain(key);
+  }
+
+  return {
+    learn(known) {
+      known.forEach((revision, key) => revisions.set(key, revision));
+      drainAll();
+    },
+    put(key, points) {
+      const saves = pending.get(key) ?? [];
+      const first = saves[0];
+      const isAnswered = conflicts.has(key) || refusals.has(key);
+      const flying = first?.isSent && !isAnswered ? [first] : [];
+      // Behind the one on its way only the newest version has to follow.
+      const base = flying.length > 0 ? null : (first?.base ?? revisions.get(key) ?? null);
+      refusals.delete(key);
+      keep(key, [...flying, { operationId: newId(), points, base }]);
+      tell();
+      if (failures === 0) void drain(key);
+    },
+    waiting: () => new Map([...pending].map(([key, saves]) => [key, saves.at(-1)?.points ?? null])),
+    settle(key, choice) {
+      const theirs = conflicts.get(key);
+      if (!theirs) return;
+      conflicts.delete(key);
+      revisions.set(key, theirs.revision);
+      keep(key, choice === "theirs" ? [] : [{ operationId: newId(), points: choice, base: theirs.revision }]);
+      tell();
+      void drain(key);
+    },
+    discard(key) {
+      refusals.delete(key);
+      keep(key, []);
+      tell();
+    },
+    flush() {
+      clearTimeout(timer);
+      drainAll();
+    },
+    status: () => status,
+    watch(watcher) {
+      watchers.add(watcher);
+      return () => watchers.delete(watcher);
+    },
+    stop() {
+      isStopped = true;
+      clearTimeout(timer);
+    },
+  };
+}

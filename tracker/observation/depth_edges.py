@@ -1,7 +1,7 @@
 """Depth discontinuities of an observed hand, [T16] §3.2.3.
 
-Differs from the paper: a discontinuity is a pixel of the nearer side of a depth step instead of a Canny edge, so that it
-lies on the hand and has the hand's depth. Steps towards something nearer are left out: they are the other's contour.
+Differs from the paper: a discontinuity is a pixel of the nearer side of a depth step instead of a Canny edge, so that
+it lies on the hand and has the hand's depth. Steps towards something nearer are left out: they are the other's contour.
 """
 
 from __future__ import annotations

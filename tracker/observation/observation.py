@@ -62,7 +62,7 @@ class Observation:
 
     Attributes:
         region: Where it lies in the image.
-        K: (3, 3) intrinsics of the region: pixel (0, 0) is the region's first, px.
+        K: (3, 3) intrinsics of the region as it is sampled: pixel (0, 0) is the region's first, px.
         T_world_camera: (4, 4).
         points: (H, W, 3) float32 world, m.
         normals: (H, W, 3) float32 world, unit, towards the camera; 0 where there is none.
@@ -70,7 +70,7 @@ class Observation:
         labels: (H, W) uint8 bits HAND and OTHER; 0 where there is no depth.
         beyond: (H, W) bool, the sensor saw something behind the region's depth range, so the space before it is free.
         nearest_hand: (H, W, 2) int16 row and column of the nearest pixel that may be hand.
-        nearest_edge: (H, W, 2) int16 row and column of the nearest depth discontinuity of the hand; -1 if there is none.
+        nearest_edge: (H, W, 2) int16 row and column of the nearest depth discontinuity of the hand; -1 if none.
     """
 
     region: Region
@@ -90,8 +90,8 @@ class Observation:
         return int(np.count_nonzero(self.labels & HAND))
 
 
-def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing) -> Observation:
-    """Prepare a region of a frame.
+def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, stride: int = 1) -> Observation:
+    """Prepare a region of a frame, every `stride`-th pixel of it.
 
     Raises:
         FrameError: The frame has no depth, or its size is not the camera's.
@@ -103,7 +103,8 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing) ->
             f"Frame {frame.index} of camera {frame.camera}: depth is {frame.depth.shape[1]}x{frame.depth.shape[0]}, "
             f"the camera {camera.width}x{camera.height}."
         )
-    rows, columns = slice(region.row, region.row + region.height), slice(region.column, region.column + region.width)
+    rows = slice(region.row, region.row + region.height, stride)
+    columns = slice(region.column, region.column + region.width, stride)
     raw = frame.depth[rows, columns]
     inside = (raw >= region.near) & (raw <= region.far)
     beyond = raw > region.far
@@ -114,6 +115,7 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing) ->
     K = camera.K.copy()
     K[0, 2] -= region.column
     K[1, 2] -= region.row
+    K[:2] /= stride
     color = None if frame.color is None or not how.use_skin else frame.color[rows, columns]
     labels = _label(inside, color, how.skin_threshold)
     points = np.zeros((*depth.shape, 3), dtype=np.float32)
@@ -152,7 +154,7 @@ def undistort(frame: Frame, camera: Camera) -> tuple[Frame, Camera]:
 def _label(
     inside: npt.NDArray[np.bool_], color: npt.NDArray[np.uint8] | None, threshold: float
 ) -> npt.NDArray[np.uint8]:
-    """Hand and other pixels by colour. The log ratio is averaged with its 9x9 neighbourhood: palms are pale in spots."""
+    """Hand and other pixels by colour; the log ratio is averaged with its neighbours, for palms are pale in spots."""
     if color is None:
         return np.where(inside, np.uint8(HAND | OTHER), np.uint8(0))
     weight = inside.astype(np.float32)

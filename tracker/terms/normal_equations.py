@@ -82,9 +82,9 @@ def _pairs(scene: Scene) -> tuple[Ints, Ints]:
 
 @njit(cache=True, nogil=True)
 def gather_bones(bones, sums, ids, barycentric, weight_bones, weights, bone_vertices):
-    """Collect the bones of a surface point: fills bones (MAX_BONES,) and sums (MAX_BONES, 4) = κ and κ x_j; their number.
+    """Collect the bones of the surface point Σ barycentric[i] · vertex ids[i] and return their number.
 
-    The point is Σ barycentric[i] · vertex ids[i].
+    Fills bones (MAX_BONES,) and sums (MAX_BONES, 4), κ and κ x_j of each.
     """
     count = 0
     for corner in range(3):

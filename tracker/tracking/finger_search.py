@@ -1,0 +1,72 @@
+"""Try other bends of single fingers: descent gets stuck where two fingers claim one, a search does not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.joints import FINGERS
+
+Array = npt.NDArray[np.float64]
+
+CURLS = (0.0, 0.3, 0.6, 0.9)
+"""Shares of a finger's flexion that are tried."""
+
+SPREADS = (-0.6, 0.0, 0.6)
+"""Shares of a finger's side-to-side limits that are tried."""
+
+GAIN = 0.003
+"""A change must raise the score by this."""
+
+
+def search_fingers(pose: Array, first_dof: int, model: ArticulatedModel, score: Callable[[Array], float]) -> Array:
+    """The pose with each finger in turn at the best of a few bends, the score never lower than before.
+
+    Args:
+        pose: (D,) of the scene.
+        first_dof: Where the model's parameters begin in the pose.
+        model: The hand.
+        score: Of a pose (D,), higher is better.
+    """
+    best, best_score = pose, score(pose)
+    for finger in range(len(FINGERS)):
+        flexion, spread = _finger_dofs(model, finger)
+        for curl in CURLS:
+            for side in SPREADS if len(spread) else (0.0,):
+                trial = best.copy()
+                angles = trial[first_dof + 6 : first_dof + model.num_dofs]
+                angles[flexion] = curl * _farther_limit(model)[flexion]
+                limit = model.skeleton.upper if side > 0 else -model.skeleton.lower
+                angles[spread] = side * limit[spread]
+                value = score(trial)
+                if value > best_score + GAIN:
+                    best, best_score = trial, value
+    return best
+
+
+def curl_fingers(model: ArticulatedModel, share: float) -> Array:
+    """(K,) joint angles with every joint of a wide range at a share of its farther limit, rad."""
+    return np.where(_is_wide(model), share * _farther_limit(model), 0.0)
+
+
+def _finger_dofs(model: ArticulatedModel, finger: int) -> tuple[npt.NDArray, npt.NDArray]:
+    """Joints (indices into K) that bend a finger, and those that move its base sideways."""
+    assert model.hand is not None
+    bones = model.hand.joint_bones[1 + 4 * finger : 4 + 4 * finger]
+    own = np.isin(model.skeleton.dof_bones, bones[bones >= 0])
+    wide = _is_wide(model)
+    span = model.skeleton.upper - model.skeleton.lower
+    at_base = model.skeleton.dof_bones == bones[0]
+    return np.flatnonzero(own & wide), np.flatnonzero(at_base & ~wide & (span > np.deg2rad(15.0)))
+
+
+def _is_wide(model: ArticulatedModel) -> npt.NDArray[np.bool_]:
+    return (model.skeleton.upper - model.skeleton.lower) > np.deg2rad(60.0)
+
+
+def _farther_limit(model: ArticulatedModel) -> Array:
+    lower, upper = model.skeleton.lower, model.skeleton.upper
+    return np.where(np.abs(lower) > np.abs(upper), lower, upper)

@@ -1,0 +1,45 @@
+"""Where in the image a scene is to be looked for."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.geometry import se3
+from tracker.observation import Region
+
+MARGIN = 0.040
+"""Room left around the scene in the image, m at its depth."""
+
+DEPTH_MARGIN = 0.060
+"""Room left before and behind the scene, m."""
+
+
+def region_around(vertices: npt.NDArray[np.float64], camera: Camera) -> Region | None:
+    """The region of the image around vertices (V, 3) world, m; None if they are not in sight."""
+    in_camera = se3.transform(camera.T_camera_world, vertices)
+    depths = in_camera[:, 2]
+    if depths.min() < 0.05:
+        return None
+    margin = MARGIN * camera.K[0, 0] / float(np.median(depths))
+    columns = camera.K[0, 0] * in_camera[:, 0] / depths + camera.K[0, 2]
+    rows = camera.K[1, 1] * in_camera[:, 1] / depths + camera.K[1, 2]
+    first_column, first_row = max(0, int(columns.min() - margin)), max(0, int(rows.min() - margin))
+    last_column = min(camera.width, int(columns.max() + margin) + 1)
+    last_row = min(camera.height, int(rows.max() + margin) + 1)
+    if last_column - first_column < 16 or last_row - first_row < 16:
+        return None
+    return Region(
+        first_row,
+        first_column,
+        last_row - first_row,
+        last_column - first_column,
+        max(0.05, float(depths.min()) - DEPTH_MARGIN),
+        float(depths.max()) + DEPTH_MARGIN,
+    )
+
+
+def whole_image(camera: Camera, near: float, far: float) -> Region:
+    """The whole image between two depths, m."""
+    return Region(0, 0, camera.height, camera.width, near, far)

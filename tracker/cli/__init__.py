@@ -1,1 +1,15 @@
-"""The tracker's commands."""
+"""The commands that need no server, one module each: `handloom track`, `evaluate`, `synthesize`, `warm-up`."""
+
+from __future__ import annotations
+
+import argparse
+
+from tracker.cli import evaluate, synthesize, track, warm_up
+
+COMMANDS = (track, evaluate, synthesize, warm_up)
+
+
+def add_commands(subparsers: argparse._SubParsersAction) -> None:
+    """Add every command; after parsing, `args.run(args)` runs the one chosen and returns the exit code."""
+    for command in COMMANDS:
+        command.add_command(subparsers)

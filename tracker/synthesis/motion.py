@@ -7,15 +7,36 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from tracker.capture.camera import Camera
 from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.model.scene import Scene
+from tracker.synthesis.actor import Actor
+from tracker.synthesis.performance import Performance
+from tracker.synthesis.shading import SKIN
 
 Array = npt.NDArray[np.float64]
 
 DISTANCE = 0.5
 """From the camera to the knuckles, m."""
+
+APART = 0.11
+"""How far from the optical axis each of two hands is, m; the right hand is left in the image, as face to face."""
+
+FPS = 30.0
+
+
+def perform(models: dict[str, ArticulatedModel], motion: str, num_moments: int) -> Performance:
+    """One or two hands, by side, that perform one of `MOTIONS` in front of a Carmine's camera at the world's origin."""
+    actors = []
+    for side, model in models.items():
+        x = 0.0 if len(models) == 1 else -APART if side == "right" else APART
+        scene = Scene((model,))
+        Ms = np.array([scene.pose_at(pose).Ms for pose in perform_motion(model, motion, num_moments, FPS, x)])
+        actors.append(Actor(side, model, Ms, SKIN))
+    camera = Camera("cam0", 640, 480, np.array([[525.0, 0.0, 319.5], [0.0, 525.0, 239.5], [0.0, 0.0, 1.0]]))
+    return Performance(motion, FPS, camera, tuple(actors))
 
 
 def perform_motion(model: ArticulatedModel, motion: str, num_moments: int, fps: float, x: float = 0.0) -> Array:

@@ -1,0 +1,36 @@
+"""Which model stands for which hand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tracker.errors import TrackerError
+
+if TYPE_CHECKING:
+    from tracker.model.articulated import ArticulatedModel
+
+
+def load_hands(given: Sequence[tuple[str, Path | None]], hands: tuple[str, ...]) -> dict[str, ArticulatedModel]:
+    """A model for each of the hands: from the file given for it, or the default hand.
+
+    Raises:
+        TrackerError: A file is given for a hand that is not among them, or holds none of that side.
+    """
+    from tracker.model import default_hand, load_model
+
+    files = dict(given)
+    for side in files:
+        if side not in hands:
+            raise TrackerError(f"--hand {side}: there are the hands {list(hands)} only.")
+    models = {}
+    for side in hands:
+        path = files.get(side)
+        models[side] = default_hand(side) if path is None else load_model(path)
+        found = models[side].hand
+        if found is None or found.side != side:
+            raise TrackerError(
+                f"{path}: is {'no hand' if found is None else f'a {found.side} hand'}; needed a {side} hand."
+            )
+    return models

@@ -1,0 +1,97 @@
+"""`handloom synthesize`: a recording whose every pose is exactly known."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from pathlib import Path
+from typing import Any
+
+from tracker.cli.command import add_json, choose_frames, parse_hand, parse_range, run_guarded
+from tracker.cli.hands import load_hands
+from tracker.cli.progress import ProgressLine
+from tracker.errors import TrackerError
+
+MOTION_FRAMES = 90
+
+
+def add_command(subparsers: argparse._SubParsersAction) -> None:
+    parser = subparsers.add_parser(
+        "synthesize",
+        help="render a recording with known pose",
+        description="Render a recording with exactly known pose: a simple motion of a hand, or a twin of a sequence of "
+        "T16. It holds colour, depth, annotations of every frame, truth.npz and the models that were rendered.",
+    )
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("--motion", metavar="NAME", help="a simple motion: open-close, wave, count or pinch")
+    source.add_argument("--twin", type=Path, metavar="FOLDER", help="T16's models and motions")
+    parser.add_argument("--sequence", metavar="NN", help="with --twin: which of its sequences, such as 09")
+    parser.add_argument("--full-mesh", action="store_true", help="with --twin: the full meshes, not the tracker's size")
+    parser.add_argument(
+        "--hand",
+        type=parse_hand,
+        action="append",
+        metavar="SIDE[=FILE]",
+        help="with --motion: right or left, with a model of your own if you like; may be given twice (default: right)",
+    )
+    parser.add_argument(
+        "--frames", type=parse_range, default=(None, None), metavar="A:B", help="frames A to B - 1 of the motion"
+    )
+    parser.add_argument("--step", type=int, default=1, help="every so many frames of the motion")
+    parser.add_argument("--noise", choices=("structured-light", "none"), default="structured-light")
+    parser.add_argument("--seed", type=int, default=0, help="of the noise")
+    parser.add_argument(
+        "--background", type=float, default=0.0, metavar="M", help="a wall at this depth, m; 0 for none"
+    )
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="a folder that does not exist yet")
+    add_json(parser)
+    parser.set_defaults(run=run_guarded(synthesize, show))
+
+
+def synthesize(args: argparse.Namespace) -> dict[str, Any]:
+    from tracker.model import save_model
+    from tracker.synthesis.recording import RecordingOptions, write_recording
+    from tracker.synthesis.sensor import StructuredLight
+
+    if args.step < 1 or args.seed < 0 or args.background < 0:
+        raise TrackerError("--step must be at least 1, --seed and --background at least 0.")
+    began = time.monotonic()
+    performance = _load_twin(args) if args.twin is not None else _perform(args)
+    options = RecordingOptions(
+        moments=choose_frames(args.frames, performance.num_moments, args.step),
+        sensor=StructuredLight() if args.noise == "structured-light" else None,
+        seed=args.seed,
+        background=args.background,
+    )
+    line = ProgressLine(f"rendering {performance.name}")
+    sequence = write_recording(performance, args.out, options, save_model, line.show)
+    return {
+        "out": str(args.out),
+        "name": sequence.name,
+        "frames": sequence.frame_count,
+        "hands": list(sequence.hands),
+        "objects": [item.name for item in sequence.objects],
+        "seconds": round(time.monotonic() - began, 2),
+    }
+
+
+def show(result: dict[str, Any]) -> str:
+    return f"{result['name']}: {result['frames']} frames in {result['out']} ({result['seconds']:.1f} s)"
+
+
+def _load_twin(args: argparse.Namespace):
+    from tracker.synthesis.twin import load_twin
+
+    if args.sequence is None:
+        raise TrackerError("--twin needs --sequence NN, the sequence to render, such as --sequence 09.")
+    return load_twin(args.twin, args.sequence, None if args.full_mesh else 1500)
+
+
+def _perform(args: argparse.Namespace):
+    from tracker.synthesis.motion import MOTIONS, perform
+
+    if args.motion not in MOTIONS:
+        raise TrackerError(f"There is no motion {args.motion!r}; choose one of {', '.join(MOTIONS)}.")
+    given = args.hand or [("right", None)]
+    models = load_hands(given, tuple(dict(given)))
+    return perform(models, args.motion, args.frames[1] or MOTION_FRAMES)

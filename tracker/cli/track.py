@@ -1,0 +1,97 @@
+"""`handloom track`: fit hands to every frame of a recording."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+from pathlib import Path
+from typing import Any
+
+from tracker.cli.command import add_json, choose_frames, parse_hand, parse_range, run_guarded
+from tracker.cli.hands import load_hands
+from tracker.cli.progress import ProgressLine
+from tracker.errors import TrackerError
+
+
+def add_command(subparsers: argparse._SubParsersAction) -> None:
+    parser = subparsers.add_parser(
+        "track",
+        help="fit hands to every frame of a recording",
+        description="Fit hands to every frame of a recording folder and write track.npz and summary.json. The start is "
+        "the annotation of the first frame where there is one, and is found in the depth image otherwise.",
+    )
+    parser.add_argument("recording", type=Path, metavar="PATH", help="a recording folder, with its sequence.json")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the track goes")
+    parser.add_argument(
+        "--hand",
+        type=parse_hand,
+        action="append",
+        default=[],
+        metavar="SIDE=FILE",
+        help="model of the right or left hand (npz, T16 .OFF, skinned glTF); the default hand otherwise",
+    )
+    parser.add_argument(
+        "--annotations", type=Path, metavar="FILE", help="instead of the recording's own; 'none' for no start"
+    )
+    parser.add_argument("--terms", metavar="LO", help="terms of the objective, joined by +")
+    parser.add_argument("--iterations", type=int, metavar="N", help="Gauss-Newton iterations a frame")
+    parser.add_argument(
+        "--frames", type=parse_range, default=(None, None), metavar="A:B", help="frames A to B - 1 only"
+    )
+    parser.add_argument(
+        "--no-calibration", action="store_true", help="keep the size and shape of the models as they are"
+    )
+    parser.add_argument("--seed", type=int, metavar="N")
+    parser.add_argument("--threads", type=int, metavar="N")
+    add_json(parser)
+    parser.set_defaults(run=run_guarded(track, show))
+
+
+def track(args: argparse.Namespace) -> dict[str, Any]:
+    from tracker.capture.annotations import load_annotations
+    from tracker.capture.sequence import load_sequence
+    from tracker.tracking import TrackOptions, join_chunks, start_tracking, track_frames
+
+    sequence = load_sequence(args.recording)
+    frames = choose_frames(args.frames, sequence.frame_count)
+    given = {
+        "terms": args.terms,
+        "iterations": args.iterations,
+        "calibrate": False if args.no_calibration else None,
+        "seed": args.seed,
+        "threads": args.threads,
+        "frames": (frames.start, frames.stop),
+    }
+    options = dataclasses.replace(TrackOptions(), **{name: value for name, value in given.items() if value is not None})
+    annotations = None
+    if args.annotations is None:
+        path = sequence.annotations_path
+        annotations = load_annotations(path) if path is not None and path.exists() else None
+    elif str(args.annotations) != "none":
+        annotations = load_annotations(args.annotations)
+    if args.out.exists() and not args.out.is_dir():
+        raise TrackerError(f"{args.out}: is a file; --out needs a folder.")
+    line = ProgressLine(f"tracking {sequence.name}")
+    setup, state = start_tracking(
+        sequence,
+        options,
+        load_hands(args.hand, sequence.hands),
+        annotations,
+        lambda stage, share: line.show(0.0, stage),
+    )
+    state, chunk = track_frames(
+        sequence,
+        setup,
+        state,
+        frames,
+        lambda frame, result: line.show((frame - frames.start + 1) / len(frames), f"frame {frame} {result.status}"),
+    )
+    track = join_chunks(setup, [chunk])
+    track.save(args.out)
+    return {"out": str(args.out), **json.loads((args.out / "summary.json").read_text())}
+
+
+def show(result: dict[str, Any]) -> str:
+    counts = f"{result['frames']} frames, {result['lost']} lost"
+    return f"{counts}, median {result['median_ms']:.1f} ms a frame: {result['out']}"

@@ -7,7 +7,7 @@ counts, occluded or not; one marked absent does not. Frames that the tracker cal
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,9 @@ import numpy.typing as npt
 from tracker.capture.annotations import Annotations
 from tracker.evaluation.statistics import Statistics, compute_statistics
 from tracker.model.joints import HAND_JOINTS
-from tracker.tracking.track import Track
+
+if TYPE_CHECKING:
+    from tracker.tracking.track import Track
 
 Array = npt.NDArray[np.float64]
 

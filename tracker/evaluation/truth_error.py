@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,9 @@ from tracker.capture.truth import Truth
 from tracker.errors import TrackerError
 from tracker.evaluation.statistics import Statistics, compute_statistics
 from tracker.model.joints import HAND_JOINTS
-from tracker.tracking.track import Track
+
+if TYPE_CHECKING:
+    from tracker.tracking.track import Track
 
 Array = npt.NDArray[np.float64]
 

@@ -60,7 +60,7 @@ class Node:
         found = found if len(found) <= 80 else found[:77] + "..."
         raise self.error(f"{self.file}: {self.where or 'the document'} is {found}; needed {needed}.")
 
-    def keys(self) -> list[str]:
+    def members(self) -> list[str]:
         """Names of an object's members."""
         if not isinstance(self.value, dict):
             self.fail("an object {...}")
@@ -68,11 +68,11 @@ class Node:
 
     def has(self, key: str) -> bool:
         """Whether the object has this member, with a value other than null."""
-        return key in self.keys() and self.value[key] is not None
+        return key in self.members() and self.value[key] is not None
 
     def get(self, key: str) -> Node:
         """Member of an object; it must be there."""
-        if key not in self.keys():
+        if key not in self.members():
             raise self.error(f"{self.file}: {self.where or 'the document'} has no {key!r}.")
         return Node(self.value[key], self.file, f"{self.where}.{key}" if self.where else key, self.error)
 

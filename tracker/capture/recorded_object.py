@@ -55,9 +55,9 @@ def parse_object(node: Node) -> RecordedObject:
             check_rigid(f"{node.file}: {node.where}.initial.T_world_object", T)
         if initial.has("joints"):
             bones = initial.get("joints")
-            if len(bones.keys()) > 1000:
+            if len(bones.members()) > 1000:
                 bones.fail("at most 1000 bones")
-            for bone in bones.keys():  # noqa: SIM118 (a method of ours, not of dict)
+            for bone in bones.members():
                 point = bones.get(bone).vector(3, 1000.0)
                 if point.shape != (3,):
                     bones.get(bone).fail("three numbers, m")

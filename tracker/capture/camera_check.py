@@ -1,0 +1,161 @@
+"""Is one camera of a recording plausible? Its images, times, depth and calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.calibration import check_distortion, check_image_size, check_intrinsics, check_rigid
+from tracker.capture.import_plan import DepthSample, PlannedCamera, StreamProbe
+from tracker.capture.import_report import CalibrationReport, CameraReport, DepthReport, TimestampReport
+from tracker.errors import TrackerError
+
+Array = npt.NDArray[np.float64]
+
+NEAREST_M, FARTHEST_M = 0.03, 20.0
+"""A median depth outside is a wrong scale; no hand is captured there."""
+
+USUAL_M = (0.1, 4.0)
+
+
+def report_camera(
+    camera: PlannedCamera,
+    probes: dict[str, StreamProbe],
+    times: Array,
+    sizes: dict[str, tuple[int, int]],
+    problems: list[str],
+    warnings: list[str],
+) -> CameraReport:
+    """Report on one camera; its image size goes to `sizes`, faults to `problems`, oddities to `warnings`."""
+    seen = {kind: probe.size for kind, probe in probes.items() if probe.size is not None}
+    size = next(iter(seen.values()), (0, 0))
+    sizes[camera.id] = size
+    if len(set(seen.values())) > 1:
+        color, of_depth = (f"{seen[kind][0]}x{seen[kind][1]} px" for kind in ("color", "depth"))
+        problems.append(
+            f"{camera.id}: colour is {color} and depth {of_depth}; needed colour registered to depth, pixel by pixel. "
+            "Register them, or set color_pattern to 'none'."
+        )
+    calibration = _check_camera(camera, size, problems, warnings) if size != (0, 0) else None
+    types: dict[str, int] = {}
+    for kind, probe in probes.items():
+        types |= {f"{kind}: {name}": count for name, count in probe.types.items()}
+    depth = None
+    if "depth" in probes:
+        depth = _report_depth(camera, probes["depth"].depth, problems, warnings)
+    return CameraReport(
+        id=camera.id,
+        width=size[0],
+        height=size[1],
+        color_frames=probes["color"].count if "color" in probes else 0,
+        depth_frames=probes["depth"].count if "depth" in probes else 0,
+        image_types=types,
+        gaps=camera.gaps,
+        timestamps=_report_times(camera.id, times, problems, warnings),
+        depth=depth,
+        calibration=calibration,
+    )
+
+
+def _check_camera(
+    camera: PlannedCamera, size: tuple[int, int], problems: list[str], warnings: list[str]
+) -> CalibrationReport | None:
+    width, height = size
+    K = camera.K
+    if K is None:
+        return None
+    checks: tuple[Callable[[], None], ...] = (
+        lambda: check_image_size(camera.id, width, height),
+        lambda: check_intrinsics(camera.id, K, width, height),
+        lambda: check_distortion(camera.id, camera.distortion),
+        lambda: check_rigid(f"{camera.id}: T_world_camera", camera.T_world_camera),
+    )
+    for check in checks:
+        try:
+            check()
+        except TrackerError as fault:
+            problems.append(str(fault))
+            return None
+    if camera.calibrated_size is not None and camera.calibrated_size != size:
+        was = camera.calibrated_size
+        problems.append(f"{camera.id}: is calibrated for {was[0]}x{was[1]} px; its images are {width}x{height} px.")
+    offset = (float(K[0, 2] / (width - 1) - 0.5), float(K[1, 2] / (height - 1) - 0.5))
+    if max(map(abs, offset)) > 0.5:
+        warnings.append(f"{camera.id}: the principal point ({K[0, 2]:g}, {K[1, 2]:g}) px lies outside the image.")
+    elif max(map(abs, offset)) > 0.15:
+        warnings.append(
+            f"{camera.id}: the principal point ({K[0, 2]:g}, {K[1, 2]:g}) px is far from the image's centre."
+        )
+    if abs(K[0, 0] / K[1, 1] - 1) > 0.05:
+        warnings.append(f"{camera.id}: fx ({K[0, 0]:g}) and fy ({K[1, 1]:g}) differ by more than 5 %.")
+    fov = tuple(float(np.degrees(2 * np.arctan(n / (2 * f)))) for n, f in ((width, K[0, 0]), (height, K[1, 1])))
+    if not 15 <= fov[0] <= 130:
+        warnings.append(
+            f"{camera.id}: sees {fov[0]:.0f} degrees across; are the focal lengths those of this image size?"
+        )
+    R, centre = camera.T_world_camera[:3, :3], camera.T_world_camera[:3, 3]
+    return CalibrationReport(
+        field_of_view_deg=(fov[0], fov[1]),
+        principal_offset=offset,
+        rotation_error=float(np.abs(R.T @ R - np.eye(3)).max()),
+        distortion=int(camera.distortion.size),
+        centre_m=(float(centre[0]), float(centre[1]), float(centre[2])),
+    )
+
+
+def _report_depth(
+    camera: PlannedCamera, sample: DepthSample | None, problems: list[str], warnings: list[str]
+) -> DepthReport | None:
+    if sample is None:
+        return None
+    scale = camera.depth_scale
+    metres = tuple(value * (scale or 0.0) for value in sample.percentiles)
+    raw = sample.percentiles[2] if sample.percentiles else 0.0
+    middle = raw * (scale or 0.0)
+    if not sample.percentiles:
+        problems.append(f"{camera.id}: none of {sample.frames} depth images looked at holds a value; all pixels are 0.")
+    elif sample.largest <= 255:
+        problems.append(
+            f"{camera.id}: depth values never exceed {sample.largest}: "
+            "8-bit depth in 16-bit files; export the raw depth."
+        )
+    elif scale is None:
+        problems.append(
+            f"{camera.id}: the unit of depth is not known. Give depth_scale, metres per unit: 0.001 puts the scene at "
+            f"{raw * 0.001:.3g} m, 0.000125 at {raw * 0.000125:.3g} m, 0.0002 at {raw * 0.0002:.3g} m (median)."
+        )
+    elif not NEAREST_M <= middle <= FARTHEST_M:
+        problems.append(
+            f"{camera.id}: with depth_scale {scale:g} the scene lies at {middle:.3g} m (median); needed {NEAREST_M:g} "
+            f"to {FARTHEST_M:g} m. With 0.001 (millimetres) it would lie at {raw * 0.001:.3g} m."
+        )
+    elif not USUAL_M[0] <= middle <= USUAL_M[1]:
+        warnings.append(f"{camera.id}: the scene lies at {middle:.3g} m (median); is depth_scale {scale:g} right?")
+    if sample.empty_frames and sample.percentiles:
+        warnings.append(f"{camera.id}: {sample.empty_frames} of {sample.frames} depth images looked at are empty.")
+    if sample.saturated_share > 0.01:
+        share = f"{sample.saturated_share:.0%}"
+        warnings.append(f"{camera.id}: {share} of the depth pixels are at 65535; 'no value' should be 0.")
+    return DepthReport(
+        sample.frames, sample.empty_frames, sample.zero_share, sample.saturated_share, metres if scale else ()
+    )
+
+
+def _report_times(camera: str, times: Array, problems: list[str], warnings: list[str]) -> TimestampReport | None:
+    if len(times) < 2:
+        return None
+    intervals = np.diff(times)
+    median = float(np.median(intervals))
+    monotonic = bool((intervals > 0).all())
+    if not monotonic:
+        problems.append(f"{camera}: timestamps do not ascend at frame {int(np.flatnonzero(intervals <= 0)[0]) + 1}.")
+        return TimestampReport(False, median, float(np.ptp(intervals)), 0)
+    jitter = float(np.percentile(np.abs(intervals - median), 95))
+    lost = np.maximum(np.rint(intervals / median) - 1, 0)[intervals > 1.5 * median]
+    dropped = int(lost.sum())
+    if dropped:
+        first = int(np.flatnonzero(intervals > 1.5 * median)[0])
+        warnings.append(f"{camera}: {dropped} frames seem to have been dropped, first after frame {first}.")
+    return TimestampReport(True, median, jitter, dropped)

@@ -1,0 +1,190 @@
+"""Look at a recording before anything of it is stored."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera_check import report_camera
+from tracker.capture.import_options import ImportOptions
+from tracker.capture.import_plan import Importer, ImportPlan, PlannedCamera, StreamProbe
+from tracker.capture.import_report import ImportReport
+from tracker.capture.importers.recording_folder import RecordingFolder
+from tracker.capture.importers.rgbd_folder import RgbdFolder
+from tracker.capture.importers.synced_videos import SyncedVideos
+from tracker.capture.importers.tum_rgbd import TumRgbd
+from tracker.capture.listed_files import ListedFiles, list_files
+from tracker.capture.sequence import MAX_FRAMES
+from tracker.errors import ImportRefusedError, TrackerError
+
+IMPORTERS: tuple[Importer, ...] = (RecordingFolder(), TumRgbd(), SyncedVideos(), RgbdFolder())
+"""In the order in which a folder is offered to them."""
+
+IMPORT_FORMATS: tuple[str, ...] = tuple(importer.format for importer in IMPORTERS)
+
+SAMPLES = 12
+DEFAULT_FPS = 30.0
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedImport:
+    """A plan with what the look at its files gave.
+
+    Attributes:
+        plan: None when nothing can be imported at all.
+        report: The report.
+        sizes: (width, height) px of each camera.
+        times: (T,) s of each camera, or empty.
+        root: Folder that the plan's names belong to.
+    """
+
+    plan: ImportPlan | None
+    report: ImportReport
+    sizes: dict[str, tuple[int, int]]
+    times: dict[str, npt.NDArray[np.float64]]
+    root: Path
+
+
+def check_import(source: Path | str, format: str | None = None, options: ImportOptions | None = None) -> ImportReport:
+    """What an import of a folder (or a single video) would bring, and whether it is possible. Stores nothing.
+
+    Args:
+        source: Folder of the recording.
+        format: One of IMPORT_FORMATS, or None to recognise it.
+        options: What the files do not tell.
+    """
+    return examine(Path(source), format, options or ImportOptions()).report
+
+
+def examine(source: Path, format: str | None, options: ImportOptions) -> CheckedImport:
+    """Plan an import and look at every file's header and some pixels."""
+    name = options.name or ""
+    try:
+        files = list_files(source)
+        importer = _choose_importer(files, format)
+        plan = importer.plan(files, options)
+    except (TrackerError, OSError) as fault:
+        text = str(fault) if isinstance(fault, TrackerError) else f"Cannot be read: {fault}."
+        return CheckedImport(None, ImportReport(format or "", name, problems=(text,)), {}, {}, source)
+    problems, warnings = list(plan.problems), list(plan.warnings)
+    if files.refused:
+        shown = "; ".join(files.refused[:5]) + ("; ..." if len(files.refused) > 5 else "")
+        problems.append(f"{len(files.refused)} names in the folder are not safe: {shown}.")
+    probes = {camera.id: _probe(camera, problems) for camera in plan.cameras}
+    frame_count = _agree_on_count(plan, probes, problems, warnings, allow=bool(options.allow_gaps))
+    fps = _agree_on_fps(plan, probes, problems, warnings)
+    sizes: dict[str, tuple[int, int]] = {}
+    times = {camera.id: _find_times(camera, probes[camera.id]) for camera in plan.cameras}
+    cameras = tuple(report_camera(c, probes[c.id], times[c.id], sizes, problems, warnings) for c in plan.cameras)
+    report = ImportReport(
+        format=plan.format,
+        name=plan.name,
+        fps=fps,
+        frame_count=frame_count,
+        cameras=cameras,
+        hands=plan.hands,
+        objects=tuple(item.name for item in plan.objects),
+        annotations=len(plan.annotations.items) if plan.annotations else 0,
+        baselines_m=_find_baselines(plan, problems, warnings),
+        problems=tuple(dict.fromkeys(problems)),
+        warnings=tuple(dict.fromkeys(warnings)),
+        left_out=plan.left_out,
+    )
+    return CheckedImport(replace(plan, fps=fps), report, sizes, times, files.root)
+
+
+def _choose_importer(files: ListedFiles, format: str | None) -> Importer:
+    known = ", ".join(IMPORT_FORMATS)
+    for importer in IMPORTERS:
+        if format == importer.format or (format is None and importer.recognises(files)):
+            return importer
+    if format is not None:
+        raise ImportRefusedError(f"Format {format!r} is not known; known: {known}.")
+    kinds = sorted({name.rpartition(".")[2].lower()[:10] for name in files.names})[:8]
+    found = f"{len(files.names)} files ({', '.join(kinds)})" if files.names else "no files"
+    raise ImportRefusedError(
+        f"No recording is recognised: found {found}; needed sequence.json, numbered depth PNGs, "
+        "rgb.txt with depth.txt, or videos with a calibration."
+    )
+
+
+def _probe(camera: PlannedCamera, problems: list[str]) -> dict[str, StreamProbe]:
+    probes = {}
+    for kind, stream in camera.streams():
+        try:
+            probes[kind] = stream.probe(SAMPLES)
+        except (TrackerError, OSError) as fault:
+            probes[kind] = StreamProbe(0, None, {}, (str(fault),))
+        problems += probes[kind].problems
+    return probes
+
+
+def _find_times(camera: PlannedCamera, probes: dict[str, StreamProbe]) -> npt.NDArray[np.float64]:
+    """(T,) s, as the source tells them or as the video holds them; empty when neither does."""
+    if camera.timestamps.size:
+        return camera.timestamps
+    return next((probe.timestamps for probe in probes.values() if probe.timestamps.size), np.zeros(0))
+
+
+def _agree_on_count(
+    plan: ImportPlan,
+    probes: dict[str, dict[str, StreamProbe]],
+    problems: list[str],
+    warnings: list[str],
+    *,
+    allow: bool,
+) -> int:
+    """Frames that all streams have."""
+    counts = {f"{camera} {kind}": p.count for camera, own in probes.items() for kind, p in own.items()}
+    fewest, most = min(counts.values(), default=0), max(counts.values(), default=0)
+    if fewest == 0 or most > MAX_FRAMES:
+        problems.append(f"{fewest if fewest == 0 else most} frames; a recording has 1 to {MAX_FRAMES}.")
+    elif fewest != most:
+        text = f"Frame counts differ: {', '.join(f'{name} {count}' for name, count in counts.items())}."
+        if allow:
+            warnings.append(
+                f"{text} Only the first {fewest} are imported; check that frame 0 is the same moment in all."
+            )
+        else:
+            problems.append(f"{text} Frames are missing, or the cameras did not start together; allow gaps to cut all.")
+    if plan.frame_count is not None and fewest and plan.frame_count != fewest:
+        problems.append(f"{plan.frame_count} frames are declared and {fewest} are there.")
+    return fewest
+
+
+def _agree_on_fps(
+    plan: ImportPlan, probes: dict[str, dict[str, StreamProbe]], problems: list[str], warnings: list[str]
+) -> float:
+    """Frame rate that was told, or that of the timestamps, or that of the videos, or 30."""
+    said = {f"{c} {kind}": p.fps for c, own in probes.items() for kind, p in own.items() if p.fps}
+    rates = list(said.values())
+    if rates and max(rates) > 1.005 * min(rates):
+        text = f"Frame rates differ: {', '.join(f'{name} {rate:g}' for name, rate in said.items())}."
+        (warnings if plan.fps else problems).append(text + ("" if plan.fps else " Give fps if they ran together."))
+    if plan.fps:
+        return plan.fps
+    for camera in plan.cameras:
+        if len(camera.timestamps) > 1:
+            return float(round(1 / np.median(np.diff(camera.timestamps)), 3))
+    if rates:
+        return float(np.median(rates))
+    warnings.append(f"The frame rate is not known; {DEFAULT_FPS:g} frames per second are assumed.")
+    return DEFAULT_FPS
+
+
+def _find_baselines(plan: ImportPlan, problems: list[str], warnings: list[str]) -> dict[str, float]:
+    baselines = {}
+    if not plan.unit_known:
+        return baselines
+    for a, b in combinations(plan.cameras, 2):
+        length = float(np.linalg.norm(a.T_world_camera[:3, 3] - b.T_world_camera[:3, 3]))
+        baselines[f"{a.id} - {b.id}"] = length
+        if length < 0.005:
+            warnings.append(f"{a.id} and {b.id} are {length * 1000:.1f} mm apart; is the calibration's unit right?")
+        elif length > 20:
+            warnings.append(f"{a.id} and {b.id} are {length:.1f} m apart; is the calibration's unit right?")
+    return baselines

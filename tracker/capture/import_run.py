@@ -1,0 +1,221 @@
+"""Bring a recording in: all of it or nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import hashlib
+import json
+import os
+import re
+import shutil
+import uuid
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from tracker.capture.annotations import save_annotations
+from tracker.capture.atomic_file import sync_folder
+from tracker.capture.document import read_regular_file
+from tracker.capture.frame_pattern import FramePattern
+from tracker.capture.import_check import CheckedImport, examine
+from tracker.capture.import_options import ImportOptions
+from tracker.capture.import_plan import ImportPlan, PlannedCamera, Progress
+from tracker.capture.import_report import ImportReport
+from tracker.capture.recorded_camera import RecordedCamera
+from tracker.capture.sequence import Sequence, save_sequence_json
+from tracker.errors import ImportRefusedError
+
+SOURCES_FILE = "sources.json"
+REPORT_FILE = "import_report.json"
+MAX_OTHER_FILE = 1024 * 1024 * 1024
+_LEFTOVER = re.compile(r"\..{1,200}\.importing-[0-9a-f]{32}", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class StoredSource:
+    """Where a stored image came from.
+
+    Attributes:
+        file: Relative name in the recording.
+        source: Original relative name; `#n` is frame n of a video.
+        sha256: Of the stored file.
+        timestamp: s, from the source, or None.
+    """
+
+    file: str
+    source: str
+    sha256: str
+    timestamp: float | None = None
+
+
+def run_import(
+    source: Path | str,
+    destination: Path | str,
+    format: str | None = None,
+    options: ImportOptions | None = None,
+    progress: Progress | None = None,
+) -> ImportReport:
+    """Import a recording as a recording folder; every image is decoded on the way.
+
+    The folder appears whole or not at all, also when the process is killed; a refusal is an ImportRefusedError.
+
+    Args:
+        source: Folder of the recording, or a single video; it is only read.
+        destination: Folder to make; nothing may be there.
+        format: One of IMPORT_FORMATS, or None to recognise it.
+        options: What the files do not tell.
+        progress: Called with what is being done and the share that is done.
+    """
+    source, destination = Path(source), Path(destination)
+    if os.path.lexists(destination):
+        raise ImportRefusedError(f"{destination}: something is there already; choose another name.")
+    progress = progress or _say_nothing
+    progress("check", 0.0)
+    checked = examine(source, format, options or ImportOptions())
+    if not checked.report.ok or checked.plan is None:
+        raise ImportRefusedError(" ".join(checked.report.problems))
+    try:
+        destination.parent.mkdir(parents=True, exist_ok=True)
+        clean_leftovers(destination.parent)
+        with _make_workplace(destination) as folder:
+            _fill(folder, checked, progress)
+            _sync_tree(folder)
+            os.rename(folder, destination)
+            sync_folder(destination.parent)
+    except OSError as cause:
+        what = cause.strerror or cause
+        raise ImportRefusedError(f"{destination}: cannot be written ({what}); nothing was imported.") from cause
+    progress("done", 1.0)
+    return checked.report
+
+
+def clean_leftovers(parent: Path | str) -> list[Path]:
+    """Remove what killed imports left in a folder; imports that still run keep theirs."""
+    removed = []
+    for path in Path(parent).iterdir() if Path(parent).is_dir() else ():
+        if not _LEFTOVER.fullmatch(path.name) or path.is_symlink() or not path.is_dir():
+            continue
+        with contextlib.suppress(OSError):
+            descriptor = os.open(path, os.O_RDONLY)
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                shutil.rmtree(path)
+                removed.append(path)
+            finally:
+                os.close(descriptor)
+    return removed
+
+
+def _say_nothing(stage: str, share: float) -> None:
+    """Progress for callers who did not ask for it."""
+
+
+@contextlib.contextmanager
+def _make_workplace(destination: Path) -> Iterator[Path]:
+    """A locked folder beside the destination, gone at the end unless it was renamed; its lock dies with the process."""
+    folder = destination.with_name(f".{destination.name[:150]}.importing-{uuid.uuid4().hex}")
+    folder.mkdir(mode=0o755)
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield folder
+    finally:
+        os.close(descriptor)
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _fill(folder: Path, checked: CheckedImport, progress: Progress) -> None:
+    """Write the whole recording into the folder."""
+    plan, report = checked.plan, checked.report
+    assert plan is not None and report.fps is not None
+    sources: dict[str, dict[str, list[StoredSource]]] = {}
+    cameras: list[RecordedCamera] = []
+    total = report.frame_count * sum(1 for camera in plan.cameras for _ in camera.streams())
+    done = 0
+    for camera in plan.cameras:
+        size, times, patterns = checked.sizes[camera.id], checked.times[camera.id], {}
+        base = "" if len(plan.cameras) == 1 else f"{camera.id}/"
+        for kind, stream in camera.streams():
+            pattern = FramePattern(f"{base}{kind}/", 6, stream.suffix)
+            (folder / pattern.path(0)).parent.mkdir(parents=True)
+            stored: list[StoredSource] = []
+            for index, image in enumerate(islice(stream.read(), report.frame_count)):
+                if image.size != size:
+                    found = f"{image.size[0]}x{image.size[1]}"
+                    raise ImportRefusedError(
+                        f"{image.source}: is {found} px where the others are {size[0]}x{size[1]} px."
+                    )
+                (folder / pattern.path(index)).write_bytes(image.data)
+                time = float(times[index]) if index < len(times) else None
+                digest = hashlib.sha256(image.data).hexdigest()
+                stored.append(StoredSource(pattern.path(index), image.source, digest, time))
+                done += 1
+                progress(f"{camera.id} {kind}", done / total)
+            if len(stored) != report.frame_count:
+                text = f"{camera.id} {kind}: {len(stored)} frames where the check had found {report.frame_count}"
+                raise ImportRefusedError(f"{text}; has the source changed?")
+            patterns[kind] = pattern
+            sources.setdefault(camera.id, {})[kind] = stored
+        cameras.append(_make_camera(camera, size, patterns))
+    _copy_others(folder, checked.root, plan)
+    name = "annotations.json" if plan.annotations is not None else None
+    if plan.annotations is not None:
+        save_annotations(folder / "annotations.json", plan.annotations)
+    sequence = Sequence(
+        folder, plan.name, report.fps, report.frame_count, tuple(cameras), plan.hands, plan.objects, annotations=name
+    )
+    save_sequence_json(sequence)
+    document = {
+        "version": 1,
+        "format": plan.format,
+        "left_out": list(plan.left_out),
+        "cameras": {c: {k: [asdict(s) for s in stored] for k, stored in own.items()} for c, own in sources.items()},
+    }
+    _write_json(folder / SOURCES_FILE, document)
+    _write_json(folder / REPORT_FILE, report.to_json())
+
+
+def _make_camera(camera: PlannedCamera, size: tuple[int, int], patterns: dict[str, FramePattern]) -> RecordedCamera:
+    assert camera.K is not None
+    return RecordedCamera(
+        id=camera.id,
+        width=size[0],
+        height=size[1],
+        K=np.asarray(camera.K, dtype=np.float64),
+        distortion=camera.distortion,
+        T_world_camera=camera.T_world_camera,
+        color=patterns.get("color"),
+        depth=patterns.get("depth"),
+        depth_scale=camera.depth_scale if camera.depth_scale is not None else 0.001,
+    )
+
+
+def _copy_others(folder: Path, root: Path, plan: ImportPlan) -> None:
+    """Copy models and the like; they are read where they are used, by readers that trust nothing."""
+    for target, original in plan.files.items():
+        data = read_regular_file(root / original, MAX_OTHER_FILE, ImportRefusedError)
+        path = folder / target
+        if path.exists():
+            raise ImportRefusedError(f"{target}: has the name of one of the recording's own files.")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+
+
+def _write_json(path: Path, document: object) -> None:
+    path.write_text(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _sync_tree(folder: Path) -> None:
+    """Flush every file and name below a folder to the disk."""
+    for parent, _, files in os.walk(folder, topdown=False):
+        for name in files:
+            descriptor = os.open(Path(parent) / name, os.O_RDONLY)
+            try:
+                os.fsync(descriptor)
+            finally:
+                os.close(descriptor)
+        sync_folder(Path(parent))

@@ -1,0 +1,37 @@
+"""Anipose's `calibration.toml`: a table for each camera, rotation vectors, world to camera."""
+
+from __future__ import annotations
+
+import tomllib
+
+from tracker.capture.importers.video_calibration import VideoCamera, make_camera
+from tracker.errors import CalibrationError
+
+
+def parse_anipose(data: bytes, file: str) -> list[VideoCamera]:
+    """Cameras of a calibration in the order of the file."""
+    try:
+        document = tomllib.loads(data.decode("utf-8"))
+    except (ValueError, RecursionError) as cause:
+        raise CalibrationError(f"{file}: is no valid TOML: {cause}.") from None
+    cameras = []
+    for key, table in document.items():
+        if key == "metadata" or not isinstance(table, dict):
+            continue
+        what = f"{file}: [{key}]"
+        missing = [name for name in ("matrix", "rotation", "translation") if name not in table]
+        if missing:
+            raise CalibrationError(f"{what} has no {', '.join(missing)}; an Anipose camera has them.")
+        if table.get("fisheye"):
+            raise CalibrationError(f"{what} is a fisheye camera; needed one with OpenCV's usual distortion.")
+        values = {
+            "K": table["matrix"],
+            "distortion": table.get("distortions", []),
+            "R": table["rotation"],
+            "t": table["translation"],
+            "size": table.get("size"),
+        }
+        cameras.append(make_camera(str(table.get("name", key))[:100], what, values))
+    if not cameras:
+        raise CalibrationError(f"{file}: holds no camera; needed tables like [cam_0].")
+    return cameras

@@ -1,0 +1,188 @@
+"""Several videos of one moment, one for each camera, and the calibration of the cameras."""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePosixPath
+from typing import Any
+
+import numpy as np
+
+from tracker.capture.document import read_regular_file
+from tracker.capture.import_options import ImportOptions
+from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
+from tracker.capture.importers.anipose_calibration import parse_anipose
+from tracker.capture.importers.dat_calibration import parse_dat
+from tracker.capture.importers.opencv_calibration import find_cameras, parse_opencv
+from tracker.capture.importers.rgbd_folder import read_intrinsics
+from tracker.capture.importers.video_calibration import MAX_CALIBRATION_BYTES, VideoCamera
+from tracker.capture.listed_files import ListedFiles
+from tracker.capture.numbered_files import sort_naturally
+from tracker.capture.video_file import VIDEO_SUFFIXES, VideoFile
+from tracker.errors import CalibrationError, ImportRefusedError
+
+_DAT = re.compile(r"c([0-9]{1,3})\.dat")
+_TABLES = (".yaml", ".yml", ".json", ".npz")
+
+
+class SyncedVideos:
+    """Importer of videos whose frame n was taken at one moment in all of them."""
+
+    format = "synced_videos"
+
+    def recognises(self, files: ListedFiles) -> bool:
+        return any(name.lower().endswith(VIDEO_SUFFIXES) for name in files.names)
+
+    def plan(self, files: ListedFiles, options: ImportOptions) -> ImportPlan:
+        problems: list[str] = []
+        warnings: list[str] = []
+        videos = sort_naturally(name for name in files.names if name.lower().endswith(VIDEO_SUFFIXES))
+        if not videos:
+            raise ImportRefusedError(f"No videos: needed files of type {', '.join(VIDEO_SUFFIXES)}.")
+        if len(videos) > 64:
+            raise ImportRefusedError(f"{len(videos)} videos; a recording has at most 64 cameras.")
+        calibration, used = read_calibration(files)
+        lossless = options.color_format == "png"
+        if not calibration and len(videos) == 1:
+            K = read_intrinsics(options, problems)
+            stream = VideoFile(files.root, videos[0], lossless)
+            lens = np.array(options.distortion or (), dtype=np.float64)
+            cameras = (PlannedCamera(_make_id(videos[0]), K, lens, color=stream),)
+        elif not calibration:
+            raise CalibrationError(
+                f"{len(videos)} videos and no calibration: add calibration.toml (Anipose), OpenCV's YAML, JSON or npz, "
+                "or c0.dat and rot_trans_c0.dat for each camera."
+            )
+        else:
+            unit = _choose_unit(calibration, options, problems)
+            cameras = tuple(
+                PlannedCamera(
+                    id=_make_id(video),
+                    K=camera.K,
+                    distortion=camera.distortion,
+                    T_world_camera=camera.find_pose(unit),
+                    color=VideoFile(files.root, video, lossless),
+                    calibrated_size=camera.size,
+                )
+                for video, camera in match_cameras(videos, calibration, warnings)
+            )
+        ignored = [name for name in files.names if name not in {*videos, *used}]
+        if ignored:
+            shown = ", ".join(ignored[:3]) + (", ..." if len(ignored) > 3 else "")
+            warnings.append(f"{len(ignored)} other files are left out: {shown}.")
+        ids = [camera.id for camera in cameras]
+        if len({i.casefold() for i in ids}) != len(ids):
+            cameras = tuple(_rename(camera, f"cam{i}") for i, camera in enumerate(cameras))
+            warnings.append(
+                "Videos have like names; the cameras are called cam0, cam1, ... in the order of their names."
+            )
+        return ImportPlan(
+            format=self.format,
+            name=default_name(files, options),
+            fps=options.fps,
+            cameras=cameras,
+            hands=options.hands if options.hands is not None else ("right",),
+            problems=tuple(problems),
+            warnings=tuple(warnings),
+            unit_known=options.world_unit_m is not None or len(cameras) == 1,
+        )
+
+
+def read_calibration(files: ListedFiles) -> tuple[list[VideoCamera], list[str]]:
+    """Cameras of whatever calibration lies beside the videos, and the files it was read from."""
+
+    def read(name: str) -> bytes:
+        return read_regular_file(files.path(name), MAX_CALIBRATION_BYTES, CalibrationError)
+
+    tomls = [name for name in files.names if name.lower().endswith(".toml")]
+    if tomls:
+        if len(tomls) > 1:
+            raise CalibrationError(f"{len(tomls)} calibrations ({', '.join(tomls[:4])}); leave one in the folder.")
+        return parse_anipose(read(tomls[0]), tomls[0]), tomls
+    dats = sort_naturally(name for name in files.names if _DAT.fullmatch(PurePosixPath(name).name))
+    if dats:
+        cameras, used = [], []
+        for name in dats:
+            path = PurePosixPath(name)
+            other = str(path.with_name(f"rot_trans_{path.name}"))
+            extrinsics = read(other) if other in files.names else None
+            if extrinsics is None and len(dats) > 1:
+                raise CalibrationError(f"{other} is missing; each camera needs its rotation and translation.")
+            cameras.append(parse_dat(read(name), extrinsics, path.stem, name))
+            used += [name] if extrinsics is None else [name, other]
+        return cameras, used
+    tables = {name: parse_opencv(read(name), name) for name in files.names if name.lower().endswith(_TABLES)}
+    found = {name: find_cameras(values, name, PurePosixPath(name).stem) for name, values in tables.items()}
+    merged: dict[str, Any] = {}
+    for values in tables.values():
+        merged |= values
+    together = find_cameras(merged, " + ".join(tables)[:200], "camera") if len(tables) > 1 else []
+    if len(together) > 1 and max(len(cameras) for cameras in found.values()) > 1:
+        return together, list(tables)  # intrinsics.yml and extrinsics.yml
+    cameras = [camera for name in sort_naturally(tables) for camera in found[name]]
+    return cameras, [name for name in tables if found[name]]
+
+
+def match_cameras(videos: list[str], cameras: list[VideoCamera], warnings: list[str]) -> list[tuple[str, VideoCamera]]:
+    """Each video with its camera: by name, by number (`cam0_test.mp4` and `c0`), or else both in order of name."""
+    if len(videos) != len(cameras):
+        raise CalibrationError(
+            f"{len(videos)} videos ({', '.join(videos[:4])}) and {len(cameras)} calibrated cameras "
+            f"({', '.join(c.name for c in cameras[:4])}); needed one camera for each video."
+        )
+    for fits in (_same_name, _name_inside, _same_number):
+        pairs = [[camera for camera in cameras if fits(video, camera.name)] for video in videos]
+        if all(len(p) == 1 for p in pairs) and len({id(p[0]) for p in pairs}) == len(videos):
+            return [(video, p[0]) for video, p in zip(videos, pairs, strict=True)]
+    order = sort_naturally(camera.name for camera in cameras)
+    if len(set(order)) != len(order):
+        raise CalibrationError(f"Two calibrated cameras have the same name: {', '.join(order[:6])}.")
+    if len(videos) > 1:
+        shown = ", ".join(f"{video} is {name}" for video, name in zip(videos, order, strict=True))
+        warnings.append(f"Videos and calibrated cameras have different names; taken in order: {shown}. Check it.")
+    by_name = {camera.name: camera for camera in cameras}
+    return [(video, by_name[name]) for video, name in zip(videos, order, strict=True)]
+
+
+def _same_name(video: str, camera: str) -> bool:
+    return PurePosixPath(video).stem.casefold() == camera.casefold()
+
+
+def _name_inside(video: str, camera: str) -> bool:
+    """The camera's name stands in the path of the video, not as a part of a longer word or number."""
+    plain = re.escape(camera.casefold())
+    return re.search(rf"(?<![a-z0-9])(cam(era)?[-_ ]?)?{plain}(?![a-z0-9])", video.casefold()) is not None
+
+
+def _same_number(video: str, camera: str) -> bool:
+    """Both have a number after `cam`, `camera`, `c`, `view`, or alone, and it is the same."""
+    numbers = [re.findall(r"(?:camera|cam|view|c)?[-_]?([0-9]+)", t.casefold()) for t in (video, camera)]
+    return bool(numbers[0]) and bool(numbers[1]) and int(numbers[0][0]) == int(numbers[1][0])
+
+
+def _choose_unit(cameras: list[VideoCamera], options: ImportOptions, problems: list[str]) -> float:
+    """Metres per unit of the calibration; must be told when there is a distance between cameras."""
+    if options.world_unit_m is not None:
+        return options.world_unit_m
+    centres = np.array([camera.find_pose(1.0)[:3, 3] for camera in cameras])
+    if len(cameras) > 1:
+        length = float(np.linalg.norm(centres - centres[0], axis=1).max())
+        problems.append(
+            f"The unit of the calibration is not known: its cameras are {length:.4g} units apart. Give world_unit_m, "
+            f"metres per unit: 0.001 makes it {length / 1000:.4g} m, 1 makes it {length:.4g} m; "
+            "when the unit is a checkerboard square, the side of a square."
+        )
+    return 1.0 if float(np.abs(centres).max()) < 900 else 0.001
+
+
+def _make_id(video: str) -> str:
+    """A camera id from the name of its video."""
+    stem = re.sub(r"[^A-Za-z0-9._-]+", "_", PurePosixPath(video).stem)[:64].strip("._-")
+    match = re.match(r"(cam(?:era)?[-_]?[0-9A-Za-z]+)", stem)
+    return (match[1] if match else stem) or "cam0"
+
+
+def _rename(camera: PlannedCamera, name: str) -> PlannedCamera:
+    return PlannedCamera(
+        name, camera.K, camera.distortion, camera.T_world_camera, camera.color, calibrated_size=camera.calibrated_size
+    )

@@ -1,0 +1,166 @@
+"""Recordings in the layout of the TUM RGB-D benchmark: `rgb.txt`, `depth.txt` and the images they list.
+
+Depth is in units of 1/5000 m. Colour and depth were not taken at the same moment: each depth image gets the colour
+image nearest in time, at most 20 ms away, each image used once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.document import read_regular_file
+from tracker.capture.image_files import ImageFiles
+from tracker.capture.import_options import ImportOptions
+from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
+from tracker.capture.importers.rgbd_folder import read_intrinsics
+from tracker.capture.listed_files import ListedFiles
+from tracker.capture.relative_path import find_path_fault
+from tracker.errors import ImportRefusedError
+
+MAX_DIFFERENCE_S = 0.020
+DEPTH_SCALE = 1 / 5000
+MAX_LIST_BYTES = 64 * 1024 * 1024
+
+# fx, fy, cx, cy px and distortion, as the benchmark publishes them for its three cameras and for ROS's default.
+CAMERAS: dict[str, tuple[tuple[float, float, float, float], tuple[float, ...]]] = {
+    "freiburg1": ((517.3, 516.5, 318.6, 255.3), (0.2624, -0.9531, -0.0054, 0.0026, 1.1633)),
+    "freiburg2": ((520.9, 521.0, 325.1, 249.7), (0.2312, -0.7849, -0.0033, -0.0001, 0.9172)),
+    "freiburg3": ((535.4, 539.2, 320.1, 247.6), ()),
+    "ros_default": ((525.0, 525.0, 319.5, 239.5), ()),
+}
+
+
+class TumRgbd:
+    """Importer of TUM RGB-D recordings; intrinsics by options or, when told, those of one of its cameras."""
+
+    format = "tum_rgbd"
+
+    def recognises(self, files: ListedFiles) -> bool:
+        return "depth.txt" in files.names and "rgb.txt" in files.names
+
+    def plan(self, files: ListedFiles, options: ImportOptions) -> ImportPlan:
+        problems: list[str] = []
+        warnings: list[str] = []
+        for name in ("rgb.txt", "depth.txt"):
+            if name not in files.names:
+                raise ImportRefusedError(
+                    f"{name} is missing; a TUM RGB-D folder lists its images in rgb.txt and depth.txt."
+                )
+        depth_times, depth_names = _read_list(files, "depth.txt")
+        color_times, color_names = _read_list(files, "rgb.txt")
+        partner = associate(depth_times, color_times, MAX_DIFFERENCE_S)
+        alone = np.flatnonzero(partner < 0)
+        left_out = [depth_names[i] for i in alone]
+        if alone.size:
+            text = (
+                f"{alone.size} of {len(depth_names)} depth images have no colour image within "
+                f"{MAX_DIFFERENCE_S * 1000:g} ms ({', '.join(left_out[:3])}{', ...' if alone.size > 3 else ''})."
+            )
+            if options.allow_gaps:
+                warnings.append(text + " They are left out.")
+            else:
+                problems.append(text + " Allow gaps to leave them out.")
+        kept = np.flatnonzero(partner >= 0)
+        if not kept.size:
+            raise ImportRefusedError(
+                "No depth image has a colour image close in time; do both lists use the same clock?"
+            )
+        unused = sorted(set(range(len(color_names))) - set(partner[kept].tolist()))
+        if unused:
+            warnings.append(
+                f"{len(unused)} of {len(color_names)} colour images belong to no depth image and are left out."
+            )
+            left_out += [color_names[i] for i in unused]
+        lag = np.abs(depth_times[kept] - color_times[partner[kept]]) * 1000
+        warnings.append(f"Colour is up to {lag.max():.1f} ms away from depth (median {np.median(lag):.1f} ms).")
+        for name in ("groundtruth.txt", "accelerometer.txt"):
+            if name in files.names:
+                warnings.append(f"{name} is not used; the camera stands at the origin of the world.")
+        options = _choose_camera(options)
+        times = depth_times[kept]
+        camera = PlannedCamera(
+            id="cam0",
+            K=read_intrinsics(options, problems),
+            distortion=np.array(options.distortion or (), dtype=np.float64),
+            color=ImageFiles(files.root, tuple(color_names[i] for i in partner[kept]), False),
+            depth=ImageFiles(files.root, tuple(depth_names[i] for i in kept), True),
+            depth_scale=options.depth_scale or DEPTH_SCALE,
+            timestamps=times - times[0],
+        )
+        if options.intrinsics is None and problems:
+            problems.append(f"Or name the benchmark's camera with intrinsics: {', '.join(CAMERAS)}.")
+        return ImportPlan(
+            format=self.format,
+            name=default_name(files, options),
+            fps=options.fps,
+            cameras=(camera,),
+            hands=options.hands if options.hands is not None else ("right",),
+            problems=tuple(problems),
+            warnings=tuple(warnings),
+            left_out=tuple(left_out),
+        )
+
+
+def associate(first: npt.NDArray[np.float64], second: npt.NDArray[np.float64], most: float) -> npt.NDArray[np.int64]:
+    """For each time (N,) of the first the index of its partner in the second (M,), ascending both, or -1.
+
+    Closest pairs are joined first; no time has two partners; nothing further apart than `most`.
+    """
+    lows = np.searchsorted(second, first - most, "left")
+    highs = np.searchsorted(second, first + most, "right")
+    pairs = [
+        (abs(first[i] - second[j]), i, j)
+        for i in range(len(first))
+        for j in range(lows[i], min(highs[i], lows[i] + 64))
+    ]
+    partner = np.full(len(first), -1, np.int64)
+    taken = np.zeros(len(second), bool)
+    for _, i, j in sorted(pairs):
+        if partner[i] < 0 and not taken[j]:
+            partner[i], taken[j] = j, True
+    return partner
+
+
+def _choose_camera(options: ImportOptions) -> ImportOptions:
+    """Options with the benchmark's camera in place of what was not said; untouched when none was named."""
+    if options.intrinsics is None:
+        return options
+    (fx, fy, cx, cy), distortion = CAMERAS[options.intrinsics]
+    own_focal = options.fx is not None
+    return replace(
+        options,
+        fx=options.fx or fx,
+        fy=options.fy if own_focal or options.fy is not None else fy,
+        cx=cx if options.cx is None else options.cx,
+        cy=cy if options.cy is None else options.cy,
+        distortion=distortion if options.distortion is None else options.distortion,
+    )
+
+
+def _read_list(files: ListedFiles, name: str) -> tuple[npt.NDArray[np.float64], list[str]]:
+    """Times (N,) s, ascending, and names of a list file."""
+    data = read_regular_file(files.path(name), MAX_LIST_BYTES, ImportRefusedError)
+    entries: list[tuple[float, str]] = []
+    for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith("#"):
+            continue
+        parts = line.split()
+        try:
+            time = float(parts[0])
+        except ValueError:
+            time = float("nan")
+        if len(parts) != 2 or not 0 <= time < 1e12:
+            raise ImportRefusedError(f"{name}, line {number}: is {line[:80]!r}; needed a time in s and a file name.")
+        if fault := find_path_fault(parts[1]):
+            raise ImportRefusedError(f"{name}, line {number}: the file name {parts[1][:80]!r} {fault}.")
+        entries.append((time, parts[1]))
+    times = np.array([time for time, _ in entries])
+    if len(entries) == 0:
+        raise ImportRefusedError(f"{name}: lists no images.")
+    if (np.diff(times) <= 0).any():
+        worst = int(np.flatnonzero(np.diff(times) <= 0)[0])
+        raise ImportRefusedError(f"{name}: times do not ascend at {entries[worst + 1][1]}.")
+    return times, [image for _, image in entries]

@@ -1,0 +1,92 @@
+"""Calibrations that come with synchronised videos, whatever tool wrote them.
+
+All of them say x_camera = R X + t, in pixels of their videos and in a unit of length of their own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.calibration import ORTHONORMAL_TOLERANCE, nearest_rotation
+from tracker.errors import CalibrationError
+
+Array = npt.NDArray[np.float64]
+MAX_CALIBRATION_BYTES = 4 * 1024 * 1024
+
+
+@dataclass(frozen=True, eq=False)
+class VideoCamera:
+    """One camera of a calibration.
+
+    Attributes:
+        name: As in the calibration.
+        K: (3, 3) px.
+        distortion: (n,) OpenCV.
+        R: (3, 3) world to camera.
+        t: (3,) in the calibration's unit.
+        size: (width, height) px, or None when it is not said.
+    """
+
+    name: str
+    K: Array
+    distortion: Array = field(default_factory=lambda: np.zeros(0))
+    R: Array = field(default_factory=lambda: np.eye(3))
+    t: Array = field(default_factory=lambda: np.zeros(3))
+    size: tuple[int, int] | None = None
+
+    def find_pose(self, unit_m: float) -> Array:
+        """T_world_camera (4, 4), m, with `unit_m` metres per unit of the calibration."""
+        T = np.eye(4)
+        T[:3, :3] = self.R.T
+        T[:3, 3] = -self.R.T @ self.t * unit_m
+        return T
+
+
+def to_array(value: Any, what: str) -> Array:
+    """Numbers from outside as a float64 array; OpenCV's `{rows, cols, data}` is one too."""
+    if isinstance(value, dict) and {"rows", "cols", "data"} <= value.keys():
+        flat, rows, columns = to_array(value["data"], what).ravel(), value["rows"], value["cols"]
+        if type(rows) is not int or type(columns) is not int or rows * columns != flat.size or rows < 0:
+            raise CalibrationError(f"{what}: says {rows!r} rows of {columns!r} and has {flat.size} numbers.")
+        return flat.reshape(rows, columns)
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "fiu" or array.size > 10_000:
+            raise ValueError
+        array = array.astype(np.float64)
+    except (ValueError, TypeError, OverflowError):
+        raise CalibrationError(f"{what}: is no array of numbers.") from None
+    if not np.isfinite(array).all():
+        raise CalibrationError(f"{what}: holds NaN or infinity.")
+    return array
+
+
+def make_camera(name: str, what: str, values: dict[str, Any]) -> VideoCamera:
+    """A camera from its values: K, and if known distortion, R (3x3 or rotation vector), t, size."""
+    K = to_array(values["K"], f"{what}: K")
+    if K.shape != (3, 3):
+        raise CalibrationError(f"{what}: K has shape {K.shape}; needed 3x3.")
+    distortion = to_array(values.get("distortion", []), f"{what}: distortion").ravel()
+    R = to_array(values.get("R", np.eye(3)), f"{what}: R")
+    if R.size == 3:
+        R = np.asarray(cv2.Rodrigues(R.reshape(3, 1))[0], dtype=np.float64)
+    if R.shape != (3, 3):
+        raise CalibrationError(f"{what}: R has shape {R.shape}; needed 3x3 or a rotation vector.")
+    error = float(np.abs(R.T @ R - np.eye(3)).max())
+    if error > ORTHONORMAL_TOLERANCE or np.linalg.det(R) < 0:
+        raise CalibrationError(f"{what}: R is no rotation (off by {error:.3g}, determinant {np.linalg.det(R):.3g}).")
+    t = to_array(values.get("t", np.zeros(3)), f"{what}: t").ravel()
+    if t.shape != (3,):
+        raise CalibrationError(f"{what}: t has {t.size} numbers; needed 3.")
+    size = None
+    if values.get("size") is not None:
+        numbers = to_array(values["size"], f"{what}: size").ravel()
+        if numbers.size != 2 or (numbers < 1).any() or (numbers > 1e6).any():
+            raise CalibrationError(f"{what}: the image size is {numbers.tolist()}; needed width and height.")
+        size = (int(numbers[0]), int(numbers[1]))
+    return VideoCamera(name, K, distortion, nearest_rotation(R), t, size)

@@ -1,0 +1,119 @@
+"""A video from outside as a stream of frames, numbered as they are decoded."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from tracker.capture.calibration import MAX_PIXELS
+from tracker.capture.import_plan import SourceImage, StreamProbe
+from tracker.errors import FrameError
+
+VIDEO_SUFFIXES = (".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm")
+MAX_VIDEO_FRAMES = 1_000_000
+JPEG_QUALITY = 95
+
+
+@dataclass(frozen=True)
+class VideoFile:
+    """Colour frames of a video.
+
+    Attributes:
+        root: Folder the name belongs to.
+        name: Relative name.
+        lossless: Store frames as PNG, not as JPEG of quality 95.
+    """
+
+    root: Path
+    name: str
+    lossless: bool = False
+
+    @property
+    def suffix(self) -> str:
+        return ".png" if self.lossless else ".jpg"
+
+    def probe(self, samples: int) -> StreamProbe:
+        """Decode the whole video: the count in its header may be wrong. Pixels are looked at about `samples` times."""
+        with self._open() as capture:
+            fps = float(capture.get(cv2.CAP_PROP_FPS))
+            promised = int(min(max(capture.get(cv2.CAP_PROP_FRAME_COUNT), 0), MAX_VIDEO_FRAMES))
+            every = max(1, promised // max(1, samples))
+            times: list[float] = []
+            sizes: Counter[tuple[int, int]] = Counter()
+            while capture.grab():
+                if len(times) % every == 0:
+                    image = self._retrieve(capture, len(times))
+                    sizes[(image.shape[1], image.shape[0])] += 1
+                times.append(float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000)
+                if len(times) > MAX_VIDEO_FRAMES:
+                    raise FrameError(f"{self.name}: has more than {MAX_VIDEO_FRAMES} frames.")
+        problems = []
+        if not times:
+            problems.append(
+                f"{self.name}: no frame can be decoded; is it cut off, or in a codec that is not known here?"
+            )
+        elif promised and len(times) < promised:
+            problems.append(f"{self.name}: promises {promised} frames, {len(times)} can be decoded; copy it again.")
+        if len(sizes) > 1:
+            problems.append(f"{self.name}: the size of its frames changes ({', '.join(f'{w}x{h}' for w, h in sizes)}).")
+        size = sizes.most_common(1)[0][0] if sizes else None
+        return StreamProbe(
+            len(times),
+            size,
+            {f"video frame, stored as {'PNG' if self.lossless else f'JPEG {JPEG_QUALITY}'}": len(times)},
+            tuple(problems),
+            timestamps=np.array(times),
+            fps=fps if np.isfinite(fps) and 0.001 <= fps <= 100_000 else None,
+        )
+
+    def read(self) -> Iterator[SourceImage]:
+        """Every frame in order, encoded to be stored."""
+        flags = [] if self.lossless else [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
+        with self._open() as capture:
+            index = 0
+            while capture.grab():
+                image = self._retrieve(capture, index)
+                done, data = cv2.imencode(self.suffix, image, flags)
+                if not done:
+                    raise FrameError(f"{self.name}, frame {index}: cannot be stored as {self.suffix}.")
+                yield SourceImage(f"{self.name}#{index}", data.tobytes(), (image.shape[1], image.shape[0]))
+                index += 1
+
+    def _retrieve(self, capture: cv2.VideoCapture, index: int) -> np.ndarray:
+        done, image = capture.retrieve()
+        if not done or image is None or image.ndim != 3 or image.dtype != np.uint8:
+            raise FrameError(f"{self.name}, frame {index}: cannot be decoded.")
+        return image
+
+    @contextmanager
+    def _open(self) -> Iterator[cv2.VideoCapture]:
+        """The decoder, for a file that begins like a video: playlists and other texts would make it open more files."""
+        path = (self.root / self.name).resolve()
+        if not path.is_file():
+            raise FrameError(f"{self.name}: there is no such file.")
+        with path.open("rb") as file:
+            head = file.read(16)
+        is_video = (
+            head[4:8] in (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip")
+            or head.startswith(b"\x1a\x45\xdf\xa3")
+            or (head.startswith(b"RIFF") and head[8:12] == b"AVI ")
+        )
+        if not is_video:
+            raise FrameError(f"{self.name}: is no MP4, MOV, AVI, MKV or WebM video (begins with {head[:8].hex(' ')}).")
+        capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
+        try:
+            if not capture.isOpened():
+                raise FrameError(f"{self.name}: cannot be opened; is it cut off, or in a codec that is not known here?")
+            if capture.get(cv2.CAP_PROP_FRAME_WIDTH) * capture.get(cv2.CAP_PROP_FRAME_HEIGHT) > MAX_PIXELS:
+                raise FrameError(f"{self.name}: has more than {MAX_PIXELS} pixels a frame.")
+            yield capture
+        except cv2.error as cause:
+            raise FrameError(f"{self.name}: cannot be decoded ({cause.err or cause}).") from None
+        finally:
+            capture.release()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -34,16 +33,17 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--annotations", type=Path, metavar="FILE", help="instead of the recording's own; 'none' for no start"
     )
-    parser.add_argument("--terms", metavar="LO", help="terms of the objective, joined by +")
-    parser.add_argument("--iterations", type=int, metavar="N", help="Gauss-Newton iterations a frame")
+    parser.add_argument("--terms", metavar="LO", help="terms of the objective")
+    parser.add_argument("--iterations", type=int, metavar="N", help="Gauss-Newton iterations a frame (10)")
+    parser.add_argument("--first-iterations", type=int, metavar="N", help="iterations on the first frame (50)")
     parser.add_argument(
         "--frames", type=parse_range, default=(None, None), metavar="A:B", help="frames A to B - 1 only"
     )
-    parser.add_argument(
-        "--no-calibration", action="store_true", help="keep the size and shape of the models as they are"
-    )
-    parser.add_argument("--seed", type=int, metavar="N")
-    parser.add_argument("--threads", type=int, metavar="N")
+    parser.add_argument("--camera", metavar="ID", help="the depth camera to track in (the first)")
+    parser.add_argument("--no-calibration", action="store_true", help="keep the models' size and shape as they are")
+    parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
+    parser.add_argument("--no-recovery", action="store_true", help="do not look for a lost hand")
+    parser.add_argument("--threads", type=int, metavar="N", help="threads of the image preparation (1)")
     add_json(parser)
     parser.set_defaults(run=run_guarded(track, show))
 
@@ -58,12 +58,16 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
     given = {
         "terms": args.terms,
         "iterations": args.iterations,
-        "calibrate": False if args.no_calibration else None,
-        "seed": args.seed,
+        "first_iterations": args.first_iterations,
+        "first_frame": frames.start,
+        "last_frame": frames.stop - 1,
+        "camera": args.camera,
+        "calibrate": not args.no_calibration,
+        "use_skin": not args.no_skin,
+        "recover": not args.no_recovery,
         "threads": args.threads,
-        "frames": (frames.start, frames.stop),
     }
-    options = dataclasses.replace(TrackOptions(), **{name: value for name, value in given.items() if value is not None})
+    options = TrackOptions.from_json({name: value for name, value in given.items() if value is not None})
     annotations = None
     if args.annotations is None:
         path = sequence.annotations_path

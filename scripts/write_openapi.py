@@ -1,0 +1,38 @@
+"""Write the server's OpenAPI document to web/src/api/openapi.json, from which the browser's types are made.
+
+With --check nothing is written; the exit code is 1 if the committed document is not what the server now offers.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+from server.app import create_app
+from server.settings import Settings
+
+DOCUMENT = Path(__file__).resolve().parents[1] / "web" / "src" / "api" / "openapi.json"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="only say whether the document is stale")
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        document = create_app(Settings(data_dir=Path(folder))).openapi()
+    text = json.dumps(document, indent=2, sort_keys=True) + "\n"
+    if not args.check:
+        DOCUMENT.write_text(text)
+        print(f"{DOCUMENT}: {len(document['paths'])} addresses")
+        return 0
+    if not DOCUMENT.is_file() or DOCUMENT.read_text() != text:
+        print(f"{DOCUMENT} is not what the server offers now: run `make api` and commit what it writes.", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -29,7 +29,7 @@ def main() -> int:
         print(f"{DOCUMENT}: {len(document['paths'])} addresses")
         return 0
     if not DOCUMENT.is_file() or DOCUMENT.read_text() != text:
-        print(f"{DOCUMENT} is not what the server offers now: run `make api` and commit what it writes.", file=sys.stderr)
+        print(f"{DOCUMENT} is not what the server offers: run `make api`, commit what it writes.", file=sys.stderr)
         return 1
     return 0
 

@@ -65,8 +65,8 @@ def _create_sqlite_engine(url: str) -> Engine:
 
 
 def _configure_sqlite(connection: DBAPIConnection, _entry: ConnectionPoolEntry) -> None:
-    """WAL: readers and a writer don't wait for each other. FULL: what was answered as saved survives a power cut, at the
-    price of one fsync a commit (NORMAL may lose the last commits). Foreign keys are off unless asked for."""
+    """WAL: readers and a writer don't wait for each other. FULL: what was answered as saved survives a power cut, at
+    the price of one fsync a commit (NORMAL may lose the last commits). Foreign keys are off unless asked for."""
     assert isinstance(connection, sqlite3.Connection)
     cursor: Any = connection.cursor()
     for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):

@@ -19,7 +19,7 @@ from starlette.requests import HTTPConnection
 
 
 class Storage:
-    """The studio's files: `fs` is the fsspec view of them, `folder` where the tracker, which needs local files, finds them."""
+    """The studio's files: `fs` is the fsspec view of them, `folder` gives the tracker what it needs, local files."""
 
     def __init__(self, root: Path) -> None:
         self.root = root

@@ -1,0 +1,57 @@
+"""Lists in pages: `{"items", "next_cursor"}`. A cursor names the last thing seen, so nothing is skipped or seen twice."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import json
+import uuid
+from datetime import datetime
+from typing import Annotated, Generic, TypeVar
+
+from fastapi import Query
+from pydantic import BaseModel, Field
+
+from server.errors import InvalidError
+
+Item = TypeVar("Item")
+
+
+class Page(BaseModel, Generic[Item]):
+    """Part of a list."""
+
+    items: list[Item]
+    next_cursor: str | None = Field(description="For `?cursor=` to get what follows; null at the end.")
+
+
+Cursor = Annotated[str | None, Query(description="`next_cursor` of the page before.", max_length=1000)]
+Limit = Annotated[int, Query(description="Most items of a page.", ge=1, le=1000)]
+
+
+def write_cursor(*place: str | int) -> str:
+    """A cursor for a place in a list."""
+    return base64.urlsafe_b64encode(json.dumps(place).encode()).decode().rstrip("=")
+
+
+def read_cursor(cursor: str, *kinds: type) -> list:
+    """The place in a list that a cursor names; its parts have these kinds."""
+    try:
+        place = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
+    except (ValueError, binascii.Error, RecursionError):
+        place = None
+    is_whole = isinstance(place, list) and len(place) == len(kinds)
+    if not is_whole or any(type(part) is not kind for part, kind in zip(place, kinds, strict=True)):
+        raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours. Give the `next_cursor` of a page, or none.")
+    return place
+
+
+def read_moment_cursor(cursor: str) -> tuple[datetime, uuid.UUID]:
+    """The place in a list ordered by a moment and an id, written as `write_cursor(moment.isoformat(), str(id))`."""
+    moment, id_ = read_cursor(cursor, str, str)
+    try:
+        place = datetime.fromisoformat(moment), uuid.UUID(id_)
+    except ValueError:
+        place = None
+    if place is None or place[0].tzinfo is None:
+        raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours. Give the `next_cursor` of a page, or none.")
+    return place

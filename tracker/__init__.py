@@ -19,34 +19,71 @@ if TYPE_CHECKING:
     from tracker.capture.import_run import run_import
     from tracker.capture.relative_path import find_path_fault
     from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
-    from tracker.errors import AnnotationError, FrameError, ImportRefusedError, SequenceError, TrackerError
+    from tracker.errors import (
+        AnnotationError,
+        FrameError,
+        ImportRefusedError,
+        SequenceError,
+        TrackerError,
+        TrackingError,
+    )
+    from tracker.model.articulated import ArticulatedModel
+    from tracker.model.default_hand import default_hand
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
+    from tracker.tracking.chunk import TrackChunk
+    from tracker.tracking.follow import track_frames
+    from tracker.tracking.frame_result import FrameResult
+    from tracker.tracking.frame_view import FrameView, ModelView, describe_frame, render_overlay
+    from tracker.tracking.options import TrackOptions
+    from tracker.tracking.setup import TrackSetup
+    from tracker.tracking.start import start_tracking
+    from tracker.tracking.state import TrackState
+    from tracker.tracking.track import Track, join_chunks, load_track
+    from tracker.tracking.warm_up import warm_up
 
 _HOMES = {
     "Annotation": "tracker.capture.annotations",
     "AnnotationError": "tracker.errors",
     "Annotations": "tracker.capture.annotations",
     "ArchiveLimits": "tracker.capture.archive",
+    "ArticulatedModel": "tracker.model.articulated",
     "Camera": "tracker.capture.camera",
     "Frame": "tracker.capture.frame",
     "FrameError": "tracker.errors",
+    "FrameResult": "tracker.tracking.frame_result",
+    "FrameView": "tracker.tracking.frame_view",
     "HAND_EDGES": "tracker.model.joints",
     "HAND_JOINTS": "tracker.model.joints",
     "IMPORT_FORMATS": "tracker.capture.import_check",
     "ImportOptions": "tracker.capture.import_options",
     "ImportRefusedError": "tracker.errors",
     "ImportReport": "tracker.capture.import_report",
+    "ModelView": "tracker.tracking.frame_view",
     "Sequence": "tracker.capture.sequence",
     "SequenceError": "tracker.errors",
+    "Track": "tracker.tracking.track",
+    "TrackChunk": "tracker.tracking.chunk",
+    "TrackOptions": "tracker.tracking.options",
+    "TrackSetup": "tracker.tracking.setup",
+    "TrackState": "tracker.tracking.state",
     "TrackerError": "tracker.errors",
+    "TrackingError": "tracker.errors",
     "check_import": "tracker.capture.import_check",
+    "default_hand": "tracker.model.default_hand",
+    "describe_frame": "tracker.tracking.frame_view",
     "extract_archive": "tracker.capture.archive",
     "find_path_fault": "tracker.capture.relative_path",
+    "join_chunks": "tracker.tracking.track",
     "load_annotations": "tracker.capture.annotations",
     "load_sequence": "tracker.capture.sequence",
+    "load_track": "tracker.tracking.track",
+    "render_overlay": "tracker.tracking.frame_view",
     "run_import": "tracker.capture.import_run",
     "save_annotations": "tracker.capture.annotations",
     "save_sequence_json": "tracker.capture.sequence",
+    "start_tracking": "tracker.tracking.start",
+    "track_frames": "tracker.tracking.follow",
+    "warm_up": "tracker.tracking.warm_up",
 }
 
 __all__ = [
@@ -57,23 +94,41 @@ __all__ = [
     "AnnotationError",
     "Annotations",
     "ArchiveLimits",
+    "ArticulatedModel",
     "Camera",
     "Frame",
     "FrameError",
+    "FrameResult",
+    "FrameView",
     "ImportOptions",
     "ImportRefusedError",
     "ImportReport",
+    "ModelView",
     "Sequence",
     "SequenceError",
+    "Track",
+    "TrackChunk",
+    "TrackOptions",
+    "TrackSetup",
+    "TrackState",
     "TrackerError",
+    "TrackingError",
     "check_import",
+    "default_hand",
+    "describe_frame",
     "extract_archive",
     "find_path_fault",
+    "join_chunks",
     "load_annotations",
     "load_sequence",
+    "load_track",
+    "render_overlay",
     "run_import",
     "save_annotations",
     "save_sequence_json",
+    "start_tracking",
+    "track_frames",
+    "warm_up",
 ]
 
 

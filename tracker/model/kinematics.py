@@ -156,20 +156,32 @@ def normals_into(normals: Array, vertices: Array, faces: Ints) -> None:
             normals[v, 2] /= length
 
 
+@njit(cache=True, nogil=True)
+def _vertex_jacobian_into(jacobian, weight_bones, weights, chains, bone_vertices, twists, vertex_ids):
+    for row in range(len(vertex_ids)):
+        v = vertex_ids[row]
+        for slot in range(weights.shape[1]):
+            weight = weights[v, slot]
+            if weight == 0.0:
+                break
+            x, y, z = bone_vertices[v, slot, 0], bone_vertices[v, slot, 1], bone_vertices[v, slot, 2]
+            chain = chains[weight_bones[v, slot]]
+            for place in range(len(chain)):
+                dof = chain[place]
+                if dof < 0:
+                    break
+                t = twists[dof]
+                jacobian[row, 0, dof] += weight * (t[4] * z - t[5] * y + t[0])
+                jacobian[row, 1, dof] += weight * (t[5] * x - t[3] * z + t[1])
+                jacobian[row, 2, dof] += weight * (t[3] * y - t[4] * x + t[2])
+
+
 def vertex_jacobian(scene: SceneArrays, bone_vertices: Array, twists: Array, vertex_ids: Ints) -> Array:
     """Derivative of posed vertices by the pose, exact: (N, 3, D), m per unit of each degree of freedom.
 
     Root parameters are increments multiplied from the left about the root's joint, as `Scene.retract` applies them.
     """
     jacobian = np.zeros((len(vertex_ids), 3, len(twists)))
-    for row, v in enumerate(vertex_ids):
-        for slot in range(scene.weights.shape[1]):
-            weight = scene.weights[v, slot]
-            if weight == 0.0:
-                break
-            point = bone_vertices[v, slot]
-            for dof in scene.chains[scene.weight_bones[v, slot]]:
-                if dof < 0:
-                    break
-                jacobian[row, :, dof] += weight * (np.cross(twists[dof, 3:], point) + twists[dof, :3])
+    ids = np.ascontiguousarray(vertex_ids, dtype=np.int32)
+    _vertex_jacobian_into(jacobian, scene.weight_bones, scene.weights, scene.chains, bone_vertices, twists, ids)
     return jacobian

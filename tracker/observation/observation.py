@@ -47,6 +47,7 @@ class Preprocessing:
         bilateral_diameter: px; 0 leaves the depth as it is.
         bilateral_depth: Depth difference at which smoothing fades, m.
         edge_jump: Depth step that makes a discontinuity, m.
+        objects: Prepare nearest pixels of other things too; without objects in the scene nobody asks for them.
     """
 
     use_skin: bool = True
@@ -54,6 +55,7 @@ class Preprocessing:
     bilateral_diameter: int = 5
     bilateral_depth: float = 0.010
     edge_jump: float = 0.015
+    objects: bool = False
 
 
 @dataclass(frozen=True)
@@ -69,8 +71,8 @@ class Observation:
         depth: (H, W) float32 smoothed depth, m; 0 where there is no value in the region's depth range.
         labels: (H, W) uint8 bits HAND and OTHER; 0 where there is no depth.
         beyond: (H, W) bool, the sensor saw something behind the region's depth range, so the space before it is free.
-        nearest_hand: (H, W, 2) int16 row and column of the nearest pixel that may be hand.
-        nearest_edge: (H, W, 2) int16 row and column of the nearest depth discontinuity of the hand; -1 if none.
+        nearest_pixel: (2, H, W, 2) int16 row and column of the nearest pixel that may be hand, and may be other.
+        nearest_edge: (2, H, W, 2) int16 the same for depth discontinuities of hand and other; -1 if there is none.
     """
 
     region: Region
@@ -81,7 +83,7 @@ class Observation:
     depth: npt.NDArray[np.float32]
     labels: npt.NDArray[np.uint8]
     beyond: npt.NDArray[np.bool_]
-    nearest_hand: npt.NDArray[np.int16]
+    nearest_pixel: npt.NDArray[np.int16]
     nearest_edge: npt.NDArray[np.int16]
 
     @property
@@ -121,10 +123,8 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, st
     points = np.zeros((*depth.shape, 3), dtype=np.float32)
     normals = np.zeros_like(points)
     compute_points_and_normals_into(points, normals, depth, K, camera.T_world_camera)
-    hand = (labels & HAND).astype(np.uint8)
-    edges = np.zeros_like(hand)
-    find_depth_edges_into(edges, depth, hand, how.edge_jump)
-    closed = cv2.morphologyEx(hand, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+    nearest = [_nearest_of(labels, HAND, depth, how.edge_jump)]
+    nearest.append(_nearest_of(labels, OTHER, depth, how.edge_jump) if how.objects else _nowhere(labels))
     return Observation(
         region,
         K,
@@ -134,8 +134,8 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, st
         depth,
         labels,
         beyond,
-        _nearest(closed),
-        _nearest(edges),
+        np.stack([pixels for pixels, _ in nearest]),
+        np.stack([edges for _, edges in nearest]),
     )
 
 
@@ -145,8 +145,8 @@ def undistort(frame: Frame, camera: Camera) -> tuple[Frame, Camera]:
         return frame, camera
     size = (camera.width, camera.height)
     maps = cv2.initUndistortRectifyMap(camera.K, camera.distortion, np.eye(3), camera.K, size, cv2.CV_32FC1)
-    depth = None if frame.depth is None else cv2.remap(frame.depth, *maps, cv2.INTER_NEAREST)
-    color = None if frame.color is None else cv2.remap(frame.color, *maps, cv2.INTER_LINEAR)
+    depth = None if frame.depth is None else cv2.remap(frame.depth, *maps, cv2.INTER_NEAREST).astype(np.float32)
+    color = None if frame.color is None else cv2.remap(frame.color, *maps, cv2.INTER_LINEAR).astype(np.uint8)
     ideal = Camera(camera.id, camera.width, camera.height, camera.K, np.zeros(0), camera.T_world_camera)
     return Frame(frame.index, frame.camera, color, depth), ideal
 
@@ -162,6 +162,22 @@ def _label(
     mean = cv2.blur(log_ratio, (9, 9)) / np.maximum(cv2.blur(weight, (9, 9)), 1e-3)
     is_hand = 0.5 * (mean + log_ratio) > threshold
     return np.where(inside, np.where(is_hand, np.uint8(HAND), np.uint8(OTHER)), np.uint8(0))
+
+
+def _nearest_of(
+    labels: npt.NDArray[np.uint8], bit: int, depth: npt.NDArray[np.float32], jump: float
+) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.int16]]:
+    """Nearest pixel and nearest discontinuity of one label; small holes between its pixels count as its own."""
+    mask = ((labels & bit) > 0).astype(np.uint8)
+    edges = np.zeros_like(mask)
+    find_depth_edges_into(edges, depth, mask, jump)
+    closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
+    return _nearest(closed.astype(np.uint8)), _nearest(edges)
+
+
+def _nowhere(labels: npt.NDArray[np.uint8]) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.int16]]:
+    nothing = np.full((*labels.shape, 2), -1, dtype=np.int16)
+    return nothing, nothing
 
 
 def _nearest(mask: npt.NDArray[np.uint8]) -> npt.NDArray[np.int16]:

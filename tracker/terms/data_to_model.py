@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
+from tracker.observation import HAND
 from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -103,7 +104,8 @@ def _find_into(
                 and inverse_depth[row, column + 1] >= farthest
             ):
                 continue
-            to_row, to_column = nearest_edge[row, column, 0], nearest_edge[row, column, 1]
+            kind = 0 if face_labels[f] & HAND != 0 else 1
+            to_row, to_column = nearest_edge[kind, row, column, 0], nearest_edge[kind, row, column, 1]
             if to_row < 0 or labels[to_row, to_column] & face_labels[f] == 0:
                 continue
             dr, dc = to_row - row, to_column - column

@@ -30,21 +30,21 @@ class AnatomicalLimits:
     linear_from: float = 0.35
     """Outside the limits by more than this the residual is linear, rad."""
 
-    def linearize(self, angles: Array, lower: Array, upper: Array) -> tuple[Array, Array, Array]:
-        """Cost (scalar array), gradient (K,) and Gauss-Newton curvature (K,) of Eq. 17 without its weight.
+    def linearize(self, angles: Array, lower: Array, upper: Array) -> tuple[float, Array, Array]:
+        """Cost, gradient (K,) and Gauss-Newton curvature (K,) of Eq. 17 without its weight.
 
         Args:
             angles: (K,) rad.
             lower: (K,) rad.
             upper: (K,) rad.
         """
-        cost, gradient, curvature = np.zeros(()), np.zeros_like(angles), np.zeros_like(angles)
+        cost, gradient, curvature = 0.0, np.zeros_like(angles), np.zeros_like(angles)
         for outside, sign in ((lower - angles, -1.0), (angles - upper, 1.0)):
             bounded = np.minimum(outside, self.linear_from)
             value = np.exp(0.5 * self.steepness * bounded)
             slope = 0.5 * self.steepness * value
             value = value + slope * (outside - bounded)
-            cost = cost + np.sum(value**2)
+            cost += float(np.sum(value**2))
             gradient += sign * slope * value
             curvature += slope**2
         return cost, gradient, curvature
@@ -57,7 +57,7 @@ class Regularization:
     weight: float = 0.02
     """γ_r (§3.2.8), times C_all."""
 
-    def linearize(self, angles: Array, previous: Array) -> tuple[Array, Array, Array]:
+    def linearize(self, angles: Array, previous: Array) -> tuple[float, Array, Array]:
         """Cost, gradient (K,) and curvature (K,) of Eq. 18 without its weight; angles and previous (K,) rad."""
         difference = angles - previous
-        return np.sum(difference**2), difference, np.ones_like(angles)
+        return float(np.sum(difference**2)), difference, np.ones_like(angles)

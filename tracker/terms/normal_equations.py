@@ -70,8 +70,9 @@ def _pairs(scene: Scene) -> tuple[Ints, Ints]:
         for slot in range(arrays.weights.shape[1]):
             used = arrays.weights[:, slot] > 0
             follows[np.flatnonzero(used), arrays.weight_bones[used, slot]] = True
-        on_face = follows[arrays.faces].any(axis=1)
-        shared = (on_face.T.astype(np.int64) @ on_face + follows.T.astype(np.int64) @ follows) > 0
+        on_face = follows[arrays.faces].any(axis=1).astype(np.int64)
+        on_vertex = follows.astype(np.int64)
+        shared = (np.matmul(on_face.T, on_face) + np.matmul(on_vertex.T, on_vertex)) > 0
         j, k = np.nonzero(np.triu(shared))
         pair_index = np.full((bones, bones), -1, dtype=np.int32)
         pair_index[j, k] = pair_index[k, j] = np.arange(len(j))

@@ -51,7 +51,7 @@ class PointToLine:
             jacobian += self.barycentric[:, corner, None, None] * turned
         return ResidualBlock(
             MILLIMETRES * residual.reshape(-1),
-            MILLIMETRES * jacobian.reshape(3 * self.count, -1),
+            MILLIMETRES * jacobian.reshape(3 * self.count, posed.scene.num_dofs),
             np.repeat(self.weights, 3),
         )
 

@@ -79,7 +79,8 @@ class FrameContext:
 class Term(Protocol):
     """One summand of the objective, [T16] Eq. 5."""
 
-    weight: float
+    @property
+    def weight(self) -> float: ...
 
     def find(self, posed: PosedScene, context: FrameContext) -> Residual:
         """Look for correspondences at the current pose."""

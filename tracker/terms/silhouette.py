@@ -57,7 +57,7 @@ class Silhouette:
             view.face,
             observation.depth,
             observation.labels,
-            observation.nearest_hand,
+            observation.nearest_pixel,
             view.K,
             observation.T_world_camera,
             self.hidden_within,
@@ -94,12 +94,13 @@ def _find_into(
     for row in range(stride // 2, height, stride):
         for column in range(stride // 2, width, stride):
             f = face[row, column]
-            if f < 0 or face_labels[f] & HAND == 0 or labels[row, column] & HAND != 0:
+            if f < 0 or labels[row, column] & face_labels[f] != 0:
                 continue
             z = 1.0 / inverse_depth[row, column]
             if labels[row, column] != 0 and depth[row, column] < z + hidden_within:
                 continue
-            to_row, to_column = nearest[row, column, 0], nearest[row, column, 1]
+            kind = 0 if face_labels[f] & HAND != 0 else 1
+            to_row, to_column = nearest[kind, row, column, 0], nearest[kind, row, column, 1]
             if to_row < 0 or (to_row == row and to_column == column):
                 continue
             dx, dy = (to_column - column) / fx * z, (to_row - row) / fy * z

@@ -54,7 +54,7 @@ def find_palm_candidates(observation: Observation, count: int) -> list[PalmCandi
     order = np.lexsort((columns, rows, observation.depth[rows, columns]))
     candidates: list[PalmCandidate] = []
     for i in order:
-        row, column = rows[i], columns[i]
+        row, column = int(rows[i]), int(columns[i])
         point = observation.points[row, column].astype(np.float64)
         if any(np.linalg.norm(point - other.point) < APART for other in candidates):
             continue

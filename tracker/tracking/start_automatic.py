@@ -210,13 +210,3 @@ def _wide_objective(reach: float) -> Objective:
 def _refine(scene: Scene, observation: Observation, pose: Array, objective: Objective, iterations: int) -> Array:
     options = FitOptions(iterations=iterations, damping=3e-2, max_turn=0.25, max_shift=0.02)
     return fit_frame(scene, observation, pose, pose, objective, options).pose
-
-
-def depth_range(frame: Frame) -> tuple[float, float]:
-    """A depth range, m, for a frame about which nothing is known: to 0.6 m behind the nearest thing of some size."""
-    assert frame.depth is not None
-    values = frame.depth[(frame.depth > 0.1) & (frame.depth < 3.0)]
-    if values.size < 200:
-        return 0.1, 3.0
-    nearest = float(np.partition(values, 200)[200])
-    return 0.1, nearest + 0.6

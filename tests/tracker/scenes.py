@@ -1,0 +1,60 @@
+"""A small drawn scene: what a noise-free camera would see of a bent tube."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.tracker.toys import tube
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.geometry import se3
+from tracker.model.scene import PosedScene, Scene
+from tracker.observation import Observation, Preprocessing, observe
+from tracker.rendering import render_depth, render_view
+from tracker.terms.residual import FrameContext
+from tracker.tracking.frame_fit import label_scene
+from tracker.tracking.region import region_around
+
+K = np.array([[300.0, 0.0, 159.5], [0.0, 300.0, 119.5], [0.0, 0.0, 1.0]])
+
+
+@dataclass(frozen=True)
+class DrawnScene:
+    """A scene, the pose it was drawn at, the camera and what was seen."""
+
+    scene: Scene
+    pose: np.ndarray
+    camera: Camera
+    frame: Frame
+    observation: Observation
+
+    def context(self, posed: PosedScene) -> FrameContext:
+        height, width = self.observation.labels.shape
+        view = render_view(posed, self.observation.K, self.observation.T_world_camera, height, width)
+        return FrameContext(view, self.observation, *label_scene(self.scene))
+
+    def disturbed(self, rng: np.random.Generator, angle: float = 0.05, shift: float = 0.006) -> np.ndarray:
+        """The pose with angles off by `angle`, rad, and the root by `shift`, m."""
+        step = rng.normal(scale=angle, size=self.scene.num_dofs)
+        step[:3] = rng.normal(scale=shift, size=3)
+        return self.scene.retract(self.pose, step)
+
+
+def drawn_tube(T_world_camera: np.ndarray | None = None) -> DrawnScene:
+    """A tube of three bones at 0.3 m before a camera that may stand anywhere in the world."""
+    T_world_camera = np.eye(4) if T_world_camera is None else T_world_camera
+    scene = Scene((tube(bones=3, rings=25, sides=16, radius=0.012),))
+    pose = scene.rest_pose()
+    in_camera = se3.exp(np.array([-0.045, 0.0, 0.3, 0.0, 0.0, 0.0])) @ se3.exp(np.array([0, 0, 0, 0.2, 0.3, 0.1]))
+    pose[:6] = se3.log(T_world_camera @ in_camera)
+    pose[6:] = [0.4, -0.3, 0.5, 0.2]
+    camera = Camera("cam0", 320, 240, K, T_world_camera=T_world_camera)
+    vertices = scene.pose_at(pose).vertices
+    rendering = render_depth(se3.transform(se3.inverse(T_world_camera), vertices), scene.arrays.faces, K, 320, 240)
+    frame = Frame(0, "cam0", None, rendering.depth.astype(np.float32))
+    region = region_around(vertices, camera)
+    assert region is not None
+    seen = observe(frame, camera, region, Preprocessing(bilateral_diameter=0, objects=True))
+    return DrawnScene(scene, pose, camera, frame, seen)

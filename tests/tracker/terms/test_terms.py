@@ -1,0 +1,122 @@
+"""Every term: exact derivatives, the fast sum equal to the plain one, and a step that lowers its own cost."""
+
+import numpy as np
+import pytest
+
+from tests.tracker.scenes import drawn_tube
+from tracker.geometry import se3
+from tracker.solver.damped_step import compute_damped_step
+from tracker.terms.data_to_model import DataToModel
+from tracker.terms.data_to_surface import DataToSurface
+from tracker.terms.model_to_data import ModelToData
+from tracker.terms.normal_equations import NormalEquations
+from tracker.terms.silhouette import Silhouette
+
+TERMS = {
+    "model_to_data": ModelToData(),
+    "model_to_data_points": ModelToData(to_plane=False),
+    "data_to_surface": DataToSurface(),
+    "data_to_model": DataToModel(weight=1.0),
+    "silhouette": Silhouette(weight=1.0),
+}
+
+every_term = pytest.mark.parametrize("term", TERMS.values(), ids=TERMS.keys())
+
+ELSEWHERE = se3.exp(np.array([0.4, -0.2, 0.7, 0.3, -0.8, 0.5]))
+"""A camera that is not the world's origin."""
+
+
+@every_term
+@pytest.mark.parametrize("T_world_camera", [np.eye(4), ELSEWHERE], ids=["at the origin", "elsewhere"])
+def test_jacobian_agrees_with_finite_differences(term, T_world_camera, rng):
+    drawn = drawn_tube(T_world_camera)
+    pose = drawn.disturbed(rng)
+    posed = drawn.scene.pose_at(pose)
+    residual = term.find(posed, drawn.context(posed))
+    assert residual.count > 3
+    block = residual.linearize(posed)
+    step = 1e-6
+    for dof in range(drawn.scene.num_dofs):
+        delta = np.zeros(drawn.scene.num_dofs)
+        delta[dof] = step
+        ahead = residual.linearize(drawn.scene.pose_at(drawn.scene.retract(pose, delta))).residual
+        behind = residual.linearize(drawn.scene.pose_at(drawn.scene.retract(pose, -delta))).residual
+        np.testing.assert_allclose(block.jacobian[:, dof], (ahead - behind) / (2 * step), atol=1e-4)  # mm per rad or m
+
+
+@every_term
+def test_fast_sum_equals_plain_jacobian(term, rng):
+    drawn = drawn_tube(ELSEWHERE)
+    posed = drawn.scene.pose_at(drawn.disturbed(rng))
+    residual = term.find(posed, drawn.context(posed))
+    block = residual.linearize(posed)
+    equations = NormalEquations.at(posed)
+    residual.add_to(equations)
+    JtJ, Jtr = equations.assemble()
+    weighted = block.jacobian * block.weights[:, None]
+    np.testing.assert_allclose(JtJ, weighted.T @ block.jacobian, rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(Jtr, weighted.T @ block.residual, rtol=1e-9, atol=1e-6)
+    assert equations.cost == pytest.approx(block.cost, rel=1e-9)
+    assert equations.count == residual.count
+
+
+@every_term
+def test_one_step_lowers_its_own_cost(term, rng):
+    drawn = drawn_tube()
+    pose = drawn.disturbed(rng)
+    posed = drawn.scene.pose_at(pose)
+    residual = term.find(posed, drawn.context(posed))
+    equations = NormalEquations.at(posed)
+    residual.add_to(equations)
+    step = compute_damped_step(*equations.assemble(), 0.1, np.full(drawn.scene.num_dofs, 0.2))
+    after = residual.linearize(drawn.scene.pose_at(drawn.scene.retract(pose, step)))
+    assert after.cost < residual.linearize(posed).cost
+
+
+@every_term
+def test_cost_is_next_to_nothing_at_the_true_pose(term):
+    drawn = drawn_tube()
+    posed = drawn.scene.pose_at(drawn.pose)
+    residual = term.find(posed, drawn.context(posed))
+    if residual.count:
+        block = residual.linearize(posed)
+        weighted = block.weights * block.residual**2
+        assert weighted.sum() / block.weights.sum() < 1.0**2  # mm; pixels are 1 mm apart
+
+
+def test_the_order_of_terms_does_not_matter(rng):
+    drawn = drawn_tube()
+    posed = drawn.scene.pose_at(drawn.disturbed(rng))
+    residuals = [term.find(posed, drawn.context(posed)) for term in TERMS.values()]
+    sums = []
+    for order in (residuals, residuals[::-1]):
+        equations = NormalEquations.at(posed)
+        for residual in order:
+            residual.add_to(equations)
+        sums.append(np.concatenate([part.ravel() for part in equations.assemble()]))
+    np.testing.assert_allclose(sums[0], sums[1], rtol=1e-10, atol=1e-6)
+
+
+@every_term
+def test_nothing_in_sight_gives_an_empty_residual(term):
+    drawn = drawn_tube()
+    away = drawn.scene.retract(drawn.pose, np.r_[0, 0, 3.0, 0, 0, 0, np.zeros(drawn.scene.num_dofs - 6)])
+    posed = drawn.scene.pose_at(away)
+    residual = term.find(posed, drawn.context(posed))
+    if not isinstance(term, Silhouette):
+        assert residual.count == 0
+    assert residual.linearize(posed).jacobian.shape[1] == drawn.scene.num_dofs
+
+
+def test_matches_of_model_to_data_are_the_nearest_points_allowed(rng):
+    drawn = drawn_tube()
+    posed = drawn.scene.pose_at(drawn.disturbed(rng))
+    term = ModelToData()
+    residual = term.find(posed, drawn.context(posed))
+    seen = drawn.observation
+    cloud = seen.points[seen.labels > 0].astype(float)
+    normals = seen.normals[seen.labels > 0].astype(float)
+    for corner, target, normal in zip(residual.ids[:, 0], residual.targets, residual.normals, strict=True):
+        allowed = normals @ normal >= np.cos(np.deg2rad(term.max_angle))
+        distances = np.linalg.norm(cloud[allowed] - posed.vertices[corner], axis=1)
+        assert np.linalg.norm(target - posed.vertices[corner]) <= distances.min() + 2e-4  # the ring bound is lateral

@@ -1,0 +1,110 @@
+"""The results of some consecutive frames, as a job stores them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence as Several
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.tracking.arrays_file import load_arrays, save_arrays
+from tracker.tracking.frame_result import STATUSES, FrameResult
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TrackChunk:
+    """Columns of T frames.
+
+    Attributes:
+        frame: (T,) numbers.
+        pose: (T, D).
+        status: (T,) index into STATUSES.
+        seconds: (T,).
+        depth_residual_mm: (T,) NaN where there was nothing to compare.
+        silhouette_iou: (T,) likewise.
+        score: (T,) likewise.
+        iterations: (T,).
+        cost_names: (N,) names of terms.
+        costs: (T, N) cost of each term at the last iteration, mm².
+        stage_names: (S,) names of stages.
+        stages: (T, S) seconds.
+    """
+
+    frame: npt.NDArray[np.int64]
+    pose: Array
+    status: npt.NDArray[np.int8]
+    seconds: Array
+    depth_residual_mm: Array
+    silhouette_iou: Array
+    score: Array
+    iterations: npt.NDArray[np.int64]
+    cost_names: npt.NDArray[np.str_]
+    costs: Array
+    stage_names: npt.NDArray[np.str_]
+    stages: Array
+
+    @classmethod
+    def of(cls, results: Several[FrameResult]) -> TrackChunk:
+        """Columns from at least one result."""
+        assert results, "a chunk has at least one frame"
+        cost_names = _names([result.costs[-1] if result.costs else {} for result in results])
+        stage_names = _names([result.stages for result in results])
+        qualities = [result.quality for result in results]
+        nan = float("nan")
+        return cls(
+            frame=np.array([result.frame for result in results], dtype=np.int64),
+            pose=np.stack([result.pose for result in results]),
+            status=np.array([STATUSES.index(result.status) for result in results], dtype=np.int8),
+            seconds=np.array([result.seconds for result in results]),
+            depth_residual_mm=np.array([1000.0 * q.depth_residual if q else nan for q in qualities]),
+            silhouette_iou=np.array([q.silhouette_iou if q else nan for q in qualities]),
+            score=np.array([q.score if q else nan for q in qualities]),
+            iterations=np.array([len(result.costs) for result in results], dtype=np.int64),
+            cost_names=np.array(cost_names, dtype=np.str_),
+            costs=_table([result.costs[-1] if result.costs else {} for result in results], cost_names),
+            stage_names=np.array(stage_names, dtype=np.str_),
+            stages=_table([result.stages for result in results], stage_names),
+        )
+
+    @classmethod
+    def join(cls, chunks: Several[TrackChunk]) -> TrackChunk:
+        """Consecutive chunks as one."""
+        assert chunks, "at least one chunk"
+        cost_names = sorted({str(name) for chunk in chunks for name in chunk.cost_names})
+        stage_names = sorted({str(name) for chunk in chunks for name in chunk.stage_names})
+        plain = ("frame", "pose", "status", "seconds", "depth_residual_mm", "silhouette_iou", "score", "iterations")
+        return cls(
+            **{name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in plain},
+            cost_names=np.array(cost_names, dtype=np.str_),
+            costs=np.concatenate([_widen(chunk.costs, chunk.cost_names, cost_names) for chunk in chunks]),
+            stage_names=np.array(stage_names, dtype=np.str_),
+            stages=np.concatenate([_widen(chunk.stages, chunk.stage_names, stage_names) for chunk in chunks]),
+        )
+
+    def save(self, path: Path) -> None:
+        """Write to an npz file, whole or not at all."""
+        save_arrays(path, {f.name: getattr(self, f.name) for f in fields(self)})
+
+    @classmethod
+    def load(cls, path: Path) -> TrackChunk:
+        """Read what `save` wrote."""
+        return cls(**load_arrays(path, tuple(f.name for f in fields(cls))))
+
+
+def _names(rows: Several[dict[str, float]]) -> list[str]:
+    return sorted({name for row in rows for name in row})
+
+
+def _table(rows: Several[dict[str, float]], names: list[str]) -> Array:
+    return np.array([[row.get(name, 0.0) for name in names] for row in rows]).reshape(len(rows), len(names))
+
+
+def _widen(table: Array, have: npt.NDArray[np.str_], want: list[str]) -> Array:
+    wide = np.zeros((len(table), len(want)))
+    for column, name in enumerate(have):
+        wide[:, want.index(str(name))] = table[:, column]
+    return wide

@@ -1,0 +1,194 @@
+"""Go from frame to frame: predict, fit, judge, and look for what was lost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.capture.sequence import Sequence
+from tracker.observation import Observation, observe
+from tracker.terms.data_to_surface import DataToSurface
+from tracker.terms.model_to_data import ModelToData
+from tracker.tracking.chunk import TrackChunk
+from tracker.tracking.depth_range import depth_range
+from tracker.tracking.finger_search import search_fingers
+from tracker.tracking.frame_fit import Fit, FitOptions, draw, fit_frame
+from tracker.tracking.frame_result import FrameResult
+from tracker.tracking.objective import Objective
+from tracker.tracking.quality import Quality, measure_quality
+from tracker.tracking.region import region_around
+from tracker.tracking.setup import TrackSetup
+from tracker.tracking.start_automatic import find_hand
+from tracker.tracking.state import TrackState
+
+Array = npt.NDArray[np.float64]
+
+MIN_PIXELS = 60
+"""Fewer hand pixels than this near the expected place mean that the hand is gone."""
+
+SCORE_DROP = 0.10
+"""A score this far below the running one calls for a second try."""
+
+SCORE_MEMORY = 0.9
+"""Share of the running score kept from frame to frame."""
+
+WIDE = {
+    "model_to_data": ModelToData(max_distance=0.025, max_angle=60.0),
+    "data_to_surface": DataToSurface(max_distance=0.025),
+}
+"""Terms with longer reach, for the second try."""
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    pose: Array
+    quality: Quality
+    fit: Fit
+
+
+def track_frames(
+    sequence: Sequence,
+    setup: TrackSetup,
+    state: TrackState,
+    frames: range,
+    on_frame: Callable[[int, FrameResult], None] | None = None,
+) -> tuple[TrackState, TrackChunk]:
+    """Track consecutive frames; the same state and frames give the same result to the last bit, times apart.
+
+    Args:
+        sequence: The recording.
+        setup: Models and options.
+        state: After the frame before `frames`.
+        frames: The first must be `state.next_frame`.
+        on_frame: Called after every frame; an exception from it ends the run there.
+    """
+    assert not len(frames) or frames[0] == state.next_frame, "chunks are tracked in order"
+    cv2.setNumThreads(setup.options.threads)
+    results = []
+    for index in frames:
+        state, result = follow_frame(sequence, setup, state, recover=setup.options.recover)
+        results.append(result)
+        if on_frame:
+            on_frame(index, result)
+    return state, TrackChunk.of(results)
+
+
+def follow_frame(
+    sequence: Sequence, setup: TrackSetup, state: TrackState, recover: bool
+) -> tuple[TrackState, FrameResult]:
+    """Track the next frame."""
+    read_at = perf_counter()
+    frame, camera = setup.read(sequence, state.next_frame)
+    started = perf_counter()
+    attempt, stages = _follow(frame, camera, setup, state)
+    status = "ok"
+    if attempt is None or attempt.quality.is_lost:
+        found = _recover(frame, camera, setup) if recover else None
+        attempt, status = (found, "recovered") if found else (attempt, "lost")
+    seconds = perf_counter() - started
+    stages["reading"] = started - read_at
+    is_lost = status == "lost"
+    pose = state.pose if is_lost or attempt is None else attempt.pose
+    score = state.score
+    if attempt is not None and not is_lost:
+        known = status == "ok" and state.score > 0.0
+        score = (SCORE_MEMORY * state.score if known else 0.0) + (
+            1.0 - SCORE_MEMORY if known else 1.0
+        ) * attempt.quality.score
+    next_state = TrackState(
+        state.next_frame + 1, pose, state.pose if status == "ok" and not state.is_lost else pose, score, is_lost
+    )
+    return next_state, FrameResult(
+        state.next_frame,
+        pose,
+        status,
+        seconds,
+        None if attempt is None else attempt.quality,
+        () if attempt is None else attempt.fit.costs,
+        stages,
+    )
+
+
+def _follow(
+    frame: Frame, camera: Camera, setup: TrackSetup, state: TrackState
+) -> tuple[_Attempt | None, dict[str, float]]:
+    """Fit from the predicted pose, and again with longer reach if that went badly."""
+    stages: dict[str, float] = {}
+    if state.is_lost:
+        return None, stages
+    predicted = state.predict(setup.scene)
+    started = perf_counter()
+    seen = _look(frame, camera, setup, predicted)
+    stages["observing"] = perf_counter() - started
+    if seen is None:
+        return None, stages
+    iterations = setup.options.first_iterations if state.score == 0.0 else setup.options.iterations
+    options = FitOptions(iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm)
+    best = _attempt(setup, seen, predicted, state.pose, Objective(), options)
+    stages |= best.fit.stages
+    if best.quality.is_lost or best.quality.score < state.score - SCORE_DROP:
+        started = perf_counter()
+        for start in (state.pose, best.pose):
+            other = _try_again(setup, seen, start, options)
+            if other.quality.score > best.quality.score:
+                best = other
+        stages["second try"] = perf_counter() - started
+    return best, stages
+
+
+def _try_again(setup: TrackSetup, seen: Observation, start: Array, options: FitOptions) -> _Attempt:
+    """A wide fit, a search of single fingers, and the usual fit from there."""
+    wide = Objective(terms={**Objective().terms, **WIDE})
+    far = FitOptions(iterations=2 * options.iterations, damping=1e-2, max_turn=0.25, max_shift=0.02)
+    pose = fit_frame(setup.scene, seen, start, start, wide, far).pose
+    scene = setup.scene
+
+    def score(trial: Array) -> float:
+        return measure_quality(draw(scene.pose_at(trial), seen), seen).score
+
+    for model, where in zip(setup.models, scene.pose_slices, strict=True):
+        if model.hand:
+            pose = search_fingers(pose, where.start, model, score)
+    return _attempt(setup, seen, pose, pose, Objective(), options)
+
+
+def _attempt(
+    setup: TrackSetup, seen: Observation, start: Array, previous: Array, objective: Objective, options: FitOptions
+) -> _Attempt:
+    fit = fit_frame(setup.scene, seen, start, previous, objective, options)
+    view = draw(setup.scene.pose_at(fit.pose), seen)
+    hands = [index for index, model in enumerate(setup.models) if model.hand]
+    worst = min((measure_quality(view, seen, index) for index in hands), key=lambda quality: quality.score)
+    return _Attempt(fit.pose, worst, fit)
+
+
+def _look(frame: Frame, camera: Camera, setup: TrackSetup, pose: Array) -> Observation | None:
+    region = region_around(setup.scene.pose_at(pose).vertices, camera)
+    if region is None:
+        return None
+    seen = observe(frame, camera, region, setup.preprocessing)
+    return seen if seen.hand_count >= MIN_PIXELS else None
+
+
+def _recover(frame: Frame, camera: Camera, setup: TrackSetup) -> _Attempt | None:
+    """Look for every hand in the whole image."""
+    near, far = depth_range(frame)
+    poses = []
+    for model in setup.models:
+        found = find_hand(frame, camera, model, setup.preprocessing, near, far)
+        if found is None or found.quality.is_lost:
+            return None
+        poses.append(found.pose)
+    pose = np.concatenate(poses)
+    seen = _look(frame, camera, setup, pose)
+    if seen is None:
+        return None
+    attempt = _attempt(setup, seen, pose, pose, Objective(), FitOptions(iterations=setup.options.iterations))
+    return None if attempt.quality.is_lost else attempt

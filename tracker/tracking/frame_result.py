@@ -1,0 +1,35 @@
+"""What tracking one frame gave."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.tracking.quality import Quality
+
+STATUSES = ("ok", "lost", "recovered")
+
+
+@dataclass(frozen=True)
+class FrameResult:
+    """One tracked frame.
+
+    Attributes:
+        frame: Its number.
+        pose: (D,); of a lost frame, the last pose before.
+        status: One of STATUSES.
+        seconds: From the decoded frame to the pose.
+        quality: How well the pose explains the frame; None where there was nothing to compare with.
+        costs: One per iteration, cost of each term, mm².
+        stages: Seconds by stage, "reading" among them though not in `seconds`.
+    """
+
+    frame: int
+    pose: npt.NDArray[np.float64]
+    status: str
+    seconds: float
+    quality: Quality | None
+    costs: tuple[dict[str, float], ...]
+    stages: dict[str, float]

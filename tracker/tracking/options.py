@@ -1,0 +1,79 @@
+"""What a user may choose about a tracking run."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any
+
+from tracker.errors import TrackingError
+
+TERMS = ("LO",)
+"""Sets of terms that can be asked for, in the paper's letters."""
+
+
+def _option(default: Any, help_text: str) -> Any:
+    return field(default=default, metadata={"help": help_text})
+
+
+@dataclass(frozen=True)
+class TrackOptions:
+    """Options of a run; every field has its default and one line of help, which forms and commands show.
+
+    Raises:
+        TrackingError: A value makes no sense; the message says which and what is allowed.
+    """
+
+    terms: str = _option("LO", "Terms of the objective: LO fits depth in both directions.")
+    iterations: int = _option(10, "Gauss-Newton iterations on every frame.")
+    first_iterations: int = _option(50, "Iterations on the first frame.")
+    first_frame: int = _option(0, "First frame to track.")
+    last_frame: int = _option(-1, "Last frame to track; -1 is the recording's last.")
+    calibrate: bool = _option(True, "Fit the hand's size and shape to the first second.")
+    use_skin: bool = _option(True, "Tell hand from other things by skin colour, where there is colour.")
+    recover: bool = _option(True, "Look for a lost hand in the whole image.")
+    stop_below_mm: float = _option(0.0, "Stop iterating when the mean joint moves less than this, mm; 0 never does.")
+    camera: str = _option("", "Depth camera to track in; empty takes the first that has depth.")
+    threads: int = _option(1, "Threads of the image preparation.")
+
+    def __post_init__(self) -> None:
+        if self.terms not in TERMS:
+            raise TrackingError(f"terms is {self.terms!r}; needed one of {', '.join(TERMS)}.")
+        for name, low, high in (
+            ("iterations", 1, 200),
+            ("first_iterations", 1, 500),
+            ("first_frame", 0, 10_000_000),
+            ("last_frame", -1, 10_000_000),
+            ("stop_below_mm", 0.0, 100.0),
+            ("threads", 1, 64),
+        ):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+                raise TrackingError(f"{name} is {value!r}; needed a number from {low} to {high}.")
+        if 0 <= self.last_frame < self.first_frame:
+            raise TrackingError(f"last_frame {self.last_frame} comes before first_frame {self.first_frame}.")
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain values by name."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, values: dict[str, Any]) -> TrackOptions:
+        """Options from plain values; what is not given keeps its default."""
+        known = {f.name: f for f in fields(cls)}
+        for name, value in values.items():
+            if name not in known:
+                raise TrackingError(f"There is no option {name!r}; there are {', '.join(known)}.")
+            wanted = type(known[name].default)
+            allowed = (int, float) if wanted is float else (wanted,)
+            if not isinstance(value, allowed) or (wanted is not bool and isinstance(value, bool)):
+                raise TrackingError(f"{name} is {value!r}; needed a {wanted.__name__}.")
+        return cls(**values)
+
+    def frame_range(self, frame_count: int) -> range:
+        """The frames to track of a recording of so many frames."""
+        last = frame_count - 1 if self.last_frame < 0 else self.last_frame
+        if self.first_frame > last or last >= frame_count:
+            raise TrackingError(
+                f"Frames {self.first_frame} to {last} were asked for; the recording has 0 to {frame_count - 1}."
+            )
+        return range(self.first_frame, last + 1)

@@ -1,0 +1,106 @@
+"""What stays the same during a tracking run: models, camera and options."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.capture.sequence import Sequence
+from tracker.errors import TrackingError
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.joints import HAND_JOINTS
+from tracker.model.npz_files import load_npz_model, save_npz_model
+from tracker.model.scene import Scene
+from tracker.observation import Preprocessing, undistort
+from tracker.tracking.options import TrackOptions
+
+
+@dataclass(frozen=True)
+class TrackSetup:
+    """Models and options of a run.
+
+    Attributes:
+        names: Of the models: `right`, `left` or an object's name.
+        models: As they are tracked, calibrated.
+        camera_id: The depth camera.
+        options: What the user chose.
+    """
+
+    names: tuple[str, ...]
+    models: tuple[ArticulatedModel, ...]
+    camera_id: str
+    options: TrackOptions
+
+    @cached_property
+    def scene(self) -> Scene:
+        return Scene(self.models)
+
+    @property
+    def preprocessing(self) -> Preprocessing:
+        return Preprocessing(use_skin=self.options.use_skin, objects=any(not model.hand for model in self.models))
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Of the joints of a track: `right/index_mcp` for hands, `rope:<bone>` for articulated objects."""
+        names: list[str] = []
+        for name, model in zip(self.names, self.models, strict=True):
+            if model.hand:
+                names += [f"{name}/{joint}" for joint in HAND_JOINTS]
+            elif model.skeleton.num_bones > 1:
+                names += [f"{name}:{bone}" for bone in model.skeleton.bone_names]
+        return tuple(names)
+
+    @property
+    def object_names(self) -> tuple[str, ...]:
+        return tuple(name for name, model in zip(self.names, self.models, strict=True) if not model.hand)
+
+    def read(self, sequence: Sequence, index: int) -> tuple[Frame, Camera]:
+        """A frame as an ideal pinhole camera sees it, and that camera."""
+        return undistort(sequence.frame(index, self.camera_id), sequence.camera(self.camera_id))
+
+    def save(self, folder: Path) -> None:
+        """Write `setup.json` and `models/<name>.npz`."""
+        folder = Path(folder)
+        (folder / "models").mkdir(parents=True, exist_ok=True)
+        for name, model in zip(self.names, self.models, strict=True):
+            save_npz_model(model, folder / "models" / f"{name}.npz")
+        document = {
+            "version": 1,
+            "names": list(self.names),
+            "camera": self.camera_id,
+            "options": self.options.to_json(),
+        }
+        temporary = folder / ".setup.json.part"
+        temporary.write_text(json.dumps(document, indent=1))
+        temporary.replace(folder / "setup.json")
+
+    @classmethod
+    def load(cls, folder: Path) -> TrackSetup:
+        """Read what `save` wrote."""
+        folder = Path(folder)
+        try:
+            document = json.loads((folder / "setup.json").read_text())
+            names = tuple(str(name) for name in document["names"])
+            camera, options = str(document["camera"]), TrackOptions.from_json(document["options"])
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise TrackingError(f"{folder}: needed setup.json as a tracking run writes it ({error}).") from error
+        models = tuple(load_npz_model(folder / "models" / f"{name}.npz") for name in names)
+        return cls(names, models, camera, options)
+
+
+def choose_camera(sequence: Sequence, options: TrackOptions) -> str:
+    """The depth camera that a run tracks in.
+
+    Raises:
+        TrackingError: There is none, or the one asked for has no depth.
+    """
+    with_depth = [camera.id for camera in sequence.cameras if camera.has_depth]
+    if not with_depth:
+        raise TrackingError(f"{sequence.name}: has no depth; the tracker needs a camera with depth images.")
+    if options.camera and options.camera not in with_depth:
+        raise TrackingError(f"{sequence.name}: camera {options.camera!r} has no depth; {', '.join(with_depth)} have.")
+    return options.camera or with_depth[0]

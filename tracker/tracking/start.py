@@ -1,0 +1,163 @@
+"""Begin a run: place every hand in the first frame and fit its shape to the first second."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.annotations import Annotation, Annotations
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.capture.sequence import Sequence
+from tracker.errors import TrackingError
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.default_hand import default_hand
+from tracker.model.shape import with_shape
+from tracker.observation import Observation, observe
+from tracker.tracking.calibration import calibrate_shape, propose_shapes
+from tracker.tracking.depth_range import depth_range
+from tracker.tracking.follow import follow_frame
+from tracker.tracking.frame_fit import FitOptions, draw, fit_frame
+from tracker.tracking.objective import Objective
+from tracker.tracking.options import TrackOptions
+from tracker.tracking.quality import measure_quality
+from tracker.tracking.region import region_around, whole_image
+from tracker.tracking.setup import TrackSetup, choose_camera
+from tracker.tracking.start_annotated import mark_joints, start_hand, undistort_points
+from tracker.tracking.start_automatic import find_hand
+from tracker.tracking.state import TrackState
+
+log = logging.getLogger(__name__)
+
+Array = npt.NDArray[np.float64]
+Progress = Callable[[str, float], None]
+
+MIN_MARKED = 6
+"""With fewer marked joints a hand is looked for in the depth alone."""
+
+CALIBRATION_FRAMES = 10
+"""Frames of the first second that the shape is fitted to."""
+
+
+def start_tracking(
+    sequence: Sequence,
+    options: TrackOptions,
+    models: dict[str, ArticulatedModel] | None = None,
+    annotations: Annotations | None = None,
+    progress: Progress | None = None,
+) -> tuple[TrackSetup, TrackState]:
+    """Place the hands in the first frame, from its annotation or else from the depth alone, and calibrate them.
+
+    Args:
+        sequence: The recording.
+        options: What the user chose.
+        models: `right` and `left` hands to use in place of the default ones.
+        annotations: Only those of the first frame are looked at.
+        progress: Told the stage and the share of it that is done.
+
+    Raises:
+        TrackingError: No depth camera, or a frame range that does not exist.
+    """
+    tell = progress or (lambda stage, share: None)
+    frames = options.frame_range(sequence.frame_count)
+    camera_id = choose_camera(sequence, options)
+    names = tuple(sequence.hands)
+    if not names:
+        raise TrackingError(f"{sequence.name}: names no hands; set `hands` to right, left or both.")
+    given = models or {}
+    hands = {name: given.get(name) or default_hand(name) for name in names}
+    placed: list[tuple[ArticulatedModel, Array]] = []
+    for name in names:
+        tell(f"placing the {name} hand", 0.0)
+        marked = annotations.find(frames[0], camera_id, name) if annotations else None
+        setup = TrackSetup((name,), (hands[name],), camera_id, options)
+        placed.append(_begin(sequence, setup, frames, marked, tell))
+    setup = TrackSetup(names, tuple(model for model, _ in placed), camera_id, options)
+    pose = np.concatenate([pose for _, pose in placed])
+    return setup, TrackState(frames[0], pose, pose, 0.0, not np.any(pose))
+
+
+def _begin(
+    sequence: Sequence, setup: TrackSetup, frames: range, marked: Annotation | None, tell: Progress
+) -> tuple[ArticulatedModel, Array]:
+    """One hand with its shape fitted, and its pose in the first frame: zeros if nothing like a hand is there."""
+    base = setup.models[0]
+    if base.shape is None or not setup.options.calibrate:
+        _, pose = _place(sequence, setup, frames[0], marked)
+        return base, np.zeros(base.num_dofs) if pose is None else pose
+    best_shape, best_pose, best_score = np.zeros(len(base.shape.names)), None, -np.inf
+    for shape in propose_shapes(base):
+        sized = replace(setup, models=(with_shape(base, shape),))
+        score, pose = _place(sequence, sized, frames[0], marked)
+        if pose is not None and score > best_score:
+            best_shape, best_pose, best_score = shape, pose, score
+    if best_pose is None:
+        return base, np.zeros(base.num_dofs)
+    return _calibrate(sequence, setup, frames, best_shape, best_pose, tell)
+
+
+def _place(sequence: Sequence, setup: TrackSetup, index: int, marked: Annotation | None) -> tuple[float, Array | None]:
+    """Score and pose of one hand in one frame; no pose if nothing like a hand is there."""
+    frame, camera = setup.read(sequence, index)
+    near, far = depth_range(frame)
+    if marked is not None and np.count_nonzero(marked.points[:, 2]) >= MIN_MARKED:
+        points = undistort_points(marked.points, sequence.camera(setup.camera_id))
+        return _place_marked(frame, camera, points, setup, (near, far))
+    found = find_hand(frame, camera, setup.models[0], setup.preprocessing, near, far)
+    return (-1.0, None) if found is None else (found.quality.score, found.pose)
+
+
+def _place_marked(
+    frame: Frame, camera: Camera, points: Array, setup: TrackSetup, depths: tuple[float, float]
+) -> tuple[float, Array]:
+    """Score and pose from marked joints (21, 3), fitted to the depth with the joints kept where they were marked."""
+    whole = observe(frame, camera, whole_image(camera, *depths), setup.preprocessing)
+    pose = start_hand(setup.models[0], points, camera, whole)
+    scene = setup.scene
+    region = region_around(scene.pose_at(pose).vertices, camera)
+    if region is None:
+        return -1.0, pose
+    seen = observe(frame, camera, region, setup.preprocessing)
+    objective = Objective(terms={**Objective().terms, "joints": mark_joints(scene, 0, points, camera)})
+    options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
+    pose = fit_frame(scene, seen, pose, pose, objective, options).pose
+    return measure_quality(draw(scene.pose_at(pose), seen), seen).score, pose
+
+
+def _calibrate(
+    sequence: Sequence, setup: TrackSetup, frames: range, shape: Array, pose: Array, tell: Progress
+) -> tuple[ArticulatedModel, Array]:
+    """Follow the hand through the first second, then fit its shape to some of those frames."""
+    base = setup.models[0]
+    assert base.shape is not None
+    sized = replace(setup, models=(with_shape(base, shape),))
+    first_second = frames[: max(1, min(len(frames), round(sequence.fps)))]
+    every = max(1, len(first_second) // CALIBRATION_FRAMES)
+    state = TrackState(frames[0], pose, pose)
+    observations: list[Observation] = []
+    poses: list[Array] = []
+    for done, index in enumerate(first_second):
+        state, result = follow_frame(sequence, sized, state, recover=False)
+        if result.status != "ok":
+            break
+        seen = _look(sequence, sized, index, state.pose) if done % every == 0 else None
+        if seen is not None:
+            observations.append(seen)
+            poses.append(state.pose)
+        tell("following the first second", (done + 1) / len(first_second))
+    if not observations:
+        return sized.models[0], pose
+    fitted = calibrate_shape(base, shape, observations, poses, progress=lambda share: tell("fitting the shape", share))
+    named = zip(base.shape.names, fitted.shape, strict=True)
+    log.info("shape: %s", ", ".join(f"{name} {value:+.2f}" for name, value in named))
+    return fitted.model, fitted.poses[0]
+
+
+def _look(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> Observation | None:
+    frame, camera = setup.read(sequence, index)
+    region = region_around(setup.scene.pose_at(pose).vertices, camera)
+    return None if region is None else observe(frame, camera, region, setup.preprocessing)

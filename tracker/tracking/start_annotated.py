@@ -1,0 +1,162 @@
+"""Start a hand at the joints that somebody marked in the frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.geometry import se3
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.scene import PosedScene, Scene
+from tracker.observation import HAND, Observation
+from tracker.solver.damped_step import compute_damped_step
+from tracker.terms.joint_prior import AnatomicalLimits, Regularization
+from tracker.terms.point_line import PointToLine
+from tracker.terms.point_point import PointToPoint
+from tracker.terms.residual import FrameContext, Residual
+from tracker.tracking.finger_search import curl_fingers
+from tracker.tracking.objective import Objective
+
+Array = npt.NDArray[np.float64]
+
+FLESH = 0.009
+"""A joint lies about this far behind the skin that is seen before it, m."""
+
+
+@dataclass(frozen=True)
+class MarkedJoints:
+    """Keep landmarks on the viewing rays of marked pixels: E = Σ |v × d − m|², as [T16] Eq. 8 measures it.
+
+    Attributes:
+        ids: (N,) vertices of the scene.
+        directions: (N, 3) unit, world.
+        moments: (N, 3) world, m.
+        weight: Of each joint; an annotator's pixel is about a millimetre.
+    """
+
+    ids: npt.NDArray[np.int32]
+    directions: Array
+    moments: Array
+    weight: float = 1.0
+
+    def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToLine:
+        """The same rays whatever the pose."""
+        corners = np.repeat(self.ids[:, None], 3, axis=1).astype(np.int32)
+        shares = np.tile([1.0, 0.0, 0.0], (len(self.ids), 1))
+        return PointToLine(corners, shares, self.directions, self.moments, np.full(len(self.ids), self.weight))
+
+
+def mark_joints(scene: Scene, model: int, points: Array, camera: Camera) -> MarkedJoints:
+    """Rays of the marked joints of one hand.
+
+    Args:
+        scene: The scene.
+        model: Which of its models is the hand.
+        points: (21, 3) x, y px and v (0 absent, 1 occluded, 2 visible).
+        camera: Undistorted camera.
+    """
+    marked = np.flatnonzero(points[:, 2] > 0)
+    rays = _rays(points[marked], camera)
+    origin = camera.T_world_camera[:3, 3]
+    ids = np.arange(scene.landmark_slices[model].start, scene.landmark_slices[model].stop, dtype=np.int32)[marked]
+    return MarkedJoints(ids, rays, np.cross(np.broadcast_to(origin, rays.shape), rays))
+
+
+def undistort_points(points: Array, camera: Camera) -> Array:
+    """Marked joints (21, 3) of a recorded image as an ideal pinhole camera of the same K would show them."""
+    if not camera.distortion.size:
+        return points
+    ideal = points.copy()
+    ideal[:, :2] = cv2.undistortPoints(points[:, None, :2], camera.K, camera.distortion, P=camera.K)[:, 0]
+    return ideal
+
+
+def start_hand(model: ArticulatedModel, points: Array, camera: Camera, observation: Observation) -> Array:
+    """(D,) pose of one hand whose joints lie on the marked pixels and, where visible, at the depth seen there.
+
+    Args:
+        model: The hand.
+        points: (21, 3) x, y px of the image and v.
+        camera: Undistorted camera.
+        observation: Of the whole image.
+    """
+    scene = Scene((model,))
+    marked = np.flatnonzero(points[:, 2] > 0)
+    joints = mark_joints(scene, 0, points, camera)
+    lifted, seen = _lift(points, camera, observation)
+    best, best_cost = scene.rest_pose(), np.inf
+    for curl in (0.0, 0.35, 0.7):
+        rest = scene.rest_pose()
+        rest[6:] = curl_fingers(model, curl)
+        T = _align(scene.pose_at(rest).landmarks(0)[marked], lifted[marked])
+        rest[:6] = se3.log(T)
+        pose, cost = _descend(scene, rest, joints, lifted, seen)
+        if cost < best_cost:
+            best, best_cost = pose, cost
+    return best
+
+
+def _descend(
+    scene: Scene, start: Array, joints: MarkedJoints, lifted: Array, seen: npt.NDArray[np.bool_]
+) -> tuple[Array, float]:
+    """Gauss-Newton on rays, depths, limits and nearness to the start; the pose and its cost."""
+    objective = Objective(terms={}, anatomy=AnatomicalLimits(0.05), regularization=Regularization(2.0))
+    corners = np.repeat(np.arange(21, dtype=np.int32)[seen, None] + scene.landmark_slices[0].start, 3, axis=1)
+    shares = np.tile([1.0, 0.0, 0.0], (len(corners), 1))
+    depths = PointToPoint(corners, shares, lifted[seen], np.full(len(corners), 0.1))
+    limits = np.full(scene.num_dofs, 0.3)
+    limits[:3] = 0.05
+    pose, cost = start, np.inf
+    for _ in range(40):
+        posed = scene.pose_at(pose)
+        residuals: dict[str, Residual] = {"joints": joints.find(posed), "depths": depths}
+        JtJ, Jtr, costs = objective.linearize(posed, residuals, start)
+        cost = sum(costs.values())
+        pose = scene.retract(pose, compute_damped_step(JtJ, Jtr, 1e-3, limits))
+    return pose, cost
+
+
+def _rays(points: Array, camera: Camera) -> Array:
+    """(N, 3) unit viewing rays of pixels, world."""
+    x, y = (points[:, 0] - camera.K[0, 2]) / camera.K[0, 0], (points[:, 1] - camera.K[1, 2]) / camera.K[1, 1]
+    rays = np.stack([x, y, np.ones_like(x)], axis=1) @ camera.T_world_camera[:3, :3].T
+    return rays / np.linalg.norm(rays, axis=1, keepdims=True)
+
+
+def _lift(points: Array, camera: Camera, observation: Observation) -> tuple[Array, npt.NDArray[np.bool_]]:
+    """Marked joints in space: (21, 3) world, m, and (21,) whether the depth there was seen.
+
+    A joint without depth of its own gets the median depth of the others.
+    """
+    depths = np.zeros(21)
+    seen = np.zeros(21, dtype=bool)
+    height, width = observation.labels.shape
+    for joint in np.flatnonzero(points[:, 2] == 2):
+        column, row = round(points[joint, 0]), round(points[joint, 1])
+        rows, columns = slice(max(0, row - 2), min(height, row + 3)), slice(max(0, column - 2), min(width, column + 3))
+        values = observation.depth[rows, columns][(observation.labels[rows, columns] & HAND) > 0]
+        if values.size:
+            depths[joint] = float(np.median(values)) + FLESH
+            seen[joint] = True
+    everywhere = observation.depth[(observation.labels & HAND) > 0]
+    fallback = (
+        float(np.median(depths[seen])) if seen.any() else float(np.median(everywhere)) if everywhere.size else 0.5
+    )
+    depths[~seen] = fallback
+    x = (points[:, 0] - camera.K[0, 2]) / camera.K[0, 0] * depths
+    y = (points[:, 1] - camera.K[1, 2]) / camera.K[1, 1] * depths
+    return se3.transform(camera.T_world_camera, np.stack([x, y, depths], axis=1)), seen
+
+
+def _align(source: Array, target: Array) -> Array:
+    """Rigid motion (4, 4) that carries points (N, 3) nearest to others, by Kabsch's SVD."""
+    center_source, center_target = source.mean(axis=0), target.mean(axis=0)
+    U, _, Vt = np.linalg.svd((target - center_target).T @ (source - center_source))
+    T = np.eye(4)
+    T[:3, :3] = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
+    T[:3, 3] = center_target - T[:3, :3] @ center_source
+    return T

@@ -1,0 +1,71 @@
+"""What the tracker must remember from frame to frame, and nothing else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.geometry import se3
+from tracker.model.scene import Scene
+from tracker.tracking.arrays_file import load_arrays, save_arrays
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TrackState:
+    """The state after a frame. Saved and loaded it goes on exactly as if it had never left memory.
+
+    Attributes:
+        next_frame: Frame to track next.
+        pose: (D,) of the last frame.
+        earlier_pose: (D,) of the frame before; equal to `pose` where there is none.
+        score: Running quality score of good frames.
+        is_lost: Whether the hand was lost in the last frame.
+    """
+
+    next_frame: int
+    pose: Array
+    earlier_pose: Array
+    score: float = 0.0
+    is_lost: bool = False
+
+    def predict(self, scene: Scene) -> Array:
+        """(D,) the pose if roots go on as they moved last; joint angles are kept.
+
+        Hidden fingers run away when their angles are extrapolated, roots do not.
+        """
+        predicted = self.pose.copy()
+        for where in scene.pose_slices:
+            root = slice(where.start, where.start + 6)
+            T_now, T_before = se3.exp(self.pose[root]), se3.exp(self.earlier_pose[root])
+            predicted[root] = se3.log(T_now @ se3.inverse(T_before) @ T_now)
+        return predicted
+
+    def save(self, path: Path) -> None:
+        """Write to an npz file, whole or not at all."""
+        save_arrays(
+            path,
+            {
+                "next_frame": np.array(self.next_frame),
+                "pose": self.pose,
+                "earlier_pose": self.earlier_pose,
+                "score": np.array(self.score),
+                "is_lost": np.array(self.is_lost),
+            },
+        )
+
+    @classmethod
+    def load(cls, path: Path) -> TrackState:
+        """Read what `save` wrote."""
+        arrays = load_arrays(path, ("next_frame", "pose", "earlier_pose", "score", "is_lost"))
+        return cls(
+            int(arrays["next_frame"]),
+            arrays["pose"],
+            arrays["earlier_pose"],
+            float(arrays["score"]),
+            bool(arrays["is_lost"]),
+        )

@@ -1,0 +1,142 @@
+"""A finished track and its folder."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence as Several
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.sequence import Sequence
+from tracker.errors import TrackingError
+from tracker.tracking.arrays_file import load_arrays, save_arrays
+from tracker.tracking.chunk import TrackChunk
+from tracker.tracking.frame_result import STATUSES
+from tracker.tracking.setup import TrackSetup
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Track:
+    """Joints and poses of every tracked frame.
+
+    Attributes:
+        setup: Models and options of the run.
+        chunk: The columns of all frames.
+        joints_3d: (T, J, 3) world, m.
+        joints_2d: (T, C, J, 2) px of each camera of the recording, NaN behind it.
+        T_world_object: (T, O, 4, 4) m.
+    """
+
+    setup: TrackSetup
+    chunk: TrackChunk
+    joints_3d: Array
+    joints_2d: Array
+    T_world_object: Array
+
+    @property
+    def frame(self) -> npt.NDArray[np.int64]:
+        """(T,) frame numbers."""
+        return self.chunk.frame
+
+    @property
+    def pose(self) -> Array:
+        """(T, D)."""
+        return self.chunk.pose
+
+    @property
+    def seconds(self) -> Array:
+        """(T,)."""
+        return self.chunk.seconds
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        return self.setup.joint_names
+
+    @property
+    def status(self) -> npt.NDArray[np.str_]:
+        """(T,) of `ok`, `lost`, `recovered`."""
+        return np.array(STATUSES, dtype=np.str_)[self.chunk.status]
+
+    def summary(self) -> dict[str, Any]:
+        """The content of `summary.json`."""
+        chunk = self.chunk
+        milliseconds = 1000.0 * chunk.seconds
+        ok = self.status == "ok"
+        stages = {
+            str(name): round(float(np.median(1000.0 * chunk.stages[:, column])), 3)
+            for column, name in enumerate(chunk.stage_names)
+        }
+        return {
+            "frames": len(chunk.frame),
+            "lost": int(np.count_nonzero(self.status == "lost")),
+            "recovered": int(np.count_nonzero(self.status == "recovered")),
+            "median_ms": round(float(np.median(milliseconds)), 3),
+            "p95_ms": round(float(np.percentile(milliseconds, 95)), 3),
+            "stages_ms": stages,
+            "depth_residual_mm": _median(chunk.depth_residual_mm[ok]),
+            "silhouette_iou": _median(chunk.silhouette_iou[ok]),
+            "threads": self.setup.options.threads,
+        }
+
+    def save(self, folder: Path) -> None:
+        """Write `track.npz`, `summary.json`, `setup.json` and the models."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        self.setup.save(folder)
+        self.chunk.save(folder / "frames.npz")
+        save_arrays(
+            folder / "track.npz",
+            {
+                "frame": self.frame,
+                "joint_names": np.array(self.joint_names, dtype=np.str_),
+                "joints_3d": self.joints_3d,
+                "joints_2d": self.joints_2d,
+                "object_names": np.array(self.setup.object_names, dtype=np.str_),
+                "T_world_object": self.T_world_object,
+                "pose": self.pose,
+                "status": self.status,
+                "seconds": self.seconds,
+            },
+        )
+        temporary = folder / ".summary.json.part"
+        temporary.write_text(json.dumps(self.summary(), indent=1))
+        temporary.replace(folder / "summary.json")
+
+
+def join_chunks(sequence: Sequence, setup: TrackSetup, chunks: Several[TrackChunk]) -> Track:
+    """A track from the chunks of a run, in order."""
+    chunk = TrackChunk.join(chunks)
+    if np.any(np.diff(chunk.frame) != 1):
+        raise TrackingError("The chunks of a track must follow one another without a gap.")
+    joints, objects = [], []
+    for pose in chunk.pose:
+        posed = setup.scene.pose_at(pose)
+        parts, motions = [np.zeros((0, 3))], [np.zeros((0, 4, 4))]
+        for index, model in enumerate(setup.models):
+            if model.hand or model.skeleton.num_bones > 1:
+                parts.append(posed.landmarks(index))
+            if not model.hand:
+                motions.append(posed.T_world_model(index)[None])
+        joints.append(np.concatenate(parts))
+        objects.append(np.concatenate(motions))
+    joints_3d = np.stack(joints)
+    joints_2d = np.stack([[camera.project(points) for camera in sequence.cameras] for points in joints_3d])
+    return Track(setup, chunk, joints_3d, joints_2d, np.stack(objects))
+
+
+def load_track(folder: Path) -> Track:
+    """Read what `Track.save` wrote."""
+    folder = Path(folder)
+    arrays = load_arrays(folder / "track.npz", ("joints_3d", "joints_2d", "T_world_object"))
+    return Track(TrackSetup.load(folder), TrackChunk.load(folder / "frames.npz"), **arrays)
+
+
+def _median(values: Array) -> float | None:
+    values = values[np.isfinite(values)]
+    return round(float(np.median(values)), 4) if values.size else None

@@ -1,0 +1,35 @@
+"""Compile, or load from the cache, every kernel of the tracker before somebody waits for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.geometry import se3
+from tracker.model.default_hand import default_hand
+from tracker.model.scene import Scene
+from tracker.observation import Preprocessing
+from tracker.rendering import render_depth
+from tracker.tracking.start_automatic import Search, find_hand
+
+
+def warm_up(progress: Callable[[str, float], None] | None = None) -> None:
+    """Run the tracker once on a small drawn hand."""
+    tell = progress or (lambda stage, share: None)
+    tell("compiling the kernels", 0.0)
+    model = default_hand("right")
+    K = np.array([[150.0, 0.0, 79.5], [0.0, 150.0, 59.5], [0.0, 0.0, 1.0]])
+    camera = Camera("warm-up", 160, 120, K)
+    scene = Scene((model,))
+    vertices = scene.pose_at(scene.rest_pose()).vertices
+    T = np.eye(4)
+    T[:3, 3] = np.array([0.0, 0.0, 0.45]) - vertices.mean(axis=0)
+    drawn = render_depth(se3.transform(T, vertices), scene.arrays.faces, K, 160, 120)
+    color = np.full((120, 160, 3), 120, dtype=np.uint8)
+    color[drawn.face >= 0] = (200, 140, 115)
+    frame = Frame(0, camera.id, color, drawn.depth.astype(np.float32))
+    find_hand(frame, camera, model, Preprocessing(), 0.1, 1.0, Search(candidates=1, turns=4, rough=1, bent=1, fine=1))
+    tell("kernels are compiled", 1.0)

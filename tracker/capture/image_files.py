@@ -48,6 +48,9 @@ class ImageFiles:
         suffix = Path(self.names[0]).suffix.lower() if self.names else ".png"
         return ".jpg" if suffix == ".jpeg" else suffix
 
+    def name_of(self, index: int) -> str:
+        return self.names[index]
+
     def probe(self, samples: int) -> StreamProbe:
         """Header and end of every file; pixels of some, the first and the last among them."""
         faults: list[str] = []

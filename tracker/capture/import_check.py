@@ -74,6 +74,8 @@ def examine(source: Path, format: str | None, options: ImportOptions) -> Checked
     if files.refused:
         shown = "; ".join(files.refused[:5]) + ("; ..." if len(files.refused) > 5 else "")
         problems.append(f"{len(files.refused)} names in the folder are not safe: {shown}.")
+    if options.hands is None and plan.format != RecordingFolder.format:
+        warnings.append("Which hands are seen was not told; a right hand is assumed.")
     probes = {camera.id: _probe(camera, problems) for camera in plan.cameras}
     frame_count = _agree_on_count(plan, probes, problems, warnings, allow=bool(options.allow_gaps))
     fps = _agree_on_fps(plan, probes, problems, warnings)
@@ -92,7 +94,7 @@ def examine(source: Path, format: str | None, options: ImportOptions) -> Checked
         baselines_m=_find_baselines(plan, problems, warnings),
         problems=tuple(dict.fromkeys(problems)),
         warnings=tuple(dict.fromkeys(warnings)),
-        left_out=plan.left_out,
+        left_out=(*plan.left_out, *_find_cut(plan, probes, frame_count)),
     )
     return CheckedImport(replace(plan, fps=fps), report, sizes, times, files.root)
 
@@ -154,6 +156,18 @@ def _agree_on_count(
     if plan.frame_count is not None and fewest and plan.frame_count != fewest:
         problems.append(f"{plan.frame_count} frames are declared and {fewest} are there.")
     return fewest
+
+
+def _find_cut(plan: ImportPlan, probes: dict[str, dict[str, StreamProbe]], frame_count: int) -> list[str]:
+    """Names of the frames that some streams have beyond the last common one."""
+    if frame_count == 0:
+        return []
+    return [
+        stream.name_of(index)
+        for camera in plan.cameras
+        for kind, stream in camera.streams()
+        for index in range(frame_count, probes[camera.id][kind].count)
+    ]
 
 
 def _agree_on_fps(

@@ -67,7 +67,7 @@ class SourceImage:
     """One image to be stored.
 
     Attributes:
-        source: Original relative name, with `#n` for frame n of a video.
+        source: Original name, as `ImageStream.name_of` gives it.
         data: The file's bytes, decoded once already and found whole.
         size: (width, height) px.
     """
@@ -83,6 +83,10 @@ class ImageStream(Protocol):
     @property
     def suffix(self) -> str:
         """Type of the stored files: `.png` or `.jpg`."""
+        ...
+
+    def name_of(self, index: int) -> str:
+        """Original name of frame `index`, with `#n` for frame n of a video."""
         ...
 
     def probe(self, samples: int) -> StreamProbe:

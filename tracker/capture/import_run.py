@@ -27,7 +27,7 @@ from tracker.capture.import_plan import ImportPlan, PlannedCamera, Progress
 from tracker.capture.import_report import ImportReport
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.capture.sequence import Sequence, save_sequence_json
-from tracker.errors import ImportRefusedError
+from tracker.errors import ImportRefusedError, TrackerError
 
 SOURCES_FILE = "sources.json"
 REPORT_FILE = "import_report.json"
@@ -86,6 +86,10 @@ def run_import(
             _sync_tree(folder)
             os.rename(folder, destination)
             sync_folder(destination.parent)
+    except ImportRefusedError:
+        raise
+    except TrackerError as fault:
+        raise ImportRefusedError(str(fault)) from fault
     except OSError as cause:
         what = cause.strerror or cause
         raise ImportRefusedError(f"{destination}: cannot be written ({what}); nothing was imported.") from cause
@@ -172,7 +176,7 @@ def _fill(folder: Path, checked: CheckedImport, progress: Progress) -> None:
     document = {
         "version": 1,
         "format": plan.format,
-        "left_out": list(plan.left_out),
+        "left_out": list(report.left_out),
         "cameras": {c: {k: [asdict(s) for s in stored] for k, stored in own.items()} for c, own in sources.items()},
     }
     _write_json(folder / SOURCES_FILE, document)

@@ -38,6 +38,9 @@ class VideoFile:
     def suffix(self) -> str:
         return ".png" if self.lossless else ".jpg"
 
+    def name_of(self, index: int) -> str:
+        return f"{self.name}#{index}"
+
     def probe(self, samples: int) -> StreamProbe:
         """Decode the whole video: the count in its header may be wrong. Pixels are looked at about `samples` times."""
         with self._open() as capture:
@@ -82,7 +85,7 @@ class VideoFile:
                 done, data = cv2.imencode(self.suffix, image, flags)
                 if not done:
                     raise FrameError(f"{self.name}, frame {index}: cannot be stored as {self.suffix}.")
-                yield SourceImage(f"{self.name}#{index}", data.tobytes(), (image.shape[1], image.shape[0]))
+                yield SourceImage(self.name_of(index), data.tobytes(), (image.shape[1], image.shape[0]))
                 index += 1
 
     def _retrieve(self, capture: cv2.VideoCapture, index: int) -> np.ndarray:

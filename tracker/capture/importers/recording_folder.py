@@ -13,6 +13,11 @@ from tracker.capture.listed_files import ListedFiles
 from tracker.capture.sequence import SEQUENCE_FILE, Sequence, load_sequence
 from tracker.errors import AnnotationError, TrackerError
 
+TRUTH_FILE = "truth.npz"
+"""What is exactly known of a synthetic recording."""
+
+_WRITTEN_BY_IMPORTS = ("sources.json", "import_report.json")
+
 
 class RecordingFolder:
     """Importer of recording folders as DESIGN describes them; nothing may be missing in them."""
@@ -24,9 +29,9 @@ class RecordingFolder:
 
     def plan(self, files: ListedFiles, options: ImportOptions) -> ImportPlan:
         sequence = load_sequence(files.root)
-        used: set[str] = {SEQUENCE_FILE}
+        used: set[str] = {SEQUENCE_FILE, *_WRITTEN_BY_IMPORTS}
         problems: list[str] = []
-        copies: dict[str, str] = {}
+        copies = {name: name for name in (TRUTH_FILE,) if name in files.names}
         for item in sequence.objects:
             beside = find_model_files(files, item.model)
             if item.model not in beside:

@@ -5,6 +5,7 @@ All of them say x_camera = R X + t, in pixels of their videos and in a unit of l
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -48,12 +49,14 @@ class VideoCamera:
 
 
 def to_array(value: Any, what: str) -> Array:
-    """Numbers from outside as a float64 array; OpenCV's `{rows, cols, data}` is one too."""
-    if isinstance(value, dict) and {"rows", "cols", "data"} <= value.keys():
-        flat, rows, columns = to_array(value["data"], what).ravel(), value["rows"], value["cols"]
-        if type(rows) is not int or type(columns) is not int or rows * columns != flat.size or rows < 0:
-            raise CalibrationError(f"{what}: says {rows!r} rows of {columns!r} and has {flat.size} numbers.")
-        return flat.reshape(rows, columns)
+    """Numbers from outside as a float64 array; OpenCV's `{rows, cols, data}` and `{sizes, data}` are ones too."""
+    if isinstance(value, dict) and "data" in value and ({"rows", "cols"} <= value.keys() or "sizes" in value):
+        flat = to_array(value["data"], what).ravel()
+        sizes = value["sizes"] if "sizes" in value else [value["rows"], value["cols"]]
+        sizes = sizes if isinstance(sizes, list) else [sizes]
+        if not sizes or any(type(n) is not int or n < 0 for n in sizes) or math.prod(sizes) != flat.size:
+            raise CalibrationError(f"{what}: says {str(sizes)[:60]} numbers and has {flat.size}.")
+        return flat.reshape(sizes)
     try:
         array = np.asarray(value)
         if array.dtype.kind not in "fiu" or array.size > 10_000:

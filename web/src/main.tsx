@@ -12,6 +12,7 @@ import { createRoot } from "react-dom/client";
 import { RouterProvider } from "react-router";
 import { ApiError } from "./api/client";
 import { router } from "./pages/routes";
+import { resumeSaving } from "./state/saving";
 import { cssVariables, theme } from "./theme";
 
 const queries = new QueryClient({
@@ -23,6 +24,8 @@ const queries = new QueryClient({
     },
   },
 });
+
+resumeSaving();
 
 const root = document.getElementById("root");
 if (root) {

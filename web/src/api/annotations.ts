@@ -31,7 +31,7 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
   try {
     if (save.points === null) {
       if (save.base === null) return { kind: "saved", revision: null };
-      await requestWithHeaders("DELETE", path, { headers });
+      await requestWithHeaders("DELETE", path, { headers, query: { operation_id: save.operationId } });
       return { kind: "saved", revision: null };
     }
     const body = { points: save.points, operation_id: save.operationId };

@@ -65,16 +65,10 @@ export function useJobLog(id: string, isLive: boolean) {
 export const useJobForm = (isWanted: boolean) =>
   useQuery({
     queryKey: ["job-form"],
-    queryFn: () => request<unknown>("GET", "/jobs/form").then(readFields),
+    queryFn: async () => (await request<{ fields: FormField[] }>("GET", "/jobs/form")).fields,
     enabled: isWanted,
+    staleTime: Infinity,
   });
-
-/** The form's fields, whether the server lists them bare or under `fields` or `items`. */
-function readFields(answer: unknown): FormField[] {
-  if (Array.isArray(answer)) return answer as FormField[];
-  const held = answer as { fields?: FormField[]; items?: FormField[] };
-  return held.fields ?? held.items ?? [];
-}
 
 export function useStartTracking() {
   const client = useQueryClient();

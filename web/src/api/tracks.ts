@@ -2,7 +2,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useRef, useState } from "react";
 import { API, ApiError, request } from "./client";
 import { fetchAll } from "./recordings";
-import type { Track, TrackFrames, TrackJoints, ViewerSession } from "./types";
+import type { Evaluation, Track, TrackFrames, TrackJoints, ViewerSession } from "./types";
 
 export const trackKeys = {
   all: ["tracks"] as const,
@@ -40,7 +40,7 @@ export const useEvaluation = (id: string) =>
     queryKey: [...trackKeys.one(id), "evaluation"],
     queryFn: async () => {
       try {
-        return await request<Record<string, unknown>>("GET", `/tracks/${id}/evaluation`);
+        return await request<Evaluation>("GET", `/tracks/${id}/evaluation`);
       } catch (failure) {
         if (failure instanceof ApiError && failure.status >= 400 && failure.status < 500) return null;
         throw failure;
@@ -61,10 +61,26 @@ export function useDeleteTrack() {
   });
 }
 
-export type Shown = Record<string, boolean>;
+export function useRestoreTrack() {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: (id: string) => request("POST", `/tracks/${id}/restore`),
+    onSuccess: () => client.invalidateQueries({ queryKey: trackKeys.all }),
+  });
+}
+
+/** Layers of the 3D viewer, under the viewer's own names. */
+export interface Shown {
+  cloud: boolean;
+  mesh: boolean;
+  skeleton: boolean;
+  correspondences: boolean;
+  dark: boolean;
+}
 
 interface Viewer {
   session: ViewerSession | null;
+  terms: ViewerSession["terms"];
   failure: Error | null;
   retry: () => void;
 }
@@ -72,6 +88,7 @@ interface Viewer {
 /** A viewer session of this page: made with it, told of frame and toggles (the newest only), ended with it. */
 export function useViewer(track: string, frame: number, show: Shown): Viewer {
   const [session, setSession] = useState<ViewerSession | null>(null);
+  const [terms, setTerms] = useState<ViewerSession["terms"]>([]);
   const [failure, setFailure] = useState<Error | null>(null);
   const [attempt, setAttempt] = useState(0);
   const wanted = useRef({ frame, show });
@@ -84,7 +101,7 @@ export function useViewer(track: string, frame: number, show: Shown): Viewer {
     const end = (id: string): void => void request("DELETE", `/viewer-sessions/${id}`, { keepalive: true }).catch(() => undefined);
     setSession(null);
     setFailure(null);
-    request<ViewerSession>("POST", "/viewer-sessions", { body: { track_id: track } }).then(
+    request<ViewerSession>("POST", "/viewer-sessions", { body: { track_id: track, ...wanted.current } }).then(
       (opened) => {
         made = opened;
         if (isGone) end(opened.id);
@@ -110,7 +127,8 @@ export function useViewer(track: string, frame: number, show: Shown): Viewer {
       let told: typeof wanted.current | null = null;
       while (told?.frame !== wanted.current.frame || told.show !== wanted.current.show) {
         told = wanted.current;
-        await request("PUT", `/viewer-sessions/${session.id}`, { body: told });
+        const now = await request<ViewerSession>("PUT", `/viewer-sessions/${session.id}`, { body: told });
+        setTerms(now.terms);
       }
     };
     tell()
@@ -120,5 +138,5 @@ export function useViewer(track: string, frame: number, show: Shown): Viewer {
       });
   }, [session, frame, show]);
 
-  return { session, failure, retry: () => setAttempt((count) => count + 1) };
+  return { session, terms, failure, retry: () => setAttempt((count) => count + 1) };
 }

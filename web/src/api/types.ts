@@ -104,9 +104,10 @@ export interface LogLine {
 
 export interface FormField {
   name: string;
-  type: string;
+  type: "integer" | "number" | "boolean" | "text";
   default: unknown;
   help: string;
+  choices: string[] | null;
 }
 
 export interface TrackSummary {
@@ -145,10 +146,40 @@ export interface TrackFrames {
 export interface TrackJoints {
   joint_names: string[];
   frames: number[];
-  points: [number, number][][];
+  /** px; null behind the camera */
+  points: (number | null)[][][];
 }
 
 export interface ViewerSession {
   id: string;
   url: string;
+  /** Correspondences of the frame that is shown. */
+  terms: { name: string; count: number; color: string }[];
+}
+
+/** Distance of a track's joints to the annotations, px. */
+export interface Evaluation {
+  joint_error_px: Statistics;
+  joints: (Statistics & { joint: string })[];
+  items: EvaluatedItem[];
+  annotated: number;
+  evaluated: number;
+}
+
+export interface Statistics {
+  count: number;
+  mean: number | null;
+  std: number | null;
+  median: number | null;
+  max: number | null;
+}
+
+export interface EvaluatedItem {
+  frame: number;
+  camera: string;
+  hand: Side;
+  status: string;
+  mean_px: number | null;
+  max_px: number | null;
+  joints: number;
 }

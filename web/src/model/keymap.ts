@@ -42,6 +42,7 @@ export const KEYMAP = [
     ["finger.middle", "Middle finger", "3"],
     ["finger.ring", "Ring finger", "4"],
     ["finger.little", "Little finger", "5"],
+    ["joint.place", "Place the joint beside its neighbour, then move it with Shift and arrows", "Enter"],
     ["joint.occluded", "Occluded, or visible again", "Q"],
     ["joint.outside", "Outside the image, or back", "O"],
     ["joint.clear", "Clear the joint", "X", "Delete", "Backspace"],
@@ -67,6 +68,7 @@ export const KEYMAP = [
     ["view.darker", "Darker", "Ctrl+Down"],
     ["view.contrastUp", "More contrast, or a nearer depth range", "Ctrl+Shift+Up"],
     ["view.contrastDown", "Less contrast, or a farther depth range", "Ctrl+Shift+Down"],
+    ["drag.cancel", "Call off a drag; without one: leave the picture for the tools", "Esc"],
     ["save.now", "Send what waits at once", "Ctrl+S"],
   ]),
   ...table("track", "Track", [

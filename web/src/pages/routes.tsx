@@ -1,3 +1,4 @@
+import { lazy } from "react";
 import { createBrowserRouter, Navigate } from "react-router";
 import { BrokenPage } from "./BrokenPage";
 import { ImportPage } from "./ImportPage";
@@ -10,6 +11,9 @@ import { RecordingsPage } from "./RecordingsPage";
 import { Shell } from "./Shell";
 import { TracksPage } from "./TracksPage";
 
+const AnnotatePage = lazy(() => import("./AnnotatePage"));
+const AnnotateChooser = lazy(() => import("./AnnotateChooser"));
+const TrackPage = lazy(() => import("./TrackPage"));
 
 /** Addresses hold the state of a page, so that a link shows a colleague the same thing. */
 export const router = createBrowserRouter([
@@ -23,9 +27,12 @@ export const router = createBrowserRouter([
           { index: true, element: <Navigate to="/recordings" replace /> },
           { path: "recordings", element: <RecordingsPage /> },
           { path: "recordings/:recordingId", element: <RecordingPage /> },
+          { path: "recordings/:recordingId/annotate", element: <AnnotatePage /> },
+          { path: "annotate", element: <AnnotateChooser /> },
           { path: "imports/new", element: <NewImportPage /> },
           { path: "imports/:importId", element: <ImportPage /> },
           { path: "tracks", element: <TracksPage /> },
+          { path: "tracks/:trackId", element: <TrackPage /> },
           { path: "jobs", element: <JobsPage /> },
           { path: "jobs/:jobId", element: <JobPage /> },
           { path: "*", element: <MissingPage /> },

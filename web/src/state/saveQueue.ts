@@ -34,8 +34,11 @@ export interface SaveStatus {
 }
 
 export interface SaveQueue {
-  /** The server's revisions as loaded; keys that still wait keep the revision they were made on. */
-  learn(revisions: ReadonlyMap<string, number>): void;
+  /**
+   * The server's revisions as loaded; what still waits keeps the revision it was made on. False, and nothing is learnt,
+   * when a save has overtaken the loading: load again. `isFinal` takes it as it is, because others may have deleted.
+   */
+  learn(revisions: ReadonlyMap<string, number>, isFinal?: boolean): boolean;
   put(key: string, points: WirePoint[] | null): void;
   /** What waits, newest version by key. */
   waiting(): ReadonlyMap<string, WirePoint[] | null>;
@@ -130,9 +133,13 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
   }
 
   return {
-    learn(known) {
-      known.forEach((revision, key) => revisions.set(key, revision));
+    learn(known, isFinal = true) {
+      const isOvertaken = [...revisions].some(([key, revision]) => revision !== null && revision > (known.get(key) ?? 0));
       drainAll();
+      if (isOvertaken && !isFinal) return false;
+      revisions.clear();
+      known.forEach((revision, key) => revisions.set(key, revision));
+      return true;
     },
     put(key, points) {
       const saves = pending.get(key) ?? [];

@@ -6,7 +6,7 @@ import { createUndoStack } from "../../state/undo";
 import { bringPose } from "./bring";
 import { clearHand, clearJoint } from "./clear";
 import { cancelDrag, dragHand, dragJoint, endDrag, nudgeJoint } from "./move";
-import { placeJoint } from "./place";
+import { placeBeside, placeJoint } from "./place";
 import { goToFrame, selectFinger, selectJoint, stepJoint, switchHand } from "./select";
 import { cycleVisibility, toggleOccluded, toggleOutside } from "./visibility";
 
@@ -117,4 +117,12 @@ test("undo never brings back what somebody else has replaced", () => {
   store.set(placed(1), "person");
   store.set({ ...store.get(), poses: { "0|right|cam0": activePose(placed(3)) } }, "server");
   expect(undo.canUndo()).toBe(false);
+});
+
+test("a hand can be marked without a mouse", () => {
+  const wrist = placeBeside(start, { x: 320, y: 240 });
+  expect(activePose(wrist)[0]).toEqual({ x: 320, y: 240, v: 2 });
+  const thumb = placeBeside(stepJoint(wrist, 1), { x: 0, y: 0 });
+  expect(activePose(thumb)[1]).toEqual({ x: 328, y: 232, v: 2 });
+  expect(placeBeside(thumb, { x: 5, y: 5 })).toBe(thumb);
 });

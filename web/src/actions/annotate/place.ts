@@ -1,6 +1,6 @@
-import { activePose, withActivePose, type Action, type AnnotatorState } from "../../state/annotator";
-import { statusOf, withJoint, type Pose } from "../../model/pose";
-import { JOINT_COUNT } from "../../model/joints";
+import { activePose, withActivePose, type Action } from "../../state/annotator";
+import { isPlaced, statusOf, withJoint, type Pose } from "../../model/pose";
+import { EDGES, JOINT_COUNT } from "../../model/joints";
 import type { Point } from "../../canvas/view";
 
 /** The joint to do after this one: the next that nobody has decided about, or the same when all are done. */
@@ -18,7 +18,12 @@ export const placeJoint: Action<Point> = (state, { x, y }) => {
   return { ...withActivePose(state, pose), joint: nextOpenJoint(pose, state.joint) };
 };
 
-/** What the next click will do, for the status line. */
-export function isComplete(state: AnnotatorState): boolean {
-  return activePose(state).every((point) => statusOf(point) !== "unset");
-}
+/** Without a mouse: put the active joint on the one it hangs on (or at the given middle), to be moved with the arrow keys. */
+export const placeBeside: Action<Point> = (state, middle) => {
+  const pose = activePose(state);
+  if (isPlaced(pose[state.joint])) return state;
+  const parent = EDGES.find(([, child]) => child === state.joint)?.[0];
+  const from = parent === undefined ? undefined : pose[parent];
+  const at = isPlaced(from) ? { x: from.x + 8, y: from.y - 8 } : middle;
+  return withActivePose(state, withJoint(pose, state.joint, { x: at.x, y: at.y, v: 2 }));
+};

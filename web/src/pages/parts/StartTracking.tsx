@@ -1,4 +1,4 @@
-import { Button, Checkbox, Collapse, Group, Modal, NumberInput, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Button, Checkbox, Collapse, Group, Modal, NumberInput, Select, SimpleGrid, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { useState } from "react";
 import { useNavigate } from "react-router";
@@ -14,7 +14,7 @@ interface StartTrackingProps {
 }
 
 /** Fields most people set; the others are one click away. */
-const USUAL = ["frames", "iterations", "first_iterations", "calibrate"];
+const USUAL = ["first_frame", "last_frame", "iterations", "calibrate"];
 
 interface FieldProps {
   field: FormField;
@@ -24,22 +24,24 @@ interface FieldProps {
 
 function Field({ field, value, onChange }: FieldProps) {
   const label = formatName(field.name);
-  if (field.type === "boolean" || field.type === "bool") {
+  if (field.choices) {
+    return <Select label={label} description={field.help} data={field.choices} value={String(value)} allowDeselect={false} onChange={onChange} />;
+  }
+  if (field.type === "boolean") {
     return <Checkbox label={label} description={field.help} checked={Boolean(value)} onChange={(event) => onChange(event.currentTarget.checked)} />;
   }
-  if (["integer", "int", "number", "float"].includes(field.type)) {
+  if (field.type !== "text") {
     return (
       <NumberInput
         label={label}
         description={field.help}
         value={(value as number | null) ?? ""}
-        allowDecimal={field.type === "number" || field.type === "float"}
-        onChange={(next) => onChange(next === "" ? null : next)}
+        allowDecimal={field.type === "number"}
+        onChange={onChange}
       />
     );
   }
-  const text = Array.isArray(value) ? value.join(":") : ((value as string | null) ?? "");
-  return <TextInput label={label} description={field.help} value={text} onChange={(event) => onChange(event.currentTarget.value)} />;
+  return <TextInput label={label} description={field.help} value={(value as string | null) ?? ""} onChange={(event) => onChange(event.currentTarget.value)} />;
 }
 
 /** Start a tracking job: the fields, defaults and help come from the server. */
@@ -94,14 +96,18 @@ export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps
               <Skeleton height={56} />
             </>
           )}
-          {usual.map(show)}
+          <SimpleGrid cols={2} spacing="md">
+            {usual.map(show)}
+          </SimpleGrid>
           {rest.length > 0 && (
             <>
               <Button variant="subtle" size="xs" onClick={() => setAllShown(!isAllShown)} aria-expanded={isAllShown} style={{ alignSelf: "flex-start" }}>
                 {isAllShown ? "Fewer parameters" : "All parameters"}
               </Button>
               <Collapse expanded={isAllShown}>
-                <Stack gap="md">{rest.map(show)}</Stack>
+                <SimpleGrid cols={2} spacing="md">
+                  {rest.map(show)}
+                </SimpleGrid>
               </Collapse>
             </>
           )}

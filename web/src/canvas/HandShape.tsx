@@ -1,0 +1,96 @@
+import { Circle, Group, Line, Rect, Text } from "react-konva";
+import type { Side } from "../api/types";
+import { EDGES, HAND_COLORS, jointColor, jointLabel } from "../model/joints";
+import { isPlaced, type Pose } from "../model/pose";
+import { toScreen, type View } from "./view";
+
+interface HandShapeProps {
+  pose: Pose;
+  hand: Side;
+  view: View;
+  /** The joint to mark, or -1. */
+  active: number;
+  isFaint?: boolean;
+  areNamesShown?: boolean;
+}
+
+const RADIUS = 5;
+
+function Mark({ hand, x, y, radius, ...style }: { hand: Side; x: number; y: number; radius: number; fill?: string; stroke: string; strokeWidth: number; dash?: number[] }) {
+  return hand === "right" ? (
+    <Circle x={x} y={y} radius={radius} {...style} />
+  ) : (
+    <Rect x={x - radius * 0.9} y={y - radius * 0.9} width={radius * 1.8} height={radius * 1.8} {...style} />
+  );
+}
+
+/** A hand by hand: fingers in their hues; the right one round, the left one square; occluded joints hollow and dashed. */
+export function HandShape({ pose, hand, view, active, isFaint = false, areNamesShown = false }: HandShapeProps) {
+  const at = pose.map((point) => toScreen(view, point));
+  return (
+    <Group opacity={isFaint ? 0.45 : 1} listening={false}>
+      {EDGES.map(([from, to]) => {
+        const [a, b] = [at[from], at[to]];
+        if (!a || !b || !isPlaced(pose[from]) || !isPlaced(pose[to])) return null;
+        const isHidden = pose[from]?.v === 1 || pose[to]?.v === 1;
+        const points = [a.x, a.y, b.x, b.y];
+        return (
+          <Group key={`${from}-${to}`}>
+            <Line points={points} stroke="#000" strokeWidth={4} opacity={0.45} lineCap="round" />
+            <Line points={points} stroke={jointColor(to)} strokeWidth={2} lineCap="round" {...(isHidden ? { dash: [5, 5] } : {})} />
+          </Group>
+        );
+      })}
+      {pose.map((point, joint) => {
+        const place = at[joint];
+        if (!place || !isPlaced(point)) return null;
+        const isOccluded = point.v === 1;
+        return (
+          <Group key={joint}>
+            {joint === active && <Mark hand={hand} {...place} radius={RADIUS + 5} stroke={HAND_COLORS[hand]} strokeWidth={2.5} />}
+            <Mark
+              hand={hand}
+              {...place}
+              radius={RADIUS}
+              fill={isOccluded ? "rgba(0,0,0,0.35)" : jointColor(joint)}
+              stroke={isOccluded ? jointColor(joint) : "#111"}
+              strokeWidth={isOccluded ? 2 : 1.25}
+              {...(isOccluded ? { dash: [3, 2.5] } : {})}
+            />
+            {areNamesShown && (
+              <Text
+                x={place.x + 9}
+                y={place.y - 6}
+                text={jointLabel(joint)}
+                fontSize={12}
+                fontFamily="Inter Variable, sans-serif"
+                fill="#fff"
+                stroke="#000"
+                strokeWidth={3}
+                fillAfterStrokeEnabled
+              />
+            )}
+          </Group>
+        );
+      })}
+    </Group>
+  );
+}
+
+/** Another version of a hand, to compare with: violet and dashed, as everything that is only suggested. */
+export function GhostShape({ pose, view }: { pose: Pose; view: View }) {
+  const at = pose.map((point) => toScreen(view, point));
+  return (
+    <Group listening={false}>
+      {EDGES.map(([from, to]) => {
+        const [a, b] = [at[from], at[to]];
+        if (!a || !b || !isPlaced(pose[from]) || !isPlaced(pose[to])) return null;
+        return <Line key={`${from}-${to}`} points={[a.x, a.y, b.x, b.y]} stroke="#b08cff" strokeWidth={2} dash={[6, 4]} />;
+      })}
+      {pose.map((point, joint) => {
+        const place = at[joint];
+        return place && isPlaced(point) ? <Circle key={joint} {...place} radius={4} stroke="#b08cff" strokeWidth={2} dash={[3, 2]} /> : null;
+      })}
+    </Group>
+  );
+}

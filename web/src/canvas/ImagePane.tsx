@@ -1,0 +1,99 @@
+import { useElementSize } from "@mantine/hooks";
+import type Konva from "konva";
+import { useEffect, useRef, type ReactNode } from "react";
+import { Image, Layer, Stage } from "react-konva";
+import type { Camera } from "../api/types";
+import type { PointerStore } from "../state/pointer";
+import { CursorLayer } from "./CursorLayer";
+import { usePaneGestures, type PaneGestures } from "./usePaneGestures";
+import type { Picture } from "./usePictures";
+import { fitView, type View } from "./view";
+import classes from "./ImagePane.module.css";
+
+export interface PaneLayer {
+  readonly picture: Picture | null;
+  readonly opacity: number;
+}
+
+interface ImagePaneProps extends PaneGestures {
+  label: string;
+  camera: Camera;
+  /** Drawn in order, the first one below. */
+  layers: readonly PaneLayer[];
+  /** Null fits the image. */
+  view: View | null;
+  onView: (view: View | null) => void;
+  brightness: number;
+  contrast: number;
+  pointer: PointerStore;
+  /** What stands beside the cursor. */
+  cursorLabel: string;
+  isMagnified: boolean;
+  isBusy: boolean;
+  children: (view: View) => ReactNode;
+  /** Things that lie on top, in the pane's corners. */
+  overlay?: ReactNode;
+}
+
+/** Above this zoom pixels are shown as squares. */
+const SQUARE_PIXELS = 3;
+
+/** One picture with what is drawn on it; zoom, pan and the pointer are handled here, in image pixels for everybody else. */
+export function ImagePane(props: ImagePaneProps) {
+  const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, isBusy, children, overlay } = props;
+  const { ref: sizeRef, width, height } = useElementSize();
+  const surface = useRef<HTMLDivElement | null>(null);
+  const imageLayer = useRef<Konva.Layer>(null);
+  const shownView = view ?? fitView(camera, { width, height });
+  const handlers = usePaneGestures(surface, shownView, { width, height }, camera, onView, pointer, props);
+
+  useEffect(() => {
+    // The browser's own filter on the picture's layer costs nothing; Konva's filters would redo every pixel.
+    const canvas = imageLayer.current?.getNativeCanvasElement();
+    if (canvas) canvas.style.filter = brightness === 1 && contrast === 1 ? "" : `brightness(${brightness}) contrast(${contrast})`;
+  });
+
+  const pictures = layers.flatMap(({ picture, opacity }, index) =>
+    picture && picture.width > 0 ? (
+      <Image
+        key={index}
+        image={picture}
+        x={shownView.x}
+        y={shownView.y}
+        width={camera.width * shownView.scale}
+        height={camera.height * shownView.scale}
+        opacity={opacity}
+      />
+    ) : (
+      []
+    ),
+  );
+  return (
+    <div
+      ref={(element) => {
+        surface.current = element;
+        sizeRef(element);
+      }}
+      className={classes.pane}
+      role="application"
+      aria-label={label}
+      tabIndex={0}
+      data-picture
+      data-view={JSON.stringify(shownView)}
+      aria-busy={isBusy}
+      {...handlers}
+    >
+      {width > 0 && height > 0 && (
+        <Stage width={width} height={height} listening={false}>
+          <Layer ref={imageLayer} imageSmoothingEnabled={shownView.scale < SQUARE_PIXELS} listening={false}>
+            {pictures}
+          </Layer>
+          <Layer listening={false}>{children(shownView)}</Layer>
+          <CursorLayer pointer={pointer} view={shownView} camera={camera} label={cursorLabel} layers={layers} isMagnified={isMagnified} size={{ width, height }} />
+        </Stage>
+      )}
+      {isBusy && pictures.length === 0 && <div className={classes.waiting} />}
+      {overlay}
+    </div>
+  );
+}

@@ -1,0 +1,163 @@
+import { useComputedColorScheme } from "@mantine/core";
+import { useElementSize } from "@mantine/hooks";
+import { useEffect, useRef } from "react";
+import uPlot from "uplot";
+import "uplot/dist/uPlot.min.css";
+import classes from "./Plot.module.css";
+
+export interface Curve {
+  readonly label: string;
+  readonly unit: string;
+  readonly values: readonly (number | null)[];
+  readonly color: string;
+  /** Dashes tell curves apart without colour. */
+  readonly dash?: number[];
+  readonly axis: "left" | "right";
+  readonly digits?: number;
+  /** Single values, shown as dots. */
+  readonly isSparse?: boolean;
+}
+
+interface PlotProps {
+  label: string;
+  frames: readonly number[];
+  curves: readonly Curve[];
+  /** Frames to shade. */
+  lost: readonly number[];
+  frame: number;
+  height: number;
+  onSeek: (frame: number) => void;
+}
+
+/** Curves over the frames; a click goes to the frame, the line shows where one is. */
+export function Plot({ label, frames, curves, lost, frame, height, onSeek }: PlotProps) {
+  const { ref, width } = useElementSize();
+  const holder = useRef<HTMLDivElement>(null);
+  const plot = useRef<uPlot | null>(null);
+  const here = useRef(frame);
+  const seek = useRef(onSeek);
+  const scheme = useComputedColorScheme("dark");
+  here.current = frame;
+  seek.current = onSeek;
+
+  useEffect(() => {
+    const element = holder.current;
+    if (!element || width === 0) return;
+    const style = getComputedStyle(element);
+    const [ink, line, bad] = ["--text-quiet", "--line", "--bad"].map((name) => style.getPropertyValue(name)) as [string, string, string];
+    const strong = style.getPropertyValue("--mantine-color-text");
+    const font = "11px Inter Variable, sans-serif";
+    const axisOf = (side: "left" | "right"): uPlot.Axis => ({
+      scale: side,
+      side: side === "left" ? 3 : 1,
+      stroke: ink,
+      font,
+      size: 44,
+      ticks: { show: false },
+      grid: { show: side === "left", stroke: line, width: 1 },
+    });
+    const hasRight = curves.some((curve) => curve.axis === "right");
+    const made = new uPlot(
+      {
+        width,
+        height,
+        padding: [8, hasRight ? 0 : 12, 0, 0],
+        legend: { show: false },
+        cursor: { drag: { x: false, y: false }, points: { size: 6 }, y: false },
+        scales: {
+          x: { time: false },
+          left: { range: (_, low, high) => [Math.min(0, low ?? 0), high === null || high <= 0 ? 1 : high * 1.08] },
+          right: { range: (_, low, high) => [Math.min(0, low ?? 0), high === null || high <= 0 ? 1 : high * 1.08] },
+        },
+        axes: [
+          { stroke: ink, font, size: 26, ticks: { show: false }, grid: { show: false } },
+          axisOf("left"),
+          ...(hasRight ? [axisOf("right")] : []),
+        ],
+        series: [
+          {},
+          ...curves.map((curve) => ({
+            label: curve.label,
+            scale: curve.axis,
+            stroke: curve.color,
+            width: 1.5,
+            ...(curve.dash ? { dash: curve.dash } : {}),
+            points: { show: curve.isSparse ?? false, size: 6, fill: curve.color },
+            ...(curve.isSparse ? { paths: () => null } : {}),
+          })),
+        ],
+        hooks: {
+          drawClear: [
+            (drawn) => {
+              const { ctx, bbox } = drawn;
+              ctx.save();
+              ctx.fillStyle = bad;
+              ctx.globalAlpha = 0.25;
+              for (const at of lost) {
+                const [from, to] = [drawn.valToPos(at - 0.5, "x", true), drawn.valToPos(at + 0.5, "x", true)];
+                ctx.fillRect(from, bbox.top, Math.max(1, to - from), bbox.height);
+              }
+              ctx.restore();
+            },
+          ],
+          draw: [
+            (drawn) => {
+              const { ctx, bbox } = drawn;
+              const x = Math.round(drawn.valToPos(here.current, "x", true));
+              ctx.save();
+              ctx.strokeStyle = strong;
+              ctx.lineWidth = Math.max(1, window.devicePixelRatio);
+              ctx.beginPath();
+              ctx.moveTo(x, bbox.top);
+              ctx.lineTo(x, bbox.top + bbox.height);
+              ctx.stroke();
+              ctx.restore();
+            },
+          ],
+          ready: [
+            (drawn) =>
+              drawn.over.addEventListener("click", () => {
+                const at = drawn.cursor.idx;
+                const chosen = at === null || at === undefined ? undefined : drawn.data[0][at];
+                if (chosen !== undefined) seek.current(chosen);
+              }),
+          ],
+        },
+      },
+      [frames as number[], ...curves.map((curve) => curve.values as (number | null)[])],
+      element,
+    );
+    plot.current = made;
+    return () => {
+      plot.current = null;
+      made.destroy();
+    };
+  }, [width, height, frames, curves, lost, scheme]);
+
+  useEffect(() => plot.current?.redraw(false), [frame]);
+
+  const index = frames.indexOf(frame);
+  return (
+    <figure ref={ref} className={classes.figure} aria-label={label}>
+      <figcaption className={classes.legend}>
+        {curves.map((curve) => {
+          const value = index >= 0 ? curve.values[index] : null;
+          return (
+            <span key={curve.label} className={classes.entry}>
+              <svg width="18" height="8" aria-hidden>
+                {curve.isSparse ? (
+                  <circle cx="9" cy="4" r="3" fill={curve.color} />
+                ) : (
+                  <line x1="0" y1="4" x2="18" y2="4" stroke={curve.color} strokeWidth="2" strokeDasharray={curve.dash?.join(" ")} />
+                )}
+              </svg>
+              {curve.label}
+              <strong>{value === null || value === undefined ? "–" : `${value.toFixed(curve.digits ?? 1)}${curve.unit ? ` ${curve.unit}` : ""}`}</strong>
+            </span>
+          );
+        })}
+      </figcaption>
+      <div ref={holder} style={{ height }} />
+    </figure>
+  );
+}

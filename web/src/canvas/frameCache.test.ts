@@ -1,0 +1,40 @@
+import { expect, test } from "vitest";
+import { createFrameCache, framesToLoad } from "./frameCache";
+
+const settled = () => new Promise((resolve) => setTimeout(resolve, 5));
+
+test("prefetches in the direction of travel, and one frame behind", () => {
+  expect(framesToLoad(10, 1, 100, 3)).toEqual([10, 11, 12, 13, 9]);
+  expect(framesToLoad(10, -1, 100, 3)).toEqual([10, 9, 8, 7, 11]);
+  expect(framesToLoad(99, 1, 100, 3)).toEqual([99, 98]);
+});
+
+test("loads each address once and forgets the one used longest ago", async () => {
+  const loaded: string[] = [];
+  const gone: string[] = [];
+  const cache = createFrameCache((address) => (loaded.push(address), Promise.resolve(address)), {
+    capacity: 3,
+    weigh: () => 1,
+    dispose: (picture) => gone.push(picture),
+  });
+  await cache.focus(["a", "b"]);
+  await settled();
+  await cache.focus(["a"]);
+  await cache.focus(["c"]);
+  await cache.focus(["d"]);
+  expect(loaded).toEqual(["a", "b", "c", "d"]);
+  expect(gone).toEqual(["b"]);
+  expect([cache.peek("a"), cache.peek("b")]).toEqual(["a", undefined]);
+});
+
+test("calls off what nobody wants any more", async () => {
+  const aborted: string[] = [];
+  const cache = createFrameCache<string>(
+    (address, signal) => new Promise((_, reject) => signal.addEventListener("abort", () => (aborted.push(address), reject(new Error("off"))))),
+    { capacity: 10, weigh: () => 1 },
+  );
+  cache.focus(["a", "b", "c", "d", "e"]).catch(() => undefined);
+  cache.focus(["e", "b"]).catch(() => undefined);
+  await settled();
+  expect(aborted.sort()).toEqual(["a", "c", "d"]);
+});

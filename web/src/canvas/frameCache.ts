@@ -1,0 +1,97 @@
+/** Decoded pictures by address: the one wanted now, those in the direction of travel, and the last ones used. */
+
+export interface FrameCache<T> {
+  /** The picture if it is here. */
+  peek(address: string): T | undefined;
+  /** Load these, the first ones first; what is under way for other addresses is called off. Resolves with the first. */
+  focus(addresses: readonly string[]): Promise<T>;
+  clear(): void;
+}
+
+type Load<T> = (address: string, signal: AbortSignal) => Promise<T>;
+
+const PARALLEL = 4;
+
+interface Budget<T> {
+  /** How much may be held, in the unit of `weigh`. */
+  capacity: number;
+  weigh: (picture: T) => number;
+  dispose?: (picture: T) => void;
+}
+
+export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = () => undefined }: Budget<T>): FrameCache<T> {
+  /** In order of use, the oldest first. */
+  const held = new Map<string, T>();
+  let weight = 0;
+  const flying = new Map<string, { controller: AbortController; promise: Promise<T> }>();
+  let wanted: readonly string[] = [];
+
+  function keep(address: string, picture: T): void {
+    if (held.delete(address)) weight -= weigh(picture);
+    held.set(address, picture);
+    weight += weigh(picture);
+    for (const [oldest, old] of held) {
+      if (weight <= capacity) break;
+      if (oldest === wanted[0] || oldest === address) continue;
+      held.delete(oldest);
+      weight -= weigh(old);
+      dispose(old);
+    }
+  }
+
+  function fetchOne(address: string): Promise<T> {
+    const known = flying.get(address);
+    if (known) return known.promise;
+    const controller = new AbortController();
+    const promise = load(address, controller.signal)
+      .then((picture) => {
+        keep(address, picture);
+        return picture;
+      })
+      .finally(() => {
+        flying.delete(address);
+        startNext();
+      });
+    flying.set(address, { controller, promise });
+    promise.catch(() => undefined);
+    return promise;
+  }
+
+  function startNext(): void {
+    for (const address of wanted) {
+      if (flying.size >= PARALLEL) return;
+      if (!held.has(address) && !flying.has(address)) void fetchOne(address);
+    }
+  }
+
+  return {
+    peek(address) {
+      return held.get(address);
+    },
+    focus(addresses) {
+      const before = wanted;
+      wanted = addresses;
+      for (const [address, { controller }] of flying) if (!wanted.includes(address)) controller.abort();
+      const [first] = wanted;
+      if (first === undefined) return Promise.reject(new Error("No address to load."));
+      const here = held.get(first);
+      if (here !== undefined) keep(first, here);
+      const promise = here !== undefined ? Promise.resolve(here) : fetchOne(first);
+      if (before !== wanted) startNext();
+      return promise;
+    },
+    clear() {
+      wanted = [];
+      flying.forEach(({ controller }) => controller.abort());
+      held.forEach(dispose);
+      held.clear();
+      weight = 0;
+    },
+  };
+}
+
+/** The frame of now, then those ahead, then one behind, all within the recording. */
+export function framesToLoad(frame: number, direction: 1 | -1, frameCount: number, ahead = 8): number[] {
+  const order = [frame, ...Array.from({ length: ahead }, (_, k) => frame + direction * (k + 1)), frame - direction];
+  return order.filter((candidate) => candidate >= 0 && candidate < frameCount);
+}

@@ -1,0 +1,28 @@
+import { expect, test } from "vitest";
+import type { TrackFrames } from "../api/types";
+import { badFrames, nextIn } from "./badFrames";
+import { trackRows } from "./trackRows";
+
+const track: TrackFrames = {
+  frame: [10, 11, 12, 13],
+  status: ["ok", "lost", "recovered", "ok"],
+  seconds: [0.1, 0.1, 0.1, 0.1],
+  depth_residual_mm: [2, null, 4, 1],
+  silhouette_iou: [0.9, null, 0.8, 0.9],
+  iterations: [10, 0, 10, 10],
+};
+
+test("lost frames come first; without any, those with the largest residual", () => {
+  expect(badFrames(track)).toEqual([11]);
+  expect(badFrames({ ...track, status: ["ok", "ok", "ok", "ok"] })).toEqual([12]);
+});
+
+test("the way through bad frames goes around", () => {
+  expect([nextIn([3, 8], 3, 1), nextIn([3, 8], 8, 1), nextIn([3, 8], 3, -1), nextIn([], 3, 1)]).toEqual([8, 3, 8, undefined]);
+});
+
+test("a track that covers a part of the recording stands at its place in the timeline", () => {
+  const [error, lost] = trackRows(track, 20);
+  expect([...(error?.values as Float32Array)].slice(9, 15)).toEqual([0, 0.5, 0, 1, 0.25, 0]);
+  expect([...(lost?.values as Float32Array)].indexOf(1)).toBe(11);
+});

@@ -1,0 +1,85 @@
+import { ScrollArea, Text, Tooltip } from "@mantine/core";
+import { useEffect, useRef } from "react";
+import type { Side } from "../../api/types";
+import { HANDS, JOINTS, jointColor, jointLabel } from "../../model/joints";
+import { decidedCount, keyText, statusOf, type JointStatus, type Pose } from "../../model/pose";
+import type { AnnotatorState } from "../../state/annotator";
+import { HandMark } from "../parts/HandBadge";
+import classes from "./JointsPanel.module.css";
+
+interface JointsPanelProps {
+  state: AnnotatorState;
+  pose: Pose;
+  onHand: (hand: Side) => void;
+  onJoint: (joint: number) => void;
+}
+
+const STATUS: Record<JointStatus, { text: string; help: string }> = {
+  unset: { text: "", help: "not marked yet" },
+  visible: { text: "visible", help: "visible" },
+  occluded: { text: "occluded", help: "hidden, place estimated" },
+  outside: { text: "outside", help: "not in the image" },
+};
+
+/** Status as a shape: filled, hollow, crossed, or a dot where nothing is said yet. */
+function StatusMark({ status, color }: { status: JointStatus; color: string }) {
+  return (
+    <svg width={14} height={14} viewBox="0 0 14 14" aria-hidden style={{ flex: "none" }}>
+      {status === "visible" && <circle cx="7" cy="7" r="5" fill={color} />}
+      {status === "occluded" && <circle cx="7" cy="7" r="4.5" fill="none" stroke={color} strokeWidth="2" strokeDasharray="3 2" />}
+      {status === "outside" && <path d="M3 3l8 8M11 3l-8 8" stroke={color} strokeWidth="2" fill="none" />}
+      {status === "unset" && <circle cx="7" cy="7" r="2" fill="var(--text-quiet)" />}
+    </svg>
+  );
+}
+
+/** The joints of the active hand, what is known about each, and which comes next. */
+export function JointsPanel({ state, pose, onHand, onJoint }: JointsPanelProps) {
+  const active = useRef<HTMLButtonElement>(null);
+  useEffect(() => active.current?.scrollIntoView({ block: "nearest" }), [state.joint]);
+  return (
+    <aside className={classes.panel} aria-label="Joints">
+      <div className={classes.hands} role="tablist" aria-label="Hand">
+        {HANDS.map((hand) => {
+          const count = decidedCount(hand === state.hand ? pose : state.poses[keyText({ camera: state.camera, frame: state.frame, hand })]);
+          return (
+            <Tooltip key={hand} label={`${hand} hand (G switches)`}>
+              <button type="button" role="tab" aria-selected={hand === state.hand} className={classes.hand} data-hand={hand} onClick={() => onHand(hand)}>
+                <HandMark hand={hand} size={12} />
+                {hand}
+                <span className={classes.count}>{count}/21</span>
+              </button>
+            </Tooltip>
+          );
+        })}
+      </div>
+      <ScrollArea className={classes.list} type="auto" scrollbarSize={6}>
+        {JOINTS.map((name, joint) => {
+          const status = statusOf(pose[joint]);
+          const isActive = joint === state.joint;
+          const startsFinger = joint > 0 && (joint - 1) % 4 === 0;
+          return (
+            <button
+              key={name}
+              ref={isActive ? active : null}
+              type="button"
+              className={classes.joint}
+              data-active={isActive}
+              data-first={startsFinger}
+              data-status={status}
+              aria-current={isActive ? "step" : undefined}
+              aria-label={`${jointLabel(joint)}, ${STATUS[status].help}`}
+              onClick={() => onJoint(joint)}
+            >
+              <StatusMark status={status} color={jointColor(joint)} />
+              <span className="one-line">{jointLabel(joint)}</span>
+              <Text span size="xs" className={classes.status}>
+                {isActive && status === "unset" ? "next" : STATUS[status].text}
+              </Text>
+            </button>
+          );
+        })}
+      </ScrollArea>
+    </aside>
+  );
+}

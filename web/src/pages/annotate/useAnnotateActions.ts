@@ -1,0 +1,72 @@
+import { bringPose, annotatedFrames } from "../../actions/annotate/bring";
+import { clearHand, clearJoint } from "../../actions/annotate/clear";
+import { cancelDrag, nudgeJoint } from "../../actions/annotate/move";
+import { placeBeside } from "../../actions/annotate/place";
+import { goToFrame, selectCamera, selectFinger, stepJoint, switchHand } from "../../actions/annotate/select";
+import { toggleOccluded, toggleOutside } from "../../actions/annotate/visibility";
+import type { Recording } from "../../api/types";
+import type { Action, AnnotatorState } from "../../state/annotator";
+import type { Session } from "../../state/session";
+
+const NUDGES = {
+  "nudge.left": { x: -0.5, y: 0 },
+  "nudge.right": { x: 0.5, y: 0 },
+  "nudge.up": { x: 0, y: -0.5 },
+  "nudge.down": { x: 0, y: 0.5 },
+  "push.left": { x: -5, y: 0 },
+  "push.right": { x: 5, y: 0 },
+  "push.up": { x: 0, y: -5 },
+  "push.down": { x: 0, y: 5 },
+} as const;
+
+const FINGER_KEYS = ["wrist", "thumb", "index", "middle", "ring", "little"] as const;
+
+/** Holding a key goes faster after a while: 1, then 2, then 4 frames a step. */
+export const stepFor = (repeats: number): number => (repeats < 12 ? 1 : repeats < 40 ? 2 : 4);
+
+/** Everything of the key map that only changes the annotator's state, by its id. */
+export function annotateActions(session: Session, recording: Recording): Record<string, (repeats?: number) => void> {
+  const { store } = session;
+  const act = <I>(action: Action<I>, input: I): void => store.set(action(store.get(), input), "person");
+  const simple = (action: Action) => () => act(action, undefined);
+  const toFrame = (pick: (state: AnnotatorState) => number | undefined) => () => {
+    const frame = pick(store.get());
+    if (frame !== undefined) act(goToFrame, frame);
+  };
+  const cameras = recording.cameras.map((camera) => camera.id);
+  const toCamera = (step: number) => () => {
+    const at = cameras.indexOf(store.get().camera);
+    const next = cameras[(at + step + cameras.length) % cameras.length];
+    if (next !== undefined) act(selectCamera, next);
+  };
+  const step = (direction: 1 | -1) => (repeats = 0) => act(goToFrame, store.get().frame + direction * stepFor(repeats));
+
+  return {
+    "frame.next": step(1),
+    "frame.previous": step(-1),
+    "frame.forward": toFrame((state) => state.frame + 10),
+    "frame.back": toFrame((state) => state.frame - 10),
+    "frame.nextAnnotated": toFrame((state) => annotatedFrames(state).find((frame) => frame > state.frame)),
+    "frame.previousAnnotated": toFrame((state) => annotatedFrames(state).findLast((frame) => frame < state.frame)),
+    "camera.next": toCamera(1),
+    "camera.previous": toCamera(-1),
+    "joint.next": () => act(stepJoint, 1),
+    "joint.previous": () => act(stepJoint, -1),
+    "joint.place": () => {
+      const camera = recording.cameras.find((one) => one.id === store.get().camera);
+      if (camera) act(placeBeside, { x: camera.width / 2, y: camera.height / 2 });
+    },
+    ...Object.fromEntries(FINGER_KEYS.map((finger, index) => [`finger.${finger}`, () => act(selectFinger, index - 1)])),
+    ...Object.fromEntries(Object.entries(NUDGES).map(([id, by]) => [id, () => act(nudgeJoint, by)])),
+    "joint.occluded": simple(toggleOccluded),
+    "joint.outside": simple(toggleOutside),
+    "joint.clear": simple(clearJoint),
+    "hand.clear": simple(clearHand),
+    "hand.switch": simple(switchHand),
+    "hand.bring": simple(bringPose),
+    "drag.cancel": simple(cancelDrag),
+    undo: () => session.undo.undo(),
+    redo: () => session.undo.redo(),
+    "save.now": () => session.queue.flush(),
+  };
+}

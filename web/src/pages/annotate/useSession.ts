@@ -1,0 +1,61 @@
+import { useQueryClient } from "@tanstack/react-query";
+import { useCallback, useEffect, useState, useSyncExternalStore } from "react";
+import { annotationKeys, fetchAnnotations } from "../../api/annotations";
+import { recordingKeys } from "../../api/recordings";
+import type { Recording } from "../../api/types";
+import type { AnnotatorState } from "../../state/annotator";
+import { queueOf } from "../../state/saving";
+import type { SaveStatus } from "../../state/saveQueue";
+import { openSession, revisionsOf, type Session, type Start } from "../../state/session";
+
+interface Opened {
+  session: Session | null;
+  failure: Error | null;
+  retry: () => void;
+}
+
+/** Open a recording's annotations, as the server has them now with what still waits here on top. */
+export function useSession(recording: Recording | undefined, start: () => Start): Opened {
+  const [session, setSession] = useState<Session | null>(null);
+  const [failure, setFailure] = useState<Error | null>(null);
+  const [attempt, setAttempt] = useState(0);
+  const client = useQueryClient();
+  const id = recording?.id;
+
+  useEffect(() => {
+    if (!recording) return;
+    let isGone = false;
+    let opened: Session | null = null;
+    const queue = queueOf(recording.id);
+    const open = async (): Promise<void> => {
+      for (let tries = 0; tries < 3; tries += 1) {
+        const annotations = await fetchAnnotations(recording.id);
+        if (isGone) return;
+        // A save of an earlier visit may arrive while we load: then load again.
+        if (!queue.learn(revisionsOf(annotations), tries === 2)) continue;
+        opened = openSession(recording, annotations, queue, start());
+        setSession(opened);
+        return;
+      }
+    };
+    setFailure(null);
+    open().catch((reason: Error) => !isGone && setFailure(reason));
+    return () => {
+      isGone = true;
+      opened?.close();
+      setSession(null);
+      void client.invalidateQueries({ queryKey: annotationKeys.of(recording.id) });
+      void client.invalidateQueries({ queryKey: recordingKeys.all });
+    };
+    // Only another recording, or another try, opens another session.
+    // eslint-disable-next-line react-hooks/exhaustive-deps
+  }, [id, attempt]);
+
+  return { session, failure, retry: useCallback(() => setAttempt((count) => count + 1), []) };
+}
+
+export const useAnnotatorState = (session: Session): AnnotatorState =>
+  useSyncExternalStore(useCallback((tell) => session.store.watch(tell), [session]), session.store.get);
+
+export const useSaveStatus = (session: Session): SaveStatus =>
+  useSyncExternalStore(useCallback((tell) => session.queue.watch(tell), [session]), session.queue.status);

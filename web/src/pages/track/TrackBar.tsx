@@ -1,0 +1,146 @@
+import { ActionIcon, Button, Group, Menu, Select, Text, Tooltip } from "@mantine/core";
+import { notifications } from "@mantine/notifications";
+import {
+  IconAlertTriangle,
+  IconChevronLeft,
+  IconChevronRight,
+  IconCircleCheck,
+  IconDots,
+  IconDownload,
+  IconPencil,
+  IconPlayerPause,
+  IconPlayerPlay,
+  IconPlayerTrackNext,
+  IconRefresh,
+  IconTrash,
+} from "@tabler/icons-react";
+import { Link, useNavigate } from "react-router";
+import { trackFileUrl, useDeleteTrack, useRestoreTrack } from "../../api/tracks";
+import type { Recording, Track } from "../../api/types";
+import classes from "./TrackReview.module.css";
+
+interface TrackBarProps {
+  track: Track;
+  recording: Recording;
+  frame: number;
+  status: string | null;
+  isPlaying: boolean;
+  hasLost: boolean;
+  camera: string;
+  onCamera: (camera: string) => void;
+  onPlay: () => void;
+  onStep: (by: number) => void;
+  onBad: (direction: 1 | -1) => void;
+  onAnnotate: () => void;
+}
+
+const STATUS_ICONS = { ok: IconCircleCheck, lost: IconAlertTriangle, recovered: IconRefresh } as const;
+
+/** Which track, which frame, and how it went there. */
+export function TrackBar(props: TrackBarProps) {
+  const { track, recording, frame, status, isPlaying, hasLost, camera, onCamera, onPlay, onStep, onBad, onAnnotate } = props;
+  const remove = useDeleteTrack();
+  const restore = useRestoreTrack();
+  const navigate = useNavigate();
+  const StatusIcon = STATUS_ICONS[status as keyof typeof STATUS_ICONS];
+  const drop = (): void =>
+    remove.mutate(track.id, {
+      onSuccess: () => {
+        void navigate("/tracks");
+        notifications.show({
+          id: `deleted-${track.id}`,
+          autoClose: 15000,
+          message: (
+            <Group justify="space-between" wrap="nowrap">
+              <span>{track.name} was deleted.</span>
+              <Button
+                size="compact-sm"
+                variant="default"
+                onClick={() => {
+                  restore.mutate(track.id);
+                  notifications.hide(`deleted-${track.id}`);
+                }}
+              >
+                Undo
+              </Button>
+            </Group>
+          ),
+        });
+      },
+      onError: (failure) => notifications.show({ color: "red", title: "Not deleted", message: failure.message }),
+    });
+
+  return (
+    <div className={classes.bar}>
+      <Text className="one-line" fw={600} title={track.name}>
+        {track.name}
+      </Text>
+      <Text size="sm" className="quiet one-line">
+        of{" "}
+        <Link to={`/recordings/${recording.id}`} className={classes.title} title={recording.name}>
+          {recording.name}
+        </Link>
+      </Text>
+      {recording.cameras.length > 1 && (
+        <Select size="xs" w={136} aria-label="Camera" allowDeselect={false} data={recording.cameras.map((one) => one.id)} value={camera} onChange={(id) => id && onCamera(id)} />
+      )}
+      <Group gap={4} ml="auto" wrap="nowrap">
+        <Group gap={4} wrap="nowrap" className={classes.status} data-status={status ?? ""} role="status">
+          {StatusIcon && <StatusIcon size={15} aria-hidden />}
+          {status ?? "not tracked"}
+        </Group>
+        <Tooltip label={isPlaying ? "Pause (Space)" : "Play (Space)"}>
+          <ActionIcon aria-label={isPlaying ? "Pause" : "Play"} onClick={onPlay}>
+            {isPlaying ? <IconPlayerPause size={18} /> : <IconPlayerPlay size={18} />}
+          </ActionIcon>
+        </Tooltip>
+        <Tooltip label="Previous frame (D)">
+          <ActionIcon aria-label="Previous frame" onClick={() => onStep(-1)}>
+            <IconChevronLeft size={18} />
+          </ActionIcon>
+        </Tooltip>
+        <Text size="sm" ta="center" miw={96} data-testid="frame">
+          frame {frame}
+        </Text>
+        <Tooltip label="Next frame (F)">
+          <ActionIcon aria-label="Next frame" onClick={() => onStep(1)}>
+            <IconChevronRight size={18} />
+          </ActionIcon>
+        </Tooltip>
+        <Tooltip label={hasLost ? "Next lost frame (N)" : "Next of the worst frames (N)"}>
+          <ActionIcon aria-label={hasLost ? "Next lost frame" : "Next of the worst frames"} onClick={() => onBad(1)}>
+            <IconPlayerTrackNext size={18} />
+          </ActionIcon>
+        </Tooltip>
+        <Tooltip label="Annotate this frame (A)">
+          <Button size="compact-sm" variant="default" ml="sm" leftSection={<IconPencil size={14} aria-hidden />} onClick={onAnnotate}>
+            Annotate
+          </Button>
+        </Tooltip>
+        <Menu position="bottom-end">
+          <Menu.Target>
+            <ActionIcon aria-label="More">
+              <IconDots size={18} />
+            </ActionIcon>
+          </Menu.Target>
+          <Menu.Dropdown>
+            <Menu.Item component="a" href={trackFileUrl(track.id, "track.npz")} leftSection={<IconDownload size={16} aria-hidden />}>
+              Download track.npz
+            </Menu.Item>
+            <Menu.Item component="a" href={trackFileUrl(track.id, "summary.json")} leftSection={<IconDownload size={16} aria-hidden />}>
+              Download summary.json
+            </Menu.Item>
+            {track.job_id && (
+              <Menu.Item component={Link} to={`/jobs/${track.job_id}`}>
+                To the job
+              </Menu.Item>
+            )}
+            <Menu.Item color="red" onClick={drop} leftSection={<IconTrash size={16} aria-hidden />}>
+              Delete (can be undone)
+            </Menu.Item>
+          </Menu.Dropdown>
+        </Menu>
+      </Group>
+    </div>
+  );
+}

@@ -1,0 +1,76 @@
+import { Tabs, Text } from "@mantine/core";
+import { useMemo } from "react";
+import { useEvaluation } from "../../api/tracks";
+import type { Track, TrackFrames } from "../../api/types";
+import { Plot, type Curve } from "../../canvas/Plot";
+import { formatNumber } from "../../model/format";
+import classes from "./TrackReview.module.css";
+
+interface TrackPlotsProps {
+  track: Track;
+  frames: TrackFrames;
+  lost: readonly number[];
+  frame: number;
+  camera: string;
+  tab: string;
+  onTab: (tab: string) => void;
+  onSeek: (frame: number) => void;
+}
+
+const PLOT_HEIGHT = 168;
+
+/** Error and timing by frame; a click goes there. */
+export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onSeek }: TrackPlotsProps) {
+  const evaluation = useEvaluation(track.id).data;
+
+  const errorCurves = useMemo<Curve[]>(() => {
+    const curves: Curve[] = [
+      { label: "Depth residual", unit: "mm", values: frames.depth_residual_mm, color: "#e8795a", axis: "left" },
+      { label: "Silhouette IoU", unit: "", values: frames.silhouette_iou, color: "#5f9bd6", dash: [5, 3], axis: "right", digits: 2 },
+    ];
+    const errors = new Map<number, number>();
+    for (const item of evaluation?.items ?? []) {
+      if (item.camera === camera && item.mean_px !== null) errors.set(item.frame, Math.max(item.mean_px, errors.get(item.frame) ?? 0));
+    }
+    if (errors.size > 0) {
+      curves.push({ label: "Error against annotations", unit: "px", values: frames.frame.map((at) => errors.get(at) ?? null), color: "#b08cff", axis: "left", isSparse: true });
+    }
+    return curves;
+  }, [frames, evaluation, camera]);
+
+  const timingCurves = useMemo<Curve[]>(
+    () => [
+      { label: "Time", unit: "ms", values: frames.seconds.map((value) => (value === null ? null : 1000 * value)), color: "#36b8a8", axis: "left" },
+      { label: "Iterations", unit: "", values: frames.iterations, color: "#9aa7b5", dash: [5, 3], axis: "right", digits: 0 },
+    ],
+    [frames],
+  );
+
+  const stages = Object.entries(track.summary.stages_ms ?? {});
+  return (
+    <Tabs value={tab} onChange={(next) => next && onTab(next)} className={classes.plots} keepMounted={false}>
+      <Tabs.List>
+        <Tabs.Tab value="error">Error</Tabs.Tab>
+        <Tabs.Tab value="timing">Timing</Tabs.Tab>
+        <Text size="xs" className="quiet one-line" ml="auto" my="auto" px={12}>
+          {tab === "timing"
+            ? `median ${formatNumber(track.summary.median_ms)} ms, 95 % below ${formatNumber(track.summary.p95_ms)} ms`
+            : evaluation && evaluation.evaluated > 0
+              ? `${formatNumber(evaluation.joint_error_px.mean)} px mean error in ${evaluation.evaluated} annotated`
+              : `median residual ${formatNumber(track.summary.depth_residual_mm)} mm; annotate frames for an error in px`}
+        </Text>
+      </Tabs.List>
+      <Tabs.Panel value="error" pt="sm">
+        <Plot label="Error by frame" frames={frames.frame} curves={errorCurves} lost={lost} frame={frame} height={PLOT_HEIGHT} onSeek={onSeek} />
+      </Tabs.Panel>
+      <Tabs.Panel value="timing" pt="sm">
+        <Plot label="Time by frame" frames={frames.frame} curves={timingCurves} lost={lost} frame={frame} height={PLOT_HEIGHT - (stages.length > 0 ? 20 : 0)} onSeek={onSeek} />
+        {stages.length > 0 && (
+          <Text size="xs" className="quiet one-line" px={12} h={20}>
+            {stages.map(([stage, ms]) => `${stage.replaceAll("_", " ")} ${formatNumber(ms)} ms`).join(" · ")}
+          </Text>
+        )}
+      </Tabs.Panel>
+    </Tabs>
+  );
+}

@@ -1,0 +1,123 @@
+import { useComputedColorScheme } from "@mantine/core";
+import { useCallback, useEffect, useMemo, useState } from "react";
+import { useNavigate, useSearchParams } from "react-router";
+import { useKeymap } from "../../actions/useKeymap";
+import { useViewer } from "../../api/tracks";
+import type { Recording, Track, TrackFrames } from "../../api/types";
+import { FrameStrip } from "../../canvas/FrameStrip";
+import { badFrames, nextIn } from "../../model/badFrames";
+import { formatNumber } from "../../model/format";
+import { trackRows } from "../../model/trackRows";
+import { usePlayback } from "../annotate/usePlayback";
+import { TrackBar } from "./TrackBar";
+import { TrackImage } from "./TrackImage";
+import { TrackPlots } from "./TrackPlots";
+import classes from "./TrackReview.module.css";
+import { ViewerFrame } from "./ViewerFrame";
+
+interface TrackReviewProps {
+  track: Track;
+  frames: TrackFrames;
+  recording: Recording;
+}
+
+/** One frame drives everything: the 3D viewer, the image with the overlay, the curves and the timeline. */
+export function TrackReview({ track, frames, recording }: TrackReviewProps) {
+  const [address, setAddress] = useSearchParams();
+  const navigate = useNavigate();
+  const first = frames.frame[0] ?? 0;
+  const last = frames.frame.at(-1) ?? first;
+  const clamp = useCallback((frame: number) => Math.min(last, Math.max(first, frame)), [first, last]);
+  const [frame, setFrame] = useState(() => clamp(Number(address.get("frame") ?? first) || first));
+  const [cameraId, setCameraId] = useState(() => address.get("camera") ?? recording.cameras[0]?.id ?? "");
+  const [tab, setTab] = useState(() => (address.get("tab") === "timing" ? "timing" : "error"));
+  const camera = recording.cameras.find((one) => one.id === cameraId) ?? recording.cameras[0];
+  const [layers, setLayers] = useState({ cloud: true, mesh: true, skeleton: false, correspondences: false });
+  const [isMeshShown, setMeshShown] = useState(true);
+  const [isSkeletonShown, setSkeletonShown] = useState(true);
+  const dark = useComputedColorScheme("dark") === "dark";
+  const show = useMemo(() => ({ ...layers, dark }), [layers, dark]);
+  const viewer = useViewer(track.id, frame, show);
+  const seek = useCallback((to: number) => setFrame(clamp(to)), [clamp]);
+
+  const [isPlaying, setPlaying] = usePlayback(recording.fps, () => {
+    setFrame((now) => clamp(now + 1));
+    return frame + 1 < last;
+  });
+
+  useEffect(() => {
+    const timer = setTimeout(() => setAddress({ frame: String(frame), camera: camera?.id ?? "", tab }, { replace: true }), 150);
+    return () => clearTimeout(timer);
+  }, [frame, camera?.id, tab, setAddress]);
+
+  const bad = useMemo(() => badFrames(frames), [frames]);
+  const lost = useMemo(() => frames.frame.filter((_, index) => frames.status[index] === "lost"), [frames]);
+  const rows = useMemo(() => trackRows(frames, recording.frame_count), [frames, recording.frame_count]);
+  const toBad = (direction: 1 | -1): void => seek(nextIn(bad, frame, direction) ?? frame);
+  const annotate = (): void => void navigate(`/recordings/${recording.id}/annotate?camera=${encodeURIComponent(camera?.id ?? "")}&frame=${frame}`);
+  const play = (): void => {
+    if (!isPlaying && frame >= last) setFrame(first);
+    setPlaying(!isPlaying);
+  };
+
+  useKeymap("track", {
+    "track.play": play,
+    "track.next": () => seek(frame + 1),
+    "track.previous": () => seek(frame - 1),
+    "track.forward": () => seek(frame + 10),
+    "track.back": () => seek(frame - 10),
+    "track.nextBad": () => toBad(1),
+    "track.previousBad": () => toBad(-1),
+    "track.first": () => seek(first),
+    "track.last": () => seek(last),
+    "track.annotate": annotate,
+    "track.mesh": () => setMeshShown((now) => !now),
+    "track.skeleton": () => setSkeletonShown((now) => !now),
+  });
+
+  const describe = (at: number): string => {
+    const index = frames.frame.indexOf(at);
+    if (index < 0) return `frame ${at}: not in this track`;
+    return `frame ${at}: ${frames.status[index] ?? "?"}, ${formatNumber(frames.depth_residual_mm[index])} mm`;
+  };
+
+  return (
+    <div className={classes.page}>
+      <TrackBar
+        track={track}
+        recording={recording}
+        frame={frame}
+        status={frames.status[frames.frame.indexOf(frame)] ?? null}
+        isPlaying={isPlaying}
+        hasLost={lost.length > 0}
+        camera={camera?.id ?? ""}
+        onCamera={setCameraId}
+        onPlay={play}
+        onStep={(by) => seek(frame + by)}
+        onBad={toBad}
+        onAnnotate={annotate}
+      />
+      <div className={classes.middle}>
+        <ViewerFrame viewer={viewer} layers={layers} onLayers={setLayers} />
+        <div className={classes.side}>
+          {camera && (
+            <TrackImage
+              track={track}
+              recording={recording}
+              camera={camera}
+              frame={frame}
+              isMeshShown={isMeshShown}
+              isSkeletonShown={isSkeletonShown}
+              onMesh={setMeshShown}
+              onSkeleton={setSkeletonShown}
+            />
+          )}
+          <TrackPlots track={track} frames={frames} lost={lost} frame={frame} camera={camera?.id ?? ""} tab={tab} onTab={setTab} onSeek={seek} />
+        </div>
+      </div>
+      <div className={classes.timeline}>
+        <FrameStrip rows={rows} frameCount={recording.frame_count} frame={frame} height={32} label="Timeline" onSeek={seek} describe={describe} />
+      </div>
+    </div>
+  );
+}

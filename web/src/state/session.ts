@@ -1,0 +1,79 @@
+/** An open recording in the annotator: its store, with undo and saving watching it. */
+
+import type { Annotation, Recording, Side } from "../api/types";
+import { fromWire, keyText, toWire, type Pose } from "../model/pose";
+import { changedKeys, type AnnotatorState } from "./annotator";
+import type { SaveQueue } from "./saveQueue";
+import { createStore, type Store } from "./store";
+import { createUndoStack, type UndoStack } from "./undo";
+
+export interface Session {
+  readonly store: Store<AnnotatorState>;
+  readonly undo: UndoStack;
+  readonly queue: SaveQueue;
+  close(): void;
+}
+
+/** Where the person starts: the address, or the beginning. */
+export interface Start {
+  camera: string | null;
+  frame: number;
+  hand: Side;
+}
+
+export const revisionsOf = (annotations: readonly Annotation[]): Map<string, number> =>
+  new Map(annotations.map((item) => [keyText(item), item.revision]));
+
+/** Annotations as loaded, with what still waits in the queue on top. */
+export function openSession(recording: Recording, annotations: readonly Annotation[], queue: SaveQueue, start: Start): Session {
+  const poses: Record<string, Pose> = {};
+  for (const item of annotations) poses[keyText(item)] = fromWire(item.points);
+  for (const [key, points] of queue.waiting()) {
+    if (points) poses[key] = fromWire(points);
+    else delete poses[key];
+  }
+  const cameras = recording.cameras.map((camera) => camera.id);
+  const store = createStore<AnnotatorState>({
+    poses,
+    camera: start.camera !== null && cameras.includes(start.camera) ? start.camera : (cameras[0] ?? ""),
+    frame: Math.min(recording.frame_count - 1, Math.max(0, start.frame)),
+    frameCount: recording.frame_count,
+    hand: start.hand,
+    joint: 0,
+    draft: null,
+  });
+  const undo = createUndoStack(store);
+  const stopSaving = store.watch((now, before, origin) => {
+    if (origin === "server") return;
+    for (const key of changedKeys(now.poses, before.poses)) {
+      const pose = now.poses[key];
+      queue.put(key, pose ? toWire(pose) : null);
+    }
+  });
+  return {
+    store,
+    undo,
+    queue,
+    close() {
+      stopSaving();
+      undo.stop();
+    },
+  };
+}
+
+/** Settle a conflict: what was chosen is stored here too. */
+export function settleConflict(session: Session, key: string, choice: "mine" | "theirs" | Pose): void {
+  const theirs = session.queue.status().conflicts.get(key);
+  if (!theirs) return;
+  const state = session.store.get();
+  if (choice === "mine") {
+    const mine = state.poses[key];
+    session.queue.settle(key, mine ? toWire(mine) : null);
+    return;
+  }
+  const pose = choice === "theirs" ? (theirs.points ? fromWire(theirs.points) : undefined) : choice;
+  const { [key]: replaced, ...others } = state.poses;
+  void replaced;
+  session.store.set({ ...state, draft: null, poses: pose ? { ...others, [key]: pose } : others }, "server");
+  session.queue.settle(key, choice === "theirs" ? "theirs" : toWire(choice));
+}

@@ -1,0 +1,103 @@
+"""`handloom demo`: the studio with a sample project, which Handloom renders, annotates and tracks itself."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import logging
+import os
+import sys
+import tempfile
+import uuid
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from server.cli.guarded import CommandError, load_settings, run_guarded
+from server.cli.serve import add_serve_arguments, listen, serve
+
+if TYPE_CHECKING:
+    from server.database import Database
+    from server.storage import Storage
+
+log = logging.getLogger(__name__)
+
+NAME = "Sample: open and close"
+MOTION, FRAMES = "open-close", 60
+ANNOTATED_EVERY = 15
+"""Frames between annotations that are kept; the others are for people to make."""
+
+MARKER = "demo.json"
+
+
+def add_command(subparsers: argparse._SubParsersAction) -> None:
+    parser = subparsers.add_parser(
+        "demo",
+        help="run the studio with a sample project",
+        description="Run the studio with a sample project: a rendered recording, annotated here and there, and its "
+        "track. It is made once; what you do with it stays.",
+    )
+    add_serve_arguments(parser)
+    parser.set_defaults(run=run_guarded(run))
+
+
+def run(args: argparse.Namespace) -> int:
+    from server.database import Database
+    from server.database.migrate import upgrade
+    from server.storage import Storage
+
+    settings = load_settings(host=args.host, port=args.port)
+    if settings.is_loopback:
+        with listen(settings):
+            pass  # a port that is taken is better known before the sample is rendered
+        storage = Storage(settings.data_dir)
+        database = Database(settings.sqlalchemy_url)
+        try:
+            upgrade(database)
+            make_sample(database, storage)
+        finally:
+            database.close()
+    serve(settings, with_worker=not args.no_worker)
+    return 0
+
+
+def make_sample(database: Database, storage: Storage) -> None:
+    """Import the sample recording and queue a job that tracks it, unless that was done before."""
+    from server.cli.import_command import import_recording
+    from server.jobs.service import check_track_params, create_job
+    from tracker import ImportOptions
+
+    marker = storage.root / MARKER
+    if marker.exists():
+        return
+    sys.stderr.write(f"handloom: rendering the sample recording, {FRAMES} frames ...\n")
+    with tempfile.TemporaryDirectory(prefix="handloom-demo-") as folder:
+        recording = Path(folder) / "recording"
+        _render(recording)
+        _thin_annotations(recording / "annotations.json")
+        options = ImportOptions(name=NAME)
+        row, _ = import_recording(database, storage, recording, None, options)
+    with database.writing() as session:
+        job = create_job(session, "track", row.id, check_track_params(session, row.id, {}))
+    unfinished = marker.with_name(f".{uuid.uuid4().hex}.json")
+    unfinished.write_text(json.dumps({"sequence_id": str(row.id), "job_id": str(job.id)}))
+    os.replace(unfinished, marker)
+
+
+def _render(folder: Path) -> None:
+    """Render it with the tracker's own command."""
+    from tracker import add_commands
+
+    parser = argparse.ArgumentParser()
+    add_commands(parser.add_subparsers(required=True))
+    args = parser.parse_args(["synthesize", "--motion", MOTION, "--frames", f"0:{FRAMES}", "--out", str(folder)])
+    with contextlib.redirect_stdout(sys.stderr):
+        code = args.run(args)
+    if code != 0:
+        raise CommandError("The sample recording could not be rendered.", code)
+
+
+def _thin_annotations(path: Path) -> None:
+    document = json.loads(path.read_text())
+    document["items"] = [item for item in document["items"] if item["frame"] % ANNOTATED_EVERY == 0]
+    path.write_text(json.dumps(document))

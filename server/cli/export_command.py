@@ -1,0 +1,147 @@
+"""`handloom export`: annotations, a recording or a track out of the studio."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import uuid
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from server.cli.guarded import CommandError, add_json, answer, load_settings, run_guarded
+
+if TYPE_CHECKING:
+    from sqlalchemy.orm import Session
+
+    from server.sequences.models import SequenceRow
+    from server.storage import Storage
+
+FORMATS = ("annotations", "recording", "track")
+
+
+def add_command(subparsers: argparse._SubParsersAction) -> None:
+    parser = subparsers.add_parser(
+        "export",
+        help="copy something out of the studio",
+        description="Copy a recording's annotations (annotations.json), the recording (a folder, with its annotations) "
+        "or its newest track (a folder) out of the studio.",
+    )
+    parser.add_argument("name", metavar="NAME", help="name or id of a recording; for a track also the track's id")
+    parser.add_argument("--format", choices=FORMATS, required=True)
+    parser.add_argument("--out", type=Path, required=True, metavar="PATH", help="a name that does not exist yet")
+    add_json(parser)
+    parser.set_defaults(run=run_guarded(run))
+
+
+def run(args: argparse.Namespace) -> int:
+    from server.database import Database
+    from server.database.migrate import upgrade
+    from server.storage import Storage
+
+    out: Path = args.out.expanduser().absolute()
+    if out.exists():
+        raise CommandError(f"{out}: is there already; give a name that does not exist yet.")
+    if not out.parent.is_dir():
+        raise CommandError(f"{out.parent}: is no folder; make it first.")
+    settings = load_settings()
+    storage = Storage(settings.data_dir)
+    database = Database(settings.sqlalchemy_url)
+    try:
+        upgrade(database)
+        with database.reading() as session:
+            if args.format == "track":
+                result = _export_track(session, storage, args.name, out)
+            else:
+                sequence = find_recording(session, args.name)
+                export = _export_annotations if args.format == "annotations" else _export_recording
+                result = export(session, storage, sequence, out)
+    finally:
+        database.close()
+    return answer(args, {"out": str(out), "format": args.format, **result}, f"{args.format} of {args.name}: {out}")
+
+
+def find_recording(session: Session, name: str) -> SequenceRow:
+    """The recording of this id or name; raises when there is none, or more than one of that name."""
+    from sqlalchemy import select
+
+    from server.sequences.models import SequenceRow
+
+    query = select(SequenceRow).where(SequenceRow.deleted_at.is_(None))
+    id_ = _read_id(name)
+    if id_ is not None and (row := session.scalar(query.where(SequenceRow.id == id_))) is not None:
+        return row
+    rows = session.scalars(query.where(SequenceRow.name == name)).all()
+    if len(rows) == 1:
+        return rows[0]
+    if rows:
+        ids = ", ".join(str(row.id) for row in rows)
+        raise CommandError(f"{len(rows)} recordings are named {name!r}; give an id: {ids}.")
+    names = session.scalars(select(SequenceRow.name).where(SequenceRow.deleted_at.is_(None)).limit(10)).all()
+    known = f"there are {', '.join(map(repr, names))}" if names else "the studio has no recordings yet"
+    raise CommandError(f"There is no recording {name!r}; {known}.")
+
+
+def _export_annotations(session: Session, storage: Storage, sequence: SequenceRow, out: Path) -> dict[str, Any]:
+    from server.annotations.service import export_annotations
+
+    document = export_annotations(session, sequence.id)
+    _appear(out, lambda path: path.write_text(json.dumps(document) + "\n"))
+    return {"items": len(document["items"])}
+
+
+def _export_recording(session: Session, storage: Storage, sequence: SequenceRow, out: Path) -> dict[str, Any]:
+    import dataclasses
+
+    from server.annotations.service import export_annotations
+    from tracker import load_sequence, save_sequence_json
+
+    document = export_annotations(session, sequence.id)
+
+    def save(folder: Path) -> None:
+        shutil.copytree(storage.folder("sequences", sequence.id), folder)
+        named = dataclasses.replace(load_sequence(folder), name=sequence.name, hands=tuple(sequence.hands))
+        save_sequence_json(dataclasses.replace(named, annotations="annotations.json"))
+        (folder / "annotations.json").write_text(json.dumps(document) + "\n")
+
+    _appear(out, save)
+    return {"frames": sequence.frame_count}
+
+
+def _export_track(session: Session, storage: Storage, name: str, out: Path) -> dict[str, Any]:
+    from server.tracks.models import TrackRow
+    from server.tracks.service import list_tracks
+
+    id_ = _read_id(name)
+    track = session.get(TrackRow, id_) if id_ is not None else None
+    if track is None or track.deleted_at is not None:
+        sequence = find_recording(session, name)
+        tracks, _ = list_tracks(session, sequence.id, None, 1)
+        if not tracks:
+            raise CommandError(f"The recording {sequence.name!r} has no track yet; start a tracking job first.")
+        track = tracks[0]
+    folder = storage.folder("tracks", track.id)
+    _appear(out, lambda path: shutil.copytree(folder, path, ignore=shutil.ignore_patterns("overlays")))
+    return {"track": str(track.id), "frames": track.frame_count}
+
+
+def _appear(out: Path, save: Callable[[Path], Any]) -> None:
+    """Have `save` write a sibling that then gets its name, so that nothing half-written is ever at `out`."""
+    unfinished = out.with_name(f".{uuid.uuid4().hex}-{out.name}")
+    try:
+        save(unfinished)
+        os.rename(unfinished, out)
+    finally:
+        if unfinished.is_dir():
+            shutil.rmtree(unfinished, ignore_errors=True)
+        else:
+            unfinished.unlink(missing_ok=True)
+
+
+def _read_id(text: str) -> uuid.UUID | None:
+    try:
+        return uuid.UUID(text)
+    except ValueError:
+        return None

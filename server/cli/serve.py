@@ -1,0 +1,75 @@
+"""`handloom serve`: the studio, with a worker beside it."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import errno
+import signal
+import socket
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from server.cli.guarded import FAILED, CommandError, load_settings, run_guarded
+
+if TYPE_CHECKING:
+    from server.settings import Settings
+
+
+def add_command(subparsers: argparse._SubParsersAction) -> None:
+    parser = subparsers.add_parser("serve", help="run the studio", description="Run the studio until told to stop.")
+    add_serve_arguments(parser)
+    parser.set_defaults(run=run_guarded(run))
+
+
+def add_serve_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--host", metavar="NAME", help="address to listen at (default: 127.0.0.1)")
+    parser.add_argument("--port", type=int, metavar="N", help="port to listen at, 0 for a free one (default: 8000)")
+    parser.add_argument("--no-worker", action="store_true", help="do no jobs; `handloom worker` does them elsewhere")
+
+
+def run(args: argparse.Namespace) -> int:
+    serve(load_settings(host=args.host, port=args.port), with_worker=not args.no_worker)
+    return 0
+
+
+def serve(settings: Settings, *, with_worker: bool) -> None:
+    """Serve until SIGTERM or SIGINT; then end the worker and the viewer too."""
+    if not settings.is_loopback:
+        raise CommandError(
+            f"--host {settings.host}: the studio has no accounts yet, so whoever reaches it may do everything. Serve "
+            "it at 127.0.0.1 and reach it from elsewhere through a tunnel, such as `ssh -L 8000:127.0.0.1:8000 HOST`."
+        )
+    with listen(settings) as sock:
+        from server.cli.studio import StudioServer
+        from server.cli.supervisor import WorkerSupervisor
+        from server.log import configure_logging
+
+        configure_logging(settings.log_level)
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
+        with contextlib.ExitStack() as stack:
+            if with_worker:
+                stack.enter_context(WorkerSupervisor(settings))
+            # A second SIGINT after the server has stopped ends nothing but the waiting.
+            with contextlib.suppress(KeyboardInterrupt):
+                StudioServer(settings, sock).run(sockets=[sock])
+
+
+@contextlib.contextmanager
+def listen(settings: Settings) -> Iterator[socket.socket]:
+    """A socket at the address, so that a port that is taken is noticed before anything else is done."""
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    with socket.socket(family) as sock:
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            sock.bind((settings.host, settings.port))
+        except OSError as error:
+            if error.errno == errno.EADDRINUSE:
+                raise CommandError(
+                    f"Port {settings.port} is taken by another program, perhaps by another Handloom. Stop that one, or "
+                    f"choose another port: --port {settings.port + 1 if settings.port < 65535 else 0}",
+                    FAILED,
+                ) from None
+            raise CommandError(f"Cannot listen at {settings.host}:{settings.port}: {error.strerror}.", FAILED) from None
+        yield sock

@@ -1,0 +1,1 @@
+"""How well tracks fit what people annotated."""

@@ -1,0 +1,103 @@
+"""How a running job tells people where it is, and how it learns that it should stop."""
+
+from __future__ import annotations
+
+import logging
+import os
+import time
+from uuid import UUID
+
+from sqlalchemy.exc import OperationalError
+
+from server.database import Database
+from server.jobs import service
+from server.jobs.models import JobRow
+
+log = logging.getLogger(__name__)
+
+PUBLISH_SECONDS = 0.2
+"""Between two updates of the row; also how soon a cancelled job notices."""
+
+TRACKING_BEGINS, TRACKING_ENDS = 0.1, 0.98
+"""Share of the progress bar when the first frame is tracked, and after the last."""
+
+LOST_OWNERSHIP_EXIT = 75
+
+
+class JobStoppedError(Exception):
+    """Somebody cancelled the job, or started it anew: leave it alone."""
+
+
+class JobProgress:
+    """Publishes one attempt of a job on behalf of one worker."""
+
+    def __init__(self, database: Database, job_id: UUID, attempt: int, worker_id: UUID) -> None:
+        self._database, self._job_id, self._attempt, self._worker_id = database, job_id, attempt, worker_id
+        self._published = 0.0
+        self._frame_seconds: float | None = None
+        self._last_frame: tuple[int, float] | None = None
+        self._last_stage = ""
+
+    def stage(self, name: str, share: float) -> None:
+        """Name what is being done before the tracking, and how much of it is done, 0 to 1."""
+        self._publish_stage(name, TRACKING_BEGINS * min(max(share, 0.0), 1.0))
+
+    def finishing(self, name: str) -> None:
+        """Name what is being done after the tracking."""
+        self._publish_stage(name, TRACKING_ENDS)
+
+    def frames(self, done: int, total: int) -> None:
+        """Say that `done` of `total` frames are tracked."""
+        now = time.monotonic()
+        if self._last_frame is not None and done > self._last_frame[0]:
+            seconds = (now - self._last_frame[1]) / (done - self._last_frame[0])
+            before = seconds if self._frame_seconds is None else self._frame_seconds
+            self._frame_seconds = 0.9 * before + 0.1 * seconds
+        self._last_frame = (done, now)
+        self._publish_frames(done, total, at_once=False)
+
+    def chunk_done(self, done: int, total: int, message: str) -> None:
+        """Say that the frames so far are safe on disk."""
+        self.log("info", message)
+        self._publish_frames(done, total, at_once=True, crashes=0)
+
+    def log(self, level: str, text: str) -> None:
+        """Add a line to the job's log."""
+        with self._database.writing() as session:
+            service.append_log(session, self._job_id, level, text)
+
+    def _publish_stage(self, name: str, progress: float) -> None:
+        changed, self._last_stage = name != self._last_stage, name
+        if changed:
+            self.log("info", name)
+        self._publish(changed, stage=name, progress=progress, seconds_left=None)
+
+    def _publish_frames(self, done: int, total: int, *, at_once: bool, **values: object) -> None:
+        left = None if self._frame_seconds is None else self._frame_seconds * (total - done)
+        share = TRACKING_BEGINS + (TRACKING_ENDS - TRACKING_BEGINS) * done / max(total, 1)
+        self._publish(
+            at_once, stage="tracking", progress=share, frames_done=done, frames_total=total, seconds_left=left, **values
+        )
+
+    def _publish(self, at_once: bool, **values: object) -> None:
+        now = time.monotonic()
+        if not at_once and now - self._published < PUBLISH_SECONDS:
+            return
+        self._published = now
+        try:
+            with self._database.writing() as session:
+                owned = service.update_running(session, self._job_id, self._attempt, self._worker_id, **values)
+                job = None if owned else session.get(JobRow, self._job_id)
+        except OperationalError as error:
+            log.warning("progress of job %s not published: %s", self._job_id, error)
+            return
+        if not owned:
+            self._let_go(job)
+
+    def _let_go(self, job: JobRow | None) -> None:
+        if job is not None and job.state == "running" and job.attempt == self._attempt:
+            # This process slept so long that another worker took its work over. What it still has in memory must not be
+            # recorded beside the other's: end like a crash, which every step survives.
+            log.error("job %s was taken over by another worker; this one ends", self._job_id)
+            os._exit(LOST_OWNERSHIP_EXIT)
+        raise JobStoppedError("The job was cancelled.")

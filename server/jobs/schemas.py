@@ -1,0 +1,93 @@
+"""Jobs, logs and workers as the API gives and takes them."""
+
+from __future__ import annotations
+
+import uuid
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
+
+
+class JobCreate(BaseModel):
+    """What to do."""
+
+    kind: Literal["track"] = "track"
+    sequence_id: uuid.UUID
+    params: dict[str, Any] = Field(
+        default_factory=dict, description="Options of the tracker; `GET /jobs/form` lists them."
+    )
+
+
+class JobOut(BaseModel):
+    """A job as it is now."""
+
+    model_config = ConfigDict(from_attributes=True, title="Job")
+
+    id: uuid.UUID
+    kind: str
+    state: JobState
+    sequence_id: uuid.UUID
+    track_id: uuid.UUID | None = Field(description="What it produced.")
+    params: dict[str, Any]
+    progress: float = Field(ge=0, le=1)
+    stage: str = Field(description="What is being done, for people.")
+    frames_done: int
+    frames_total: int = Field(description="0 while not known.")
+    seconds_left: float | None
+    error: str | None = Field(description="What went wrong, for people.")
+    attempt: int = Field(description="1, and one more for every resume.")
+    retry_of: uuid.UUID | None
+    version: int = Field(description="Grows with every change.")
+    created_at: datetime
+    started_at: datetime | None
+    ended_at: datetime | None
+
+
+class JobLogLine(BaseModel):
+    """One line of a job's log."""
+
+    n: int
+    time: datetime
+    level: Literal["debug", "info", "warning", "error"]
+    text: str
+
+
+class JobLog(BaseModel):
+    """Lines of a job's log, in order."""
+
+    lines: list[JobLogLine]
+
+
+class JobFormField(BaseModel):
+    """One option of the tracker."""
+
+    name: str
+    type: Literal["integer", "number", "boolean", "text"]
+    default: int | float | bool | str
+    help: str
+    choices: list[str] | None = Field(description="The only values there are; null when any will do.")
+
+
+class JobForm(BaseModel):
+    """Options that a tracking job takes as `params`."""
+
+    kind: str
+    fields: list[JobFormField]
+
+
+class WorkerOut(BaseModel):
+    """A worker process."""
+
+    model_config = ConfigDict(title="Worker")
+
+    id: uuid.UUID
+    name: str
+    host: str
+    pid: int
+    state: Literal["running", "silent", "stopped", "lost"]
+    job_id: uuid.UUID | None = Field(description="What it is doing.")
+    started_at: datetime
+    last_seen_at: datetime

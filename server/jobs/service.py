@@ -1,0 +1,179 @@
+"""What can be done with jobs. A change of state is one conditional statement, so two processes cannot both make it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import CursorResult, func, select, tuple_, update
+from sqlalchemy.orm import Session
+
+from server.database import utc_now
+from server.database.paging import read_moment_cursor, write_cursor
+from server.errors import ConflictError, InvalidError, NotFoundError
+from server.jobs.models import ENDED_STATES, JobLogRow, JobRow, WorkerRow
+from server.sequences.service import get_sequence
+
+KINDS = ("track",)
+
+LOG_PAGE = 1000
+
+
+class JobNotFoundError(NotFoundError):
+    """There is no job of this id."""
+
+
+class JobStateError(ConflictError):
+    """The job is not in a state in which this can be done."""
+
+
+def get_job(session: Session, job_id: UUID) -> JobRow:
+    job = session.get(JobRow, job_id)
+    if job is None:
+        raise JobNotFoundError(f"There is no job {job_id}.")
+    return job
+
+
+def list_jobs(
+    session: Session, sequence_id: UUID | None, state: str | None, cursor: str | None, limit: int
+) -> tuple[Sequence[JobRow], str | None]:
+    """Newest first, of one recording or in one state if so asked."""
+    query = select(JobRow).order_by(JobRow.created_at.desc(), JobRow.id.desc())
+    if sequence_id is not None:
+        query = query.where(JobRow.sequence_id == sequence_id)
+    if state is not None:
+        query = query.where(JobRow.state == state)
+    if cursor is not None:
+        query = query.where(tuple_(JobRow.created_at, JobRow.id) < read_moment_cursor(cursor))
+    rows = session.scalars(query.limit(limit + 1)).all()
+    if len(rows) <= limit:
+        return rows, None
+    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+
+
+def create_job(
+    session: Session, kind: str, sequence_id: UUID, params: dict[str, Any], retry_of: UUID | None = None
+) -> JobRow:
+    """Queue a job. A worker finds it as soon as the transaction is committed."""
+    if kind not in KINDS:
+        raise InvalidError(f"There is no kind of job {kind!r}; there are: {', '.join(KINDS)}.")
+    job = JobRow(kind=kind, sequence_id=sequence_id, params=params, retry_of=retry_of)
+    session.add(job)
+    session.flush()
+    append_log(session, job.id, "info", "queued" if retry_of is None else f"queued again; a retry of job {retry_of}")
+    return job
+
+
+def check_track_params(session: Session, sequence_id: UUID, params: dict[str, Any]) -> dict[str, Any]:
+    """The options in full, as they will be used; raises when the recording or an option cannot be."""
+    from tracker import TrackOptions
+
+    get_sequence(session, sequence_id)
+    return TrackOptions.from_json(params).to_json()
+
+
+def cancel_job(session: Session, job_id: UUID) -> JobRow:
+    """End a job that has not ended. Its worker notices within a frame; what is on disk stays for `resume`."""
+    now = utc_now()
+    if _change(
+        session,
+        job_id,
+        JobRow.state.in_(("queued", "running")),
+        state="cancelled",
+        stage="cancelled",
+        ended_at=now,
+        seconds_left=None,
+    ):
+        append_log(session, job_id, "warning", "cancelled")
+    job = get_job(session, job_id)
+    if job.state != "cancelled":
+        raise JobStateError(f"The job has {job.state}; only one that is queued or running can be cancelled.")
+    return job
+
+
+def retry_job(session: Session, job_id: UUID) -> JobRow:
+    """A new job with the same parameters, from the beginning."""
+    job = get_job(session, job_id)
+    if job.state not in ENDED_STATES:
+        raise JobStateError(f"The job is {job.state}; cancel it first, or wait for its end.")
+    return create_job(session, job.kind, job.sequence_id, job.params, retry_of=job.id)
+
+
+def resume_job(session: Session, job_id: UUID) -> JobRow:
+    """Go on with a cancelled or failed job after the last chunk that was finished."""
+    if not _change(
+        session,
+        job_id,
+        JobRow.state.in_(("cancelled", "failed")),
+        state="queued",
+        stage="queued",
+        attempt=JobRow.attempt + 1,
+        worker_id=None,
+        crashes=0,
+        error=None,
+        ended_at=None,
+    ):
+        raise JobStateError(
+            f"The job is {get_job(session, job_id).state}; only a cancelled or failed one can be resumed."
+        )
+    append_log(session, job_id, "info", "queued to be resumed")
+    return get_job(session, job_id)
+
+
+def claim_job(session: Session, job_id: UUID, attempt: int, worker_id: UUID) -> JobRow | None:
+    """Make `worker_id` the one that runs this attempt; None when the attempt is no longer wanted."""
+    job = session.get(JobRow, job_id)
+    if job is None or job.attempt != attempt or job.state not in ("queued", "running"):
+        return None
+    is_restart = job.state == "running"
+    before = session.get(WorkerRow, job.worker_id) if job.worker_id is not None else None
+    is_crash = is_restart and (before is None or before.state != "stopped")
+    _change(
+        session,
+        job_id,
+        (JobRow.attempt == attempt) & JobRow.state.in_(("queued", "running")),
+        state="running",
+        stage="starting",
+        worker_id=worker_id,
+        started_at=job.started_at or utc_now(),
+        crashes=job.crashes + 1 if is_crash else job.crashes,
+    )
+    if is_restart:
+        how = "crashed" if is_crash else "was stopped"
+        append_log(session, job_id, "warning", f"its worker {how}; going on after the last finished step")
+    session.refresh(job)
+    return job
+
+
+def update_running(session: Session, job_id: UUID, attempt: int, worker_id: UUID, **values: Any) -> bool:
+    """Set columns of a running job; False when it no longer runs in this attempt on this worker."""
+    is_ours = (JobRow.state == "running") & (JobRow.attempt == attempt) & (JobRow.worker_id == worker_id)
+    return _change(session, job_id, is_ours, **values)
+
+
+def append_log(session: Session, job_id: UUID, level: str, text: str) -> None:
+    """Add a line; its number is one more than the last."""
+    last = session.scalar(select(func.max(JobLogRow.number)).where(JobLogRow.job_id == job_id)) or 0
+    session.add(JobLogRow(job_id=job_id, number=last + 1, level=level, text=text))
+    session.flush()
+
+
+def read_log(session: Session, job_id: UUID, after: int, limit: int = LOG_PAGE) -> list[JobLogRow]:
+    """Lines with a number above `after`, in order."""
+    query = select(JobLogRow).where(JobLogRow.job_id == job_id, JobLogRow.number > after)
+    return list(session.scalars(query.order_by(JobLogRow.number).limit(limit)))
+
+
+def _change(session: Session, job_id: UUID, condition: Any, **values: Any) -> bool:
+    """Update the row of a job where `condition` holds; whether it held."""
+    statement = (
+        update(JobRow)
+        .where(JobRow.id == job_id, condition)
+        .values(version=JobRow.version + 1, updated_at=utc_now(), **values)
+        .execution_options(synchronize_session=False)
+    )
+    result = session.execute(statement)
+    assert isinstance(result, CursorResult)
+    session.expire_all()
+    return result.rowcount == 1

@@ -1,0 +1,41 @@
+"""The name a worker process runs under: the first that no living process on this machine holds.
+
+DBOS gives the unfinished work of a name back to whoever starts under that name. A lock on a file holds the name: the
+system lets go of it at the very moment the process dies, however it dies.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import socket
+from pathlib import Path
+from typing import IO
+
+MAX_SLOTS = 64
+
+
+class WorkerSlot:
+    """A held name; it lasts as long as this object."""
+
+    def __init__(self, name: str, lock: IO[str]) -> None:
+        self.name = name
+        self._lock = lock
+
+    @classmethod
+    def acquire(cls, folder: Path) -> WorkerSlot:
+        """Take the first free name of this machine.
+
+        Args:
+            folder: Where the locks are; shared by the workers of one studio on this machine.
+        """
+        folder.mkdir(parents=True, exist_ok=True)
+        host = socket.gethostname()
+        for number in range(MAX_SLOTS):
+            lock = open(folder / f"{host}-{number}.lock", "w")  # noqa: SIM115 (held until the process ends)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                lock.close()
+                continue
+            return cls(f"{host}-{number}", lock)
+        raise RuntimeError(f"{MAX_SLOTS} workers run on this machine already; stop some of them.")

@@ -1,0 +1,1 @@
+"""Tracks: what a tracking job found, frame by frame."""

@@ -1,0 +1,115 @@
+"""`/tracks`."""
+
+from __future__ import annotations
+
+import uuid
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Depends
+from fastapi.responses import FileResponse
+from starlette.requests import HTTPConnection
+
+from server.database import DatabaseDep, SessionDep
+from server.database.paging import Cursor, Limit, Page
+from server.errors import NotFoundError, error_responses
+from server.storage import StorageDep
+from server.tracks import service
+from server.tracks.overlay import Overlays
+from server.tracks.schemas import TrackFrames, TrackJoints, TrackOut
+
+router = APIRouter(tags=["tracks"], responses=error_responses())
+
+IMMUTABLE = "public, max-age=31536000, immutable"
+
+
+def get_overlays(connection: HTTPConnection) -> Overlays:
+    """The app's cache of overlays."""
+    state = connection.app.state
+    if not hasattr(state, "overlays"):
+        state.overlays = Overlays()
+    return state.overlays
+
+
+OverlaysDep = Annotated[Overlays, Depends(get_overlays)]
+
+
+@router.get("/tracks")
+def list_tracks(
+    session: SessionDep,
+    sequence_id: uuid.UUID | None = None,
+    cursor: Cursor = None,
+    limit: Limit = 100,
+) -> Page[TrackOut]:
+    """Tracks, the newest first."""
+    rows, next_cursor = service.list_tracks(session, sequence_id, cursor, limit)
+    return Page(items=[TrackOut.model_validate(row) for row in rows], next_cursor=next_cursor)
+
+
+@router.get("/tracks/{track_id}", responses=error_responses(404))
+def get_track(track_id: uuid.UUID, session: SessionDep) -> TrackOut:
+    """One track."""
+    return TrackOut.model_validate(service.get_track(session, track_id))
+
+
+@router.delete("/tracks/{track_id}", responses=error_responses(404))
+def delete_track(track_id: uuid.UUID, session: SessionDep) -> TrackOut:
+    """Delete a track; it can be restored."""
+    return TrackOut.model_validate(service.delete_track(session, track_id))
+
+
+@router.post("/tracks/{track_id}/restore", responses=error_responses(404, 409))
+def restore_track(track_id: uuid.UUID, session: SessionDep) -> TrackOut:
+    """Bring a deleted track back."""
+    return TrackOut.model_validate(service.restore_track(session, track_id))
+
+
+@router.get("/tracks/{track_id}/frames", responses=error_responses(404))
+def get_track_frames(track_id: uuid.UUID, session: SessionDep, storage: StorageDep) -> TrackFrames:
+    """Status, timing and quality of every frame, as columns."""
+    service.get_track(session, track_id)
+    return TrackFrames.model_validate(service.read_columns(storage.folder("tracks", track_id)))
+
+
+@router.get("/tracks/{track_id}/joints", responses=error_responses(404))
+def get_track_joints(
+    track_id: uuid.UUID, session: SessionDep, storage: StorageDep, camera: str | None = None
+) -> TrackJoints:
+    """Joints of every frame as seen by one camera, the first if none is named."""
+    from tracker import load_sequence
+
+    track = service.get_track(session, track_id)
+    cameras = [c.id for c in load_sequence(storage.folder("sequences", track.sequence_id)).cameras]
+    if camera is not None and camera not in cameras:
+        raise NotFoundError(f"The recording has no camera {camera!r}; it has {', '.join(cameras)}.")
+    index = 0 if camera is None else cameras.index(camera)
+    names, frames, points = service.read_joints(storage.folder("tracks", track_id), index)
+    return TrackJoints(joint_names=names, frames=frames, points=points)
+
+
+@router.get(
+    "/tracks/{track_id}/cameras/{camera}/frames/{frame}/overlay.png",
+    response_class=FileResponse,
+    responses={200: {"content": {"image/png": {}}}} | error_responses(404),
+)
+def get_track_overlay(
+    track_id: uuid.UUID, camera: str, frame: int, database: DatabaseDep, storage: StorageDep, overlays: OverlaysDep
+) -> FileResponse:
+    """The meshes of one frame as the camera sees them, on transparent ground. Neither a track nor this changes ever."""
+    with database.reading() as session:
+        track = service.get_track(session, track_id)
+    folder = storage.folder("tracks", track_id)
+    path = overlays.find(folder, storage.folder("sequences", track.sequence_id), frame, camera)
+    return FileResponse(path, media_type="image/png", headers={"Cache-Control": IMMUTABLE})
+
+
+@router.get("/tracks/{track_id}/files/{name}", response_class=FileResponse, responses=error_responses(404))
+def download_track_file(
+    track_id: uuid.UUID, name: Literal["track.npz", "summary.json"], session: SessionDep, storage: StorageDep
+) -> FileResponse:
+    """A file of the track."""
+    track = service.get_track(session, track_id)
+    path = storage.folder("tracks", track_id) / name
+    if not path.is_file():
+        raise NotFoundError(f"The file {name} of this track is gone from the data folder.")
+    media_type = "application/json" if name.endswith(".json") else "application/octet-stream"
+    return FileResponse(path, media_type=media_type, filename=f"{track.name.replace(' ', '_')}-{name}")

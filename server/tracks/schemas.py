@@ -1,0 +1,50 @@
+"""Tracks as the API gives them."""
+
+from __future__ import annotations
+
+import uuid
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class TrackOut(BaseModel):
+    """A track."""
+
+    model_config = ConfigDict(from_attributes=True, title="Track")
+
+    id: uuid.UUID
+    sequence_id: uuid.UUID
+    job_id: uuid.UUID | None
+    name: str
+    frame_first: int
+    frame_count: int
+    hands: list[Literal["right", "left"]]
+    summary: dict[str, Any] = Field(description="As `summary.json`.")
+    error_px: float | None = Field(description="Mean distance to the annotations when last evaluated, px.")
+    created_at: datetime
+    deleted_at: datetime | None
+
+
+class TrackFrames(BaseModel):
+    """Columns with one value per frame; null where nothing was measured."""
+
+    frame: list[int]
+    status: list[Literal["ok", "lost", "recovered"]]
+    seconds: list[float | None]
+    depth_residual_mm: list[float | None]
+    silhouette_iou: list[float | None]
+    iterations: list[int]
+    costs: dict[str, list[float | None]] = Field(description="Of each term at the last iteration, mm².")
+    stages: dict[str, list[float | None]] = Field(description="Of each stage of the work, s.")
+
+
+class TrackJoints(BaseModel):
+    """Joints of all frames in one camera."""
+
+    joint_names: list[str]
+    frames: list[int]
+    points: list[list[list[float | None]]] = Field(
+        description="Per frame and joint [x, y], px; null behind the camera."
+    )

@@ -1,0 +1,129 @@
+"""What can be done with tracks."""
+
+from __future__ import annotations
+
+import json
+import uuid
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from sqlalchemy import func, select, tuple_
+from sqlalchemy.orm import Session
+
+from server.database import utc_now
+from server.database.paging import read_moment_cursor, write_cursor
+from server.errors import ConflictError, NotFoundError
+from server.tracks.models import TrackRow
+
+FILES = ("track.npz", "summary.json")
+"""Those that can be downloaded."""
+
+
+class TrackNotFoundError(NotFoundError):
+    """There is no track of this id, or it was deleted."""
+
+
+def get_track(session: Session, track_id: uuid.UUID, *, deleted: bool = False) -> TrackRow:
+    """A track that is there; with `deleted` also one that was deleted."""
+    track = session.get(TrackRow, track_id)
+    if track is None or (track.deleted_at is not None and not deleted):
+        raise TrackNotFoundError(f"There is no track {track_id}." if track is None else "This track was deleted.")
+    return track
+
+
+def list_tracks(
+    session: Session, sequence_id: uuid.UUID | None, cursor: str | None, limit: int
+) -> tuple[Sequence[TrackRow], str | None]:
+    """Newest first, of one recording if so asked."""
+    query = select(TrackRow).where(TrackRow.deleted_at.is_(None))
+    if sequence_id is not None:
+        query = query.where(TrackRow.sequence_id == sequence_id)
+    if cursor is not None:
+        query = query.where(tuple_(TrackRow.created_at, TrackRow.id) < read_moment_cursor(cursor))
+    query = query.order_by(TrackRow.created_at.desc(), TrackRow.id.desc())
+    rows = session.scalars(query.limit(limit + 1)).all()
+    if len(rows) <= limit:
+        return rows, None
+    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+
+
+def add_track(
+    session: Session, folder: Path, track_id: uuid.UUID, sequence_id: uuid.UUID, job_id: uuid.UUID | None
+) -> TrackRow:
+    """Make the row of a track whose files are in `folder`; the row that is there when this was done before."""
+    row = session.get(TrackRow, track_id)
+    if row is not None:
+        return row
+    summary = json.loads((folder / "summary.json").read_text())
+    with np.load(folder / "track.npz", allow_pickle=False) as arrays:
+        frames = arrays["frame"]
+        joint_names = [str(name) for name in arrays["joint_names"]]
+    hands = [side for side in ("right", "left") if any(name.startswith(f"{side}/") for name in joint_names)]
+    count = session.scalar(select(func.count()).select_from(TrackRow).where(TrackRow.sequence_id == sequence_id)) or 0
+    row = TrackRow(
+        id=track_id,
+        sequence_id=sequence_id,
+        job_id=job_id,
+        name=f"Track {count + 1}",
+        frame_first=int(frames[0]) if len(frames) else 0,
+        frame_count=len(frames),
+        hands=hands,
+        summary=summary,
+    )
+    session.add(row)
+    session.flush()
+    return row
+
+
+def delete_track(session: Session, track_id: uuid.UUID) -> TrackRow:
+    """Hide a track; `restore_track` brings it back."""
+    track = get_track(session, track_id)
+    track.deleted_at = utc_now()
+    session.flush()
+    return track
+
+
+def restore_track(session: Session, track_id: uuid.UUID) -> TrackRow:
+    """Bring a deleted track back."""
+    track = get_track(session, track_id, deleted=True)
+    if track.deleted_at is None:
+        raise ConflictError("The track is not deleted.")
+    track.deleted_at = None
+    session.flush()
+    return track
+
+
+def read_columns(folder: Path) -> dict[str, Any]:
+    """What is known of every frame, as columns of equal length. What was not measured is None."""
+    from tracker import TrackChunk
+
+    chunk = TrackChunk.load(folder / "frames.npz")
+    with np.load(folder / "track.npz", allow_pickle=False) as arrays:
+        status = arrays["status"].tolist()
+    return {
+        "frame": chunk.frame.tolist(),
+        "status": status,
+        "seconds": _as_list(chunk.seconds),
+        "depth_residual_mm": _as_list(chunk.depth_residual_mm),
+        "silhouette_iou": _as_list(chunk.silhouette_iou),
+        "iterations": chunk.iterations.tolist(),
+        "costs": {str(name): _as_list(chunk.costs[:, place]) for place, name in enumerate(chunk.cost_names)},
+        "stages": {str(name): _as_list(chunk.stages[:, place]) for place, name in enumerate(chunk.stage_names)},
+    }
+
+
+def read_joints(folder: Path, camera_index: int) -> tuple[list[str], list[int], list[list[list[float | None]]]]:
+    """Names, frames and (T, J, 2) px of the joints in one camera; None where a joint is behind it."""
+    with np.load(folder / "track.npz", allow_pickle=False) as arrays:
+        points = np.round(arrays["joints_2d"][:, camera_index].astype(np.float64), 3)
+        names = [str(name) for name in arrays["joint_names"]]
+        frames = arrays["frame"].tolist()
+    as_objects = points.astype(object)
+    as_objects[~np.isfinite(points)] = None
+    return names, frames, as_objects.tolist()
+
+
+def _as_list(column: np.ndarray) -> list[float | None]:
+    return [float(value) if np.isfinite(value) else None for value in column]

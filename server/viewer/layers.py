@@ -1,0 +1,86 @@
+"""Which layers of a scene are shown, and in which colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from tracker import ModelView
+
+Color = tuple[int, int, int]
+
+FINGER_COLORS: dict[str, Color] = {
+    "thumb": (250, 82, 82),
+    "index": (252, 196, 25),
+    "middle": (81, 207, 102),
+    "ring": (34, 184, 207),
+    "little": (204, 93, 232),
+}
+"""The five hues fingers keep in every skeleton."""
+
+WRIST_COLOR: Color = (206, 212, 218)
+
+TERM_COLORS: dict[str, Color] = {
+    "model_to_data": (34, 211, 238),
+    "data_to_model": (232, 62, 180),
+    "collision": (255, 59, 48),
+    "salient": (255, 214, 10),
+    "physics": (163, 230, 53),
+}
+
+SPARE_TERM_COLORS: tuple[Color, ...] = ((148, 163, 255), (255, 176, 136), (150, 242, 215), (222, 190, 255))
+
+
+def term_color(term: str) -> Color:
+    """Colour of the correspondences of a term; one that is not listed gets a spare that depends on its name only."""
+    spare = SPARE_TERM_COLORS[sum(term.encode()) % len(SPARE_TERM_COLORS)]
+    return TERM_COLORS.get(term, spare)
+
+
+def joint_colors(model: ModelView) -> npt.NDArray[np.uint8]:
+    """(J, 3) colours of a model's joints: each its finger's and grey for the wrist, or the object's own."""
+    from tracker import HAND_JOINTS
+
+    if model.name not in ("right", "left"):
+        return np.tile(np.array(model.color, dtype=np.uint8), (len(model.joints), 1))
+    fingers = [FINGER_COLORS.get(joint.partition("_")[0], WRIST_COLOR) for joint in HAND_JOINTS]
+    return np.array(fingers, dtype=np.uint8)
+
+
+@dataclass(frozen=True)
+class Layers:
+    """What is visible. A term is visible when `correspondences` is true and it is not in `hidden_terms`."""
+
+    cloud: bool = True
+    mesh: bool = True
+    skeleton: bool = False
+    correspondences: bool = False
+    hidden_terms: frozenset[str] = field(default_factory=frozenset)
+    dark: bool = True
+
+    def with_changes(self, changes: dict[str, Any]) -> Layers:
+        """Layers after `changes`, such as `{"cloud": False, "correspondences": {"model_to_data": True}}`.
+
+        For correspondences a mapping of terms shows those that are true and hides those that are false.
+        """
+        changes = dict(changes)
+        result = self
+        terms = changes.get("correspondences")
+        if isinstance(terms, dict):
+            hidden = (self.hidden_terms | {t for t, on in terms.items() if not on}) - {
+                t for t, on in terms.items() if on
+            }
+            changes["correspondences"] = any(terms.values())
+            result = replace(result, hidden_terms=frozenset(hidden))
+        known = {name: bool(value) for name, value in changes.items() if name in LAYER_NAMES}
+        return replace(result, **known)
+
+    def shows_term(self, term: str) -> bool:
+        return self.correspondences and term not in self.hidden_terms
+
+
+LAYER_NAMES = ("cloud", "mesh", "skeleton", "correspondences", "dark")

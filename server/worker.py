@@ -1,0 +1,110 @@
+"""The worker process: `handloom worker`. It may be killed at any moment; whoever starts next goes on where it was."""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import threading
+import time
+from uuid import UUID
+
+from dbos import DBOS, DBOSConfig
+from sqlalchemy import make_url
+
+from server.database import Database
+from server.database.migrate import upgrade
+from server.jobs import workers
+from server.jobs.dispatcher import Dispatcher
+from server.jobs.slot import WorkerSlot
+from server.jobs.workflow import APPLICATION, APPLICATION_VERSION, QUEUE, WorkerContext, register_workflow
+from server.settings import Settings
+from server.storage import Storage
+
+log = logging.getLogger(__name__)
+
+JOBS_AT_ONCE = 1
+"""Tracking keeps a core busy; more jobs at once take more workers."""
+
+DISPATCH_SECONDS = 0.25
+ADOPT_SECONDS = 5.0
+LOST_EXIT = 75
+
+
+def run_worker(settings: Settings) -> None:
+    """Work until SIGTERM or SIGINT; never returns."""
+    database = Database(settings.sqlalchemy_url)
+    upgrade(database)
+    storage = Storage(settings.data_dir)
+    slot = WorkerSlot.acquire(storage.root / "workers")
+    stopping = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: stopping.set())
+    with database.writing() as session:
+        worker_id = workers.register_worker(session, slot.name).id
+    workflow = register_workflow(WorkerContext(database, storage, worker_id))
+    config: DBOSConfig = {
+        "name": APPLICATION,
+        "system_database_url": find_system_database(settings),
+        "executor_id": slot.name,
+        "application_version": APPLICATION_VERSION,
+        "log_level": "WARNING",
+        "use_listen_notify": False,
+    }
+    DBOS(config=config)
+    DBOS.launch()
+    DBOS.register_queue(QUEUE, worker_concurrency=JOBS_AT_ONCE, polling_interval_sec=0.25, on_conflict="always_update")
+    threading.Thread(target=_beat_forever, args=(database, worker_id), name="heartbeat", daemon=True).start()
+    threading.Thread(target=_warm_up, name="warm-up", daemon=True).start()
+    log.info("worker %s ready, pid %d", slot.name, os.getpid())
+    _dispatch_until(stopping, Dispatcher(database, workflow))
+    with database.writing() as session:
+        workers.stop_worker(session, worker_id)
+    log.info("worker %s stops; unfinished jobs wait for the next one", slot.name)
+    logging.shutdown()
+    # A step in progress is dropped: ended in order it would be recorded as failed. It is done again, as after a crash.
+    os._exit(0)
+
+
+def find_system_database(settings: Settings) -> str:
+    """Where DBOS keeps its tables: a file in the data folder, or the studio's own PostgreSQL (in the schema `dbos`)."""
+    url = make_url(settings.sqlalchemy_url)
+    if url.get_backend_name() == "sqlite":
+        return f"sqlite:///{settings.data_dir / 'dbos.sqlite'}"
+    return url.set(drivername="postgresql").render_as_string(hide_password=False)
+
+
+def _dispatch_until(stopping: threading.Event, dispatcher: Dispatcher) -> None:
+    adopted = 0.0
+    while not stopping.wait(DISPATCH_SECONDS):
+        try:
+            dispatcher.dispatch()
+            if time.monotonic() - adopted > ADOPT_SECONDS:
+                adopted = time.monotonic()
+                dispatcher.adopt()
+        except Exception:
+            log.exception("jobs could not be dispatched; trying again")
+            stopping.wait(2.0)
+
+
+def _beat_forever(database: Database, worker_id: UUID) -> None:
+    while True:
+        time.sleep(workers.HEARTBEAT_SECONDS)
+        try:
+            with database.writing() as session:
+                is_ours = workers.beat(session, worker_id)
+        except Exception as error:
+            log.warning("no heartbeat: %s", error)
+            continue
+        if not is_ours:
+            log.error("the other workers have given this one up and taken its jobs; it ends")
+            os._exit(LOST_EXIT)
+
+
+def _warm_up() -> None:
+    from tracker import warm_up
+
+    try:
+        warm_up(lambda name, share: log.debug("warm-up: %s %.0f %%", name, 100 * share))
+    except Exception:
+        log.exception("warm-up failed; the first job will show why")

@@ -39,17 +39,26 @@ class SurfacePoints:
         return np.einsum("nk,nk...->n...", self.shares, values[self.corners])
 
 
-def decimate(model: ArticulatedModel, max_faces: int) -> ArticulatedModel:
+def decimate(model: ArticulatedModel, max_faces: int, posed: Array | None = None) -> ArticulatedModel:
     """The model with at most `max_faces` faces (2 % more are let through); as it was if it has no more.
 
     Skinning weights and shape offsets are read off the old surface at the new vertices. Vertices that are joints of a
     hand stay where they were, as vertices that no face uses. A small offset along the normals gives the volume back.
+
+    Args:
+        model: Any model.
+        max_faces: Faces to keep.
+        posed: (V, 3) vertices in the pose whose shape is to be kept, such as a bent hand; the rest pose when left out.
     """
     if len(model.faces) <= max_faces:
         return model
-    surface, faces = simplify(model.vertices, model.faces, max_faces)
+    shape = model.vertices if posed is None else posed
+    assert shape.shape == model.vertices.shape
+    surface, faces = simplify(shape, model.faces, max_faces)
     landmarks = _landmarks(model)
-    where = find_surface_points(surface, model.vertices, model.faces)
+    where = find_surface_points(surface, shape, model.faces)
+    if posed is not None:
+        surface = where.interpolate(model.vertices)
     surface = restore_volume(surface, faces, compute_volume(model.vertices, model.faces))
     corners = np.concatenate([where.corners, np.repeat(landmarks[:, None], 3, axis=1)])
     shares = np.concatenate([where.shares, np.tile([1.0, 0.0, 0.0], (len(landmarks), 1))])

@@ -38,7 +38,7 @@ def find_hand_parts(
         skinning_weights: (V, B).
         joints: (B, 3) joints at rest, model frame, m.
         wrist: Bone of the wrist.
-        finger_bones: For each of FINGERS its bones, palm first: metacarpal, proximal, (middle,) distal.
+        finger_bones: For each of FINGERS its bones, palm first: metacarpal (may be missing), proximal, middle, distal.
         tips: (5,) vertex at the tip of each of FINGERS.
     """
     assert side in ("right", "left") and set(finger_bones) == set(FINGERS) and tips.shape == (len(FINGERS),)
@@ -50,14 +50,29 @@ def find_hand_parts(
     parts = {"wrist": np.flatnonzero(dominant == wrist)}
     for number, finger in enumerate(FINGERS):
         bones = finger_bones[finger]
-        assert len(bones) == len(finger_segments(finger))
+        assert bones and len(bones) >= 3
         first = 1 + 4 * number
         joint_bones[first : first + 3] = bones[-3:]
         joint_vertices[first + 3] = tips[number]
         fingertips.append(_find_fingertip(vertices, dominant == bones[-1], joints[bones[-1]], int(tips[number])))
-        for segment, bone in zip(finger_segments(finger), bones, strict=True):
+        for segment, bone in zip(finger_segments(finger)[-len(bones) :], bones, strict=True):
             parts[f"{finger}_{segment}"] = np.flatnonzero(dominant == bone)
     return HandParts(side, joint_bones, joint_vertices, tuple(fingertips), parts)
+
+
+def find_tip(vertices: Array, weights: Array, chain: Array) -> int:
+    """The vertex at the tip of a finger: far along its last bone and near its line.
+
+    Args:
+        vertices: (V, 3).
+        weights: (V,) how much each vertex follows the last bone.
+        chain: (n, 3) joints of the finger and the end of its last bone.
+    """
+    along = (chain[-1] - chain[-2]) / np.linalg.norm(chain[-1] - chain[-2])
+    offset = vertices - chain[-2]
+    reach = offset @ along
+    aside = np.linalg.norm(offset - reach[:, None] * along, axis=1)
+    return int(np.argmax(np.where(weights > 0.5 * weights.max(), reach - 0.8 * aside, -np.inf)))
 
 
 def _find_fingertip(vertices: Array, is_distal: npt.NDArray[np.bool_], joint: Array, tip: int) -> npt.NDArray[np.int64]:

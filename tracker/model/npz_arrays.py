@@ -1,0 +1,116 @@
+"""Arrays in an .npz archive from anywhere: read without pickle, and never more than the archive says and we allow."""
+
+from __future__ import annotations
+
+import struct
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.errors import ModelFileError
+
+MAX_BYTES = 256 * 2**20
+MAX_MEMBERS = 64
+
+KINDS = {"float": np.dtype("<f8"), "integer": np.dtype("<i8")}
+
+
+def read_npz_arrays(path: Path) -> dict[str, npt.NDArray]:
+    """All arrays of an .npz file: float64, int64 or text.
+
+    Raises:
+        ModelFileError: Not an archive of such arrays, damaged, or too large.
+    """
+    needed = "an .npz archive of arrays"
+    try:
+        with zipfile.ZipFile(path) as archive:
+            members = archive.infolist()
+            if len(members) > MAX_MEMBERS or sum(member.file_size for member in members) > MAX_BYTES:
+                raise ModelFileError(
+                    path, "an archive with too many or too large members", f"at most {MAX_BYTES} bytes"
+                )
+            return {member.filename.removesuffix(".npy"): _read_member(archive, member) for member in members}
+    except ModelFileError:
+        raise
+    except (zipfile.BadZipFile, zlib.error, OSError, EOFError, struct.error, NotImplementedError) as error:
+        raise ModelFileError(path, f"no readable archive ({str(error)[:120]})", needed) from error
+    except (ValueError, RuntimeError, SyntaxError, KeyError, OverflowError, MemoryError, TypeError) as error:
+        raise ModelFileError(path, f"a damaged member ({str(error)[:120]})", needed) from error
+
+
+def _read_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArray:
+    with archive.open(member) as file:
+        version = np.lib.format.read_magic(file)
+        if version == (1, 0):
+            shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
+        elif version == (2, 0):
+            shape, fortran, dtype = np.lib.format.read_array_header_2_0(file)
+        else:
+            raise ValueError(f"{member.filename} has the array format {version}")
+        if fortran or not (dtype in KINDS.values() or dtype.kind == "U"):
+            raise ValueError(f"{member.filename} holds {dtype}, not float64, int64 or text in C order")
+        if any(not isinstance(length, int) or length < 0 for length in shape):
+            raise ValueError(f"{member.filename} has the shape {shape}")
+        expected = dtype.itemsize
+        for length in shape:
+            expected *= length
+        if expected > MAX_BYTES:
+            raise ValueError(f"{member.filename} claims {expected} bytes")
+        data = file.read(expected + 1)
+    if len(data) != expected:
+        raise ValueError(f"{member.filename} holds {len(data)} bytes of data where its shape needs {expected}")
+    return np.frombuffer(data, dtype=dtype).reshape(shape).copy()
+
+
+class NpzFields:
+    """Arrays of one file, taken out by name with their kind and shape checked."""
+
+    def __init__(self, path: Path, arrays: dict[str, npt.NDArray]) -> None:
+        self.path = path
+        self.arrays = arrays
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.arrays
+
+    def floats(self, name: str, shape: tuple[int, ...], limit: float) -> npt.NDArray[np.float64]:
+        """float64 of this shape (-1: any length), finite and within ±limit."""
+        array = self._take(name, KINDS["float"], shape)
+        if array.size and not (np.all(np.isfinite(array)) and np.abs(array).max() <= limit):
+            raise ModelFileError(self.path, f"'{name}' with values that are endless or beyond {limit}", "sound numbers")
+        return array
+
+    def integers(self, name: str, shape: tuple[int, ...], low: int, high: int) -> npt.NDArray[np.int64]:
+        """int64 of this shape (-1: any length), low <= value < high."""
+        array = self._take(name, KINDS["integer"], shape)
+        if array.size and (array.min() < low or array.max() >= high):
+            raise ModelFileError(
+                self.path, f"'{name}' from {array.min()} to {array.max()}", f"values from {low} to {high - 1}"
+            )
+        return array
+
+    def texts(self, name: str, count: int) -> tuple[str, ...]:
+        """Text array of this length (-1: any)."""
+        array = self.arrays.get(name)
+        if array is None or array.dtype.kind != "U" or array.ndim != 1 or count not in (-1, len(array)):
+            raise ModelFileError(self.path, self._describe(name), f"'{name}', {'' if count < 0 else count} texts")
+        return tuple(str(text) for text in array)
+
+    def _take(self, name: str, dtype: np.dtype, shape: tuple[int, ...]) -> npt.NDArray:
+        array = self.arrays.get(name)
+        fits = (
+            array is not None
+            and array.dtype == dtype
+            and array.ndim == len(shape)
+            and all(want in (-1, have) for want, have in zip(shape, array.shape, strict=True))
+        )
+        if not fits or array is None:
+            wanted = "x".join("N" if length < 0 else str(length) for length in shape)
+            raise ModelFileError(self.path, self._describe(name), f"'{name}', {dtype} {wanted}")
+        return array
+
+    def _describe(self, name: str) -> str:
+        array = self.arrays.get(name)
+        return f"no '{name}'" if array is None else f"'{name}', {array.dtype} {'x'.join(map(str, array.shape))}"

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tracker.capture.import_run import run_import
     from tracker.capture.relative_path import find_path_fault
     from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
+    from tracker.cli import add_commands
     from tracker.errors import (
         AnnotationError,
         FrameError,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
         TrackerError,
         TrackingError,
     )
+    from tracker.evaluation.evaluation import Evaluation, evaluate_track
     from tracker.model.articulated import ArticulatedModel
     from tracker.model.default_hand import default_hand
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
@@ -48,6 +50,7 @@ _HOMES = {
     "ArchiveLimits": "tracker.capture.archive",
     "ArticulatedModel": "tracker.model.articulated",
     "Camera": "tracker.capture.camera",
+    "Evaluation": "tracker.evaluation.evaluation",
     "Frame": "tracker.capture.frame",
     "FrameError": "tracker.errors",
     "FrameResult": "tracker.tracking.frame_result",
@@ -68,9 +71,11 @@ _HOMES = {
     "TrackState": "tracker.tracking.state",
     "TrackerError": "tracker.errors",
     "TrackingError": "tracker.errors",
+    "add_commands": "tracker.cli",
     "check_import": "tracker.capture.import_check",
     "default_hand": "tracker.model.default_hand",
     "describe_frame": "tracker.tracking.frame_view",
+    "evaluate_track": "tracker.evaluation.evaluation",
     "extract_archive": "tracker.capture.archive",
     "find_path_fault": "tracker.capture.relative_path",
     "join_chunks": "tracker.tracking.track",
@@ -96,6 +101,7 @@ __all__ = [
     "ArchiveLimits",
     "ArticulatedModel",
     "Camera",
+    "Evaluation",
     "Frame",
     "FrameError",
     "FrameResult",
@@ -113,9 +119,11 @@ __all__ = [
     "TrackState",
     "TrackerError",
     "TrackingError",
+    "add_commands",
     "check_import",
     "default_hand",
     "describe_frame",
+    "evaluate_track",
     "extract_archive",
     "find_path_fault",
     "join_chunks",

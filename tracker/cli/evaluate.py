@@ -28,7 +28,7 @@ def evaluate(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.capture.annotations import load_annotations
     from tracker.capture.truth import load_truth
     from tracker.evaluation import evaluate_against_truth, evaluate_track
-    from tracker.tracking import load_track
+    from tracker.tracking.track import load_track
 
     if args.annotations is None and args.truth is None:
         raise TrackerError("Nothing to compare with: give --annotations FILE, --truth FILE or both.")

@@ -51,7 +51,10 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 def track(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.capture.annotations import load_annotations
     from tracker.capture.sequence import load_sequence
-    from tracker.tracking import TrackOptions, join_chunks, start_tracking, track_frames
+    from tracker.tracking.follow import track_frames
+    from tracker.tracking.options import TrackOptions
+    from tracker.tracking.start import start_tracking
+    from tracker.tracking.track import join_chunks
 
     sequence = load_sequence(args.recording)
     frames = choose_frames(args.frames, sequence.frame_count)
@@ -91,7 +94,7 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         frames,
         lambda frame, result: line.show((frame - frames.start + 1) / len(frames), f"frame {frame} {result.status}"),
     )
-    track = join_chunks(setup, [chunk])
+    track = join_chunks(sequence, setup, [chunk])
     track.save(args.out)
     return {"out": str(args.out), **json.loads((args.out / "summary.json").read_text())}
 

@@ -22,7 +22,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 def compile_kernels(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.evaluation.surface_distance import warm_up_distances
-    from tracker.tracking import warm_up
+    from tracker.tracking.warm_up import warm_up
 
     began = time.monotonic()
     line = ProgressLine("compiling kernels")

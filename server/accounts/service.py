@@ -24,8 +24,16 @@ def get_current_account(session: SessionDep) -> Account:
 CurrentAccount = Annotated[Account, Depends(get_current_account)]
 
 
-def find_names(session: Session, ids: Iterable[uuid.UUID | None]) -> dict[uuid.UUID, str]:
-    """Names of some accounts."""
+def get_current_account_id() -> uuid.UUID:
+    """The account's id, without a session: for routes that work longer than one transaction."""
+    return LOCAL_ACCOUNT_ID
+
+
+AccountIdDep = Annotated[uuid.UUID, Depends(get_current_account_id)]
+
+
+def find_names(session: Session, ids: Iterable[uuid.UUID | None]) -> dict[uuid.UUID | None, str]:
+    """Names of some accounts; nobody (None) has none."""
     wanted = {id_ for id_ in ids if id_ is not None}
     if not wanted:
         return {}

@@ -13,9 +13,11 @@ from starlette.concurrency import run_in_threadpool
 from server.app.browser_app import BrowserApp
 from server.app.error_handler import install_error_handler
 from server.app.guard import Guard
-from server.app.parts import LIFESPANS, PAGE_ROUTERS, ROUTERS
+from server.app.parts import LIFESPANS, PAGE_ROUTERS, ROUTERS, SEQUENCE_FACTS
 from server.database import Database
 from server.database.migrate import upgrade
+from server.errors import error_responses
+from server.sequences.frame_images import FrameImages
 from server.settings import Settings
 from server.storage import Storage
 
@@ -38,9 +40,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         lifespan=_lifespan,
     )
     app.state.settings = settings
+    app.state.sequence_facts = SEQUENCE_FACTS
     install_error_handler(app)
     for router in ROUTERS:
-        app.include_router(router, prefix=API)
+        app.include_router(router, prefix=API, responses=error_responses(403, 500))
     for router in PAGE_ROUTERS:
         app.include_router(router)
     app.mount("/", BrowserApp(settings.web_dist))
@@ -52,10 +55,11 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     settings: Settings = app.state.settings
     async with AsyncExitStack() as stack:
-        app.state.storage = await run_in_threadpool(Storage, settings.data_dir)
+        storage = app.state.storage = await run_in_threadpool(Storage, settings.data_dir)
         database = app.state.database = Database(settings.sqlalchemy_url)
         stack.callback(database.close)
         await run_in_threadpool(upgrade, database)
+        app.state.frame_images = FrameImages(database, storage, settings.image_cache_mb * 1_000_000)
         for lifespan in LIFESPANS:
             await stack.enter_async_context(lifespan(app))
         log.info("The studio's data: %s", settings.data_dir)

@@ -8,18 +8,43 @@ from contextlib import AbstractAsyncContextManager
 from fastapi import APIRouter, FastAPI
 
 from server.accounts import routes as accounts
+from server.annotations import routes as annotations
+from server.annotations.service import find_annotated_frames
 from server.app import health
+from server.evaluations import routes as evaluations
+from server.hand_models import routes as hand_models
+from server.imports import routes as imports
+from server.imports.lifespan import clean_imports
+from server.jobs import routes as jobs
+from server.sequences import frame_routes
+from server.sequences import routes as sequences
+from server.sequences.facts import FactFinder
+from server.tracks import routes as tracks
+from server.tracks.facts import find_best_tracks
+from server.viewer import routes as viewer
 
 Lifespan = Callable[[FastAPI], AbstractAsyncContextManager[None]]
 
 ROUTERS: tuple[APIRouter, ...] = (
     health.router,
     accounts.router,
+    hand_models.router,
+    sequences.router,
+    frame_routes.router,
+    annotations.router,
+    imports.router,
+    jobs.router,
+    tracks.router,
+    viewer.router,
+    evaluations.router,
 )
 """All under `/api/v1`."""
 
-PAGE_ROUTERS: tuple[APIRouter, ...] = ()
+PAGE_ROUTERS: tuple[APIRouter, ...] = (viewer.page_router,)
 """Those with addresses of their own, such as the viewer's page."""
 
-LIFESPANS: tuple[Lifespan, ...] = ()
+LIFESPANS: tuple[Lifespan, ...] = (clean_imports, viewer.lifespan)
 """Entered in this order when the app starts (database and storage are there), left in reverse when it stops."""
+
+SEQUENCE_FACTS: tuple[FactFinder, ...] = (find_annotated_frames, find_best_tracks)
+"""What rooms above the recordings know of them."""

@@ -1,4 +1,4 @@
-"""Lists in pages: `{"items", "next_cursor"}`. A cursor names the last thing seen, so nothing is skipped or seen twice."""
+"""Lists in pages: `{"items", "next_cursor"}`. A cursor names the last thing seen: nothing is skipped or seen twice."""
 
 from __future__ import annotations
 
@@ -39,8 +39,7 @@ def read_cursor(cursor: str, *kinds: type) -> list:
         place = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
     except (ValueError, binascii.Error, RecursionError):
         place = None
-    is_whole = isinstance(place, list) and len(place) == len(kinds)
-    if not is_whole or any(type(part) is not kind for part, kind in zip(place, kinds, strict=True)):
+    if not isinstance(place, list) or [type(part) for part in place] != list(kinds):
         raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours. Give the `next_cursor` of a page, or none.")
     return place
 

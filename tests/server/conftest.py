@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import socket
 import subprocess
 import tempfile
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import cv2
+import numpy as np
 import psycopg
 import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
+from server.accounts.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
 from server.database import Database
 from server.database.migrate import upgrade
+from server.imports.service import ImportDesk, import_recording
 from server.settings import Settings
 
+MakeRecording = Callable[..., Path]
 BASE_URL = "http://127.0.0.1:8000"
 
 
@@ -151,3 +158,69 @@ def studio(settings: Settings) -> Iterator[Studio]:
 @pytest.fixture
 def client(studio: Studio) -> TestClient:
     return studio.client
+
+
+@pytest.fixture
+def make_recording(tmp_path: Path) -> MakeRecording:
+    """Writes a small recording folder: one RGB-D camera, or colour alone, or depth alone."""
+
+    def make(
+        name: str = "waving",
+        frames: int = 3,
+        color: str | None = "png",
+        depth: bool = True,
+        size: tuple[int, int] = (32, 24),
+    ) -> Path:
+        folder = tmp_path / "recordings" / name
+        folder.mkdir(parents=True)
+        width, height = size
+        rng = np.random.default_rng(7)
+        camera = {
+            "id": "cam0",
+            "width": width,
+            "height": height,
+            "K": [[float(width), 0, width / 2], [0, float(width), height / 2], [0, 0, 1]],
+            "distortion": [],
+            "T_world_camera": np.eye(4).tolist(),
+        }
+        if color:
+            camera["color"] = f"color/{{:06d}}.{color}"
+            (folder / "color").mkdir()
+        if depth:
+            camera |= {"depth": "depth/{:06d}.png", "depth_scale": 0.001}
+            (folder / "depth").mkdir()
+        for index in range(frames):
+            if color:
+                image = rng.integers(0, 255, (height, width, 3), dtype=np.uint8)
+                cv2.imwrite(str(folder / "color" / f"{index:06d}.{color}"), image)
+            if depth:
+                values = rng.integers(400, 800, (height, width), dtype=np.uint16)
+                values[0, 0] = 0
+                cv2.imwrite(str(folder / "depth" / f"{index:06d}.png"), values)
+        document = {
+            "version": 1,
+            "name": name,
+            "fps": 30.0,
+            "frame_count": frames,
+            "cameras": [camera],
+            "hands": ["right"],
+        }
+        (folder / "sequence.json").write_text(json.dumps(document | {"objects": []}))
+        return folder
+
+    return make
+
+
+AddRecording = Callable[..., dict[str, Any]]
+
+
+@pytest.fixture
+def add_recording(studio: Studio, make_recording: MakeRecording) -> AddRecording:
+    """Puts a small recording into the studio; gives it as the API does."""
+
+    def add(name: str = "waving", **arguments: Any) -> dict[str, Any]:
+        desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+        id_ = import_recording(desk, make_recording(name, **arguments), {}, LOCAL_ACCOUNT_ID)
+        return studio.client.get(f"/api/v1/sequences/{id_}").json()
+
+    return add

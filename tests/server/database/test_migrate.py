@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -10,13 +11,12 @@ from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from sqlalchemy import inspect, select
 
-import server.annotations.models
-import server.app
-import server.imports.models
-import server.sequences.models  # noqa: F401 (they define the tables)
 from server.accounts.models import LOCAL_ACCOUNT_ID, Account
 from server.database import Base, Database
 from server.database.migrate import SCRIPTS, downgrade, find_current, find_head, upgrade
+
+for path in sorted((Path(SCRIPTS).parent / "server").glob("*/models.py")):
+    import_module(f"server.{path.parent.name}.models")  # they declare the tables
 
 
 def own_tables(database: Database) -> set[str]:

@@ -1,0 +1,214 @@
+"""`/sequences/{sequence_id}/annotations`."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Path, Query, Response
+from sqlalchemy.orm import Session
+
+from server.accounts.service import CurrentAccount, find_names
+from server.annotations import service
+from server.annotations.models import AnnotationRevisionRow, AnnotationRow
+from server.annotations.schemas import (
+    AnnotationConflict,
+    AnnotationFile,
+    AnnotationOut,
+    AnnotationPut,
+    AnnotationRestore,
+    AnnotationRevision,
+    Hand,
+)
+from server.annotations.service import Change, Place, StaleAnnotationError
+from server.database import SessionDep
+from server.database.paging import Cursor, Page
+from server.database.revision import IfMatch, IfNoneMatch, read_if_match, write_etag
+from server.errors import ConflictError, InvalidError, error_responses
+from server.sequences.models import SequenceRow
+from server.sequences.service import get_sequence
+
+router = APIRouter(prefix="/sequences/{sequence_id}", tags=["annotations"], responses=error_responses(404))
+
+CONFLICTS: dict[int | str, dict[str, Any]] = {409: {"model": AnnotationConflict}, **error_responses(428)}
+CameraPath = Annotated[str, Path(max_length=64)]
+FramePath = Annotated[int, Path(ge=0, le=10**9)]
+FrameQuery = Annotated[int | None, Query(ge=0, le=10**9)]
+
+
+def get_annotated_sequence(sequence_id: uuid.UUID, session: SessionDep) -> SequenceRow:
+    """The recording of the address."""
+    return get_sequence(session, sequence_id)
+
+
+SequenceDep = Annotated[SequenceRow, Depends(get_annotated_sequence)]
+
+
+def get_place(sequence: SequenceDep, camera: CameraPath, frame: FramePath, hand: Hand) -> Place:
+    """The place of the address."""
+    return service.check_place(sequence, camera, frame, hand)
+
+
+PlaceDep = Annotated[Place, Depends(get_place)]
+
+
+@router.get("/annotations")
+def list_annotations(
+    sequence: SequenceDep,
+    session: SessionDep,
+    camera: Annotated[str | None, Query(max_length=64)] = None,
+    from_: Annotated[FrameQuery, Query(alias="from", description="First frame.")] = None,
+    to: Annotated[FrameQuery, Query(description="Last frame.")] = None,
+    cursor: Cursor = None,
+    limit: Annotated[int, Query(ge=1, le=10_000, description="Most items of a page.")] = 2_000,
+) -> Page[AnnotationOut]:
+    """Annotations of a recording by frame, camera and hand."""
+    rows, next_cursor = service.list_annotations(
+        session, sequence.id, camera=camera, frames=(from_, to), cursor=cursor, limit=limit
+    )
+    return Page(items=_describe(session, rows), next_cursor=next_cursor)
+
+
+@router.get("/annotations.json")
+def get_annotation_file(sequence: SequenceDep, session: SessionDep, response: Response) -> AnnotationFile:
+    """All annotations as the file `annotations.json` of a recording folder."""
+    response.headers["Content-Disposition"] = 'attachment; filename="annotations.json"'
+    return AnnotationFile.model_validate(service.export_annotations(session, sequence.id))
+
+
+@router.get("/annotations/{camera}/{frame}/{hand}")
+def get_annotation(place: PlaceDep, session: SessionDep, response: Response) -> AnnotationOut:
+    """One annotation; its `ETag` is what a change must send as `If-Match`."""
+    row = service.get_annotation(session, place)
+    response.headers["ETag"] = write_etag(row.revision)
+    return _describe(session, [row])[0]
+
+
+@router.put("/annotations/{camera}/{frame}/{hand}", responses=CONFLICTS)
+def put_annotation(
+    place: PlaceDep,
+    sequence: SequenceDep,
+    body: AnnotationPut,
+    session: SessionDep,
+    account: CurrentAccount,
+    response: Response,
+    if_match: IfMatch = None,
+    if_none_match: IfNoneMatch = None,
+) -> AnnotationOut:
+    """Store an annotation: the first one with `If-None-Match: *`, a change with `If-Match`.
+
+    A request that is sent again with its `operation_id` changes nothing and is answered as the first time.
+    """
+    points = service.check_points(sequence, place, body.points)
+    expected = _read_expected(if_match, if_none_match)
+    change = Change("put", points, expected, body.operation_id, account.id)
+    return _describe_made(session, place, _change(session, place, change, response))
+
+
+@router.delete("/annotations/{camera}/{frame}/{hand}", status_code=204, responses=CONFLICTS)
+def delete_annotation(
+    place: PlaceDep,
+    session: SessionDep,
+    account: CurrentAccount,
+    response: Response,
+    if_match: IfMatch = None,
+    operation_id: Annotated[uuid.UUID | None, Query(description="As in PUT.")] = None,
+) -> None:
+    """Delete an annotation; its history stays, and every revision of it can be restored."""
+    expected = read_if_match(if_match)
+    change = Change("delete", None, expected, operation_id or uuid.uuid4(), account.id)
+    _change(session, place, change, response)
+
+
+@router.get("/annotations/{camera}/{frame}/{hand}/history")
+def list_annotation_history(place: PlaceDep, session: SessionDep, response: Response) -> Page[AnnotationRevision]:
+    """Every revision, newest first, of a deleted annotation too."""
+    row = service.get_annotation(session, place, deleted_too=True)
+    history = service.list_history(session, row)
+    names = find_names(session, [item.author_id for item in history])
+    response.headers["ETag"] = write_etag(row.revision)
+    return Page(items=[_describe_revision(item, names) for item in history], next_cursor=None)
+
+
+@router.post("/annotations/{camera}/{frame}/{hand}/history/{revision}/restore", responses=CONFLICTS)
+def restore_annotation(
+    place: PlaceDep,
+    revision: Annotated[int, Path(ge=1, le=10**9)],
+    body: AnnotationRestore,
+    session: SessionDep,
+    account: CurrentAccount,
+    response: Response,
+    if_match: IfMatch = None,
+) -> AnnotationOut:
+    """Make an earlier revision the current one again, as a new revision."""
+    row = service.get_annotation(session, place, deleted_too=True)
+    points = service.get_past_points(session, row, revision)
+    change = Change("restore", points, read_if_match(if_match), body.operation_id, account.id)
+    return _describe_made(session, place, _change(session, place, change, response))
+
+
+def _read_expected(if_match: str | None, if_none_match: str | None) -> int | None:
+    if if_none_match is None:
+        return read_if_match(if_match)
+    if if_match is not None or if_none_match.strip() != "*":
+        raise InvalidError("Send either If-None-Match: * (there is none yet) or If-Match with one revision.")
+    return None
+
+
+def _change(session: Session, place: Place, change: Change, response: Response) -> AnnotationRevisionRow:
+    """Do it; when somebody else was first, the answer carries theirs."""
+    try:
+        made = service.change_annotation(session, place, change)
+    except StaleAnnotationError as stale:
+        row = stale.row
+        theirs = None if row is None or row.points is None else _describe(session, [row])[0].model_dump(mode="json")
+        headers = None if row is None else {"ETag": write_etag(row.revision)}
+        raise ConflictError(stale.detail, headers=headers, theirs=theirs) from None
+    response.headers["ETag"] = write_etag(made.revision)
+    return made
+
+
+def _describe_made(session: Session, place: Place, made: AnnotationRevisionRow) -> AnnotationOut:
+    return AnnotationOut.model_validate(
+        {
+            "frame": place.frame,
+            "camera": place.camera,
+            "hand": place.hand,
+            "points": made.points,
+            "revision": made.revision,
+            "updated_at": made.created_at,
+            "author": find_names(session, [made.author_id]).get(made.author_id),
+        }
+    )
+
+
+def _describe(session: Session, rows: Sequence[AnnotationRow]) -> list[AnnotationOut]:
+    names = find_names(session, [row.author_id for row in rows])
+    return [
+        AnnotationOut.model_validate(
+            {
+                "frame": row.frame,
+                "camera": row.camera,
+                "hand": row.hand,
+                "points": row.points,
+                "revision": row.revision,
+                "updated_at": row.updated_at,
+                "author": names.get(row.author_id),
+            }
+        )
+        for row in rows
+    ]
+
+
+def _describe_revision(item: AnnotationRevisionRow, names: dict[uuid.UUID | None, str]) -> AnnotationRevision:
+    return AnnotationRevision.model_validate(
+        {
+            "revision": item.revision,
+            "act": item.act,
+            "points": item.points,
+            "created_at": item.created_at,
+            "author": names.get(item.author_id),
+            "operation_id": item.operation_id,
+        }
+    )

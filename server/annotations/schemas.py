@@ -1,0 +1,91 @@
+"""Annotations as the API gives and takes them."""
+
+from __future__ import annotations
+
+import uuid
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from server.annotations.models import Act
+from server.errors import ErrorBody
+
+Hand = Literal["right", "left"]
+Pixel = Annotated[float, Field(strict=True, ge=-1e6, le=1e6, allow_inf_nan=False)]
+Visibility = Literal[0, 1, 2]
+Point = tuple[Pixel, Pixel, Visibility]
+Points = Annotated[
+    list[Point],
+    Field(
+        min_length=21,
+        max_length=21,
+        description="[x, y, v] of each joint in the order of `/hand-skeleton`: px, the centre of the top-left pixel is "
+        "(0, 0); v is 0 absent, 1 occluded, 2 visible.",
+    ),
+]
+
+
+class AnnotationOut(BaseModel):
+    """One hand in one image."""
+
+    model_config = ConfigDict(title="Annotation")
+
+    frame: int
+    camera: str
+    hand: Hand
+    points: Points
+    revision: int
+    updated_at: datetime
+    author: str | None
+
+
+class AnnotationPut(BaseModel):
+    """A hand as somebody marked it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    points: Points
+    operation_id: uuid.UUID = Field(description="Made by the client, new for each change; a repeated one does nothing.")
+
+
+class AnnotationRestore(BaseModel):
+    """Whose wish it is to go back."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    operation_id: uuid.UUID
+
+
+class AnnotationRevision(BaseModel):
+    """What one operation made of an annotation."""
+
+    revision: int
+    act: Act
+    points: Points | None = Field(description="Null: it was deleted.")
+    created_at: datetime
+    author: str | None
+    operation_id: uuid.UUID
+
+
+class AnnotationConflict(ErrorBody):
+    """Somebody else was first."""
+
+    theirs: AnnotationOut | None = Field(description="How it is now; null when it is deleted or was never made.")
+
+
+class AnnotationItem(BaseModel):
+    """An entry of `annotations.json`."""
+
+    frame: int
+    camera: str
+    hand: Hand
+    points: Points
+
+
+class AnnotationFile(BaseModel):
+    """`annotations.json` of a recording folder."""
+
+    version: Literal[1] = 1
+    joints: list[str]
+    items: list[AnnotationItem]

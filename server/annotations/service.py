@@ -1,0 +1,244 @@
+"""Annotations: read, written, taken back. Every change adds a row to the history and none is ever overwritten there."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from sqlalchemy import and_, distinct, func, null, select, tuple_
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from server.annotations.models import Act, AnnotationRevisionRow, AnnotationRow
+from server.database import utc_now
+from server.database.paging import read_cursor, write_cursor
+from server.errors import ConflictError, InvalidError, NotFoundError
+from server.sequences.models import SequenceRow
+from tracker import Annotation, Annotations
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where an annotation belongs: one hand in one image."""
+
+    sequence_id: uuid.UUID
+    camera: str
+    frame: int
+    hand: str
+
+    def __str__(self) -> str:
+        return f"the {self.hand} hand in frame {self.frame} of {self.camera}"
+
+
+@dataclass(frozen=True)
+class Change:
+    """What somebody wants to do.
+
+    Attributes:
+        act: For the history.
+        points: 21 times [x, y, v], or None to delete.
+        expected: Revision that is changed; None: there must be none yet.
+        operation_id: The client's.
+        account_id: Who.
+    """
+
+    act: Act
+    points: list[Any] | None
+    expected: int | None
+    operation_id: uuid.UUID
+    account_id: uuid.UUID
+
+
+class StaleAnnotationError(ConflictError):
+    """Somebody changed the annotation meanwhile; `row` is how it is now, None when there is none."""
+
+    def __init__(self, place: Place, row: AnnotationRow | None) -> None:
+        now = "there is none now" if row is None or row.points is None else f"it is at revision {row.revision}"
+        super().__init__(f"The annotation of {place} was changed meanwhile; {now}. Yours was not stored.")
+        self.row = row
+
+
+def check_place(sequence: SequenceRow, camera: str, frame: int, hand: str) -> Place:
+    """The place, if the recording has it."""
+    if camera not in (known := [item["id"] for item in sequence.cameras]):
+        raise NotFoundError(f"{sequence.name} has no camera {camera!r}; it has {known}.")
+    if not 0 <= frame < sequence.frame_count:
+        raise NotFoundError(f"{sequence.name} has no frame {frame}; they go from 0 to {sequence.frame_count - 1}.")
+    return Place(sequence.id, camera, frame, hand)
+
+
+def check_points(sequence: SequenceRow, place: Place, points: Sequence[Sequence[float]]) -> list[Any]:
+    """The points ready to be stored. Joints that are there may lie outside the image by its size at most."""
+    camera = next(item for item in sequence.cameras if item["id"] == place.camera)
+    width, height = camera["width"], camera["height"]
+    for number, (x, y, v) in enumerate(points):
+        if v and not (-width <= x <= 2 * width and -height <= y <= 2 * height):
+            raise InvalidError(
+                f"points.{number} is at ({x:g}, {y:g}), far outside the image of {width}x{height} px. "
+                "Mark a joint that is not in the image as absent (v = 0)."
+            )
+    return [[float(x), float(y), int(v)] for x, y, v in points]
+
+
+def find_annotation(session: Session, place: Place, *, for_update: bool = False) -> AnnotationRow | None:
+    """The annotation at a place, a deleted one too."""
+    query = select(AnnotationRow).where(
+        AnnotationRow.sequence_id == place.sequence_id,
+        AnnotationRow.camera == place.camera,
+        AnnotationRow.frame == place.frame,
+        AnnotationRow.hand == place.hand,
+    )
+    if for_update:
+        query = query.with_for_update().execution_options(populate_existing=True)
+    return session.scalars(query).one_or_none()
+
+
+def get_annotation(session: Session, place: Place, *, deleted_too: bool = False) -> AnnotationRow:
+    """The annotation at a place."""
+    row = find_annotation(session, place)
+    if row is None or (row.points is None and not deleted_too):
+        raise NotFoundError(f"There is no annotation of {place}.")
+    return row
+
+
+def change_annotation(session: Session, place: Place, change: Change) -> AnnotationRevisionRow:
+    """Do it, if the annotation is as expected. A repeated operation does nothing and gives what it made at first."""
+    row = find_annotation(session, place, for_update=True)
+    if (done := _find_operation(session, row, place, change)) is not None:
+        return done
+    if change.act == "delete" and (row is None or row.points is None):
+        raise NotFoundError(f"There is no annotation of {place}.")
+    if row is None:
+        if change.expected is not None:
+            raise StaleAnnotationError(place, None)
+        try:
+            with session.begin_nested():
+                row = AnnotationRow(**vars(place), points=None, revision=0)
+                session.add(row)
+                session.flush()
+        except IntegrityError:  # another request made it between our look and now
+            return change_annotation(session, place, change)
+    elif not (row.points is None if change.expected is None else row.revision == change.expected):
+        raise StaleAnnotationError(place, row)
+    return _write(session, row, change)
+
+
+def _find_operation(
+    session: Session, row: AnnotationRow | None, place: Place, change: Change
+) -> AnnotationRevisionRow | None:
+    query = select(AnnotationRevisionRow).where(AnnotationRevisionRow.operation_id == change.operation_id)
+    done = session.scalars(query).one_or_none()
+    if done is None:
+        return None
+    if row is None or done.annotation_id != row.id or done.act != change.act or done.points != change.points:
+        raise InvalidError(
+            f"The operation {change.operation_id} was another change before; {place} was left as it is. "
+            "Make a new operation_id for each change."
+        )
+    return done
+
+
+def _write(session: Session, row: AnnotationRow, change: Change) -> AnnotationRevisionRow:
+    row.points = change.points
+    row.revision += 1
+    row.updated_at = utc_now()
+    row.author_id = change.account_id
+    made = AnnotationRevisionRow(
+        annotation_id=row.id,
+        revision=row.revision,
+        operation_id=change.operation_id,
+        act=change.act,
+        points=change.points,
+        created_at=row.updated_at,
+        author_id=change.account_id,
+    )
+    session.add(made)
+    session.flush()
+    return made
+
+
+def list_history(session: Session, row: AnnotationRow) -> Sequence[AnnotationRevisionRow]:
+    """Every revision of an annotation, newest first."""
+    query = select(AnnotationRevisionRow).where(AnnotationRevisionRow.annotation_id == row.id)
+    return session.scalars(query.order_by(AnnotationRevisionRow.revision.desc())).all()
+
+
+def get_past_points(session: Session, row: AnnotationRow, revision: int) -> list[Any]:
+    """Points of an earlier revision."""
+    query = select(AnnotationRevisionRow).where(
+        AnnotationRevisionRow.annotation_id == row.id, AnnotationRevisionRow.revision == revision
+    )
+    past = session.scalars(query).one_or_none()
+    if past is None:
+        raise NotFoundError(f"There is no revision {revision}; they go from 1 to {row.revision}.")
+    if past.points is None:
+        raise InvalidError(f"Revision {revision} is a deletion. Delete the annotation instead of restoring it.")
+    return past.points
+
+
+def list_annotations(
+    session: Session,
+    sequence_id: uuid.UUID,
+    *,
+    camera: str | None = None,
+    frames: tuple[int | None, int | None] = (None, None),
+    cursor: str | None = None,
+    limit: int | None = None,
+) -> tuple[Sequence[AnnotationRow], str | None]:
+    """Annotations of a recording by frame, camera, hand; `frames` are the first and the last, both taken in."""
+    order = (AnnotationRow.frame, AnnotationRow.camera, AnnotationRow.hand)
+    query = select(AnnotationRow).where(AnnotationRow.sequence_id == sequence_id, AnnotationRow.points.is_not(null()))
+    if camera is not None:
+        query = query.where(AnnotationRow.camera == camera)
+    if frames[0] is not None:
+        query = query.where(AnnotationRow.frame >= frames[0])
+    if frames[1] is not None:
+        query = query.where(AnnotationRow.frame <= frames[1])
+    if cursor is not None:
+        query = query.where(tuple_(*order) > tuple(read_cursor(cursor, int, str, str)))
+    query = query.order_by(*order)
+    rows = session.scalars(query if limit is None else query.limit(limit + 1)).all()
+    if limit is None or len(rows) <= limit:
+        return rows, None
+    last = rows[limit - 1]
+    return rows[:limit], write_cursor(last.frame, last.camera, last.hand)
+
+
+def load_annotations(session: Session, sequence_id: uuid.UUID) -> Annotations:
+    """All annotations of a recording as they are now."""
+    rows, _ = list_annotations(session, sequence_id)
+    return Annotations(
+        tuple(Annotation(row.frame, row.camera, row.hand, np.array(row.points, dtype=np.float64)) for row in rows)
+    )
+
+
+def export_annotations(session: Session, sequence_id: uuid.UUID) -> dict[str, Any]:
+    """The content of `annotations.json`."""
+    return load_annotations(session, sequence_id).to_json()
+
+
+def add_imported_annotations(
+    session: Session, sequence: SequenceRow, annotations: Annotations, account_id: uuid.UUID
+) -> int:
+    """Take in the annotations that a recording brought along, each as its first revision; gives their number."""
+    for item in annotations.items:
+        place = check_place(sequence, item.camera, item.frame, item.hand)
+        points = check_points(sequence, place, item.points.tolist())
+        row = AnnotationRow(id=uuid.uuid4(), **vars(place), points=None, revision=0)
+        session.add(row)
+        session.flush()
+        _write(session, row, Change("import", points, None, uuid.uuid4(), account_id))
+    return len(annotations.items)
+
+
+def find_annotated_frames(session: Session, ids: Sequence[uuid.UUID]) -> dict[uuid.UUID, dict[str, Any]]:
+    """How many frames of some recordings are annotated."""
+    query = (
+        select(AnnotationRow.sequence_id, func.count(distinct(AnnotationRow.frame)))
+        .where(and_(AnnotationRow.sequence_id.in_(ids), AnnotationRow.points.is_not(null())))
+        .group_by(AnnotationRow.sequence_id)
+    )
+    return {id_: {"annotated_frames": count} for id_, count in session.execute(query)}

@@ -1,0 +1,130 @@
+"""`/imports`."""
+
+from __future__ import annotations
+
+import uuid
+from dataclasses import fields
+from typing import Annotated, Any, get_type_hints
+
+from anyio import CancelScope
+from fastapi import APIRouter, Depends, Request
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import HTTPConnection
+
+from server.accounts.service import AccountIdDep
+from server.database import DatabaseDep
+from server.errors import TooLargeError, error_responses
+from server.imports import service
+from server.imports.models import ImportRow
+from server.imports.schemas import (
+    OPTIONS_HELP,
+    ImportCheck,
+    ImportConfirm,
+    ImportField,
+    ImportForm,
+    ImportOut,
+)
+from server.imports.service import ImportDesk
+from server.imports.upload import receive_upload
+from server.sequences.facts import FactsDep, describe_sequences
+from server.sequences.schemas import SequenceOut
+from server.storage import StorageDep
+from tracker import IMPORT_FORMATS, ImportOptions
+
+router = APIRouter(prefix="/imports", tags=["imports"], responses=error_responses())
+
+_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["files"],
+                    "properties": {
+                        "files": {
+                            "type": "array",
+                            "items": {"type": "string", "format": "binary"},
+                            "description": "The recording's files, each file name its relative path; or one .zip.",
+                        },
+                        "options": {"type": "string", "description": f"JSON. {OPTIONS_HELP}"},
+                    },
+                }
+            }
+        },
+    }
+}
+
+
+def get_desk(connection: HTTPConnection, database: DatabaseDep, storage: StorageDep) -> ImportDesk:
+    """The app's."""
+    return ImportDesk(database, storage, connection.app.state.settings)
+
+
+DeskDep = Annotated[ImportDesk, Depends(get_desk)]
+
+
+@router.get("/form")
+def get_import_form() -> ImportForm:
+    """What can be told about an upload that its files do not tell."""
+    hints = get_type_hints(ImportOptions)
+    options = [
+        ImportField(name=item.name, type=_name_type(hints[item.name]), help=item.metadata.get("help", ""))
+        for item in fields(ImportOptions)
+    ]
+    return ImportForm(formats=list(IMPORT_FORMATS), options=options)
+
+
+def _name_type(hint: Any) -> str:
+    text = str(hint).replace("typing.", "")
+    names = {"float": "number", "bool": "boolean", "str": "string", "int": "integer"}
+    inner = next((names[name] for name in names if name in text or getattr(hint, "__name__", "") == name), "string")
+    return f"{inner}[]" if "tuple" in text else inner
+
+
+@router.post("", status_code=201, response_model=ImportOut, responses=error_responses(413, 507), openapi_extra=_BODY)
+async def create_import(request: Request, desk: DeskDep, account_id: AccountIdDep) -> ImportRow:
+    """Upload a recording and have it checked. Nothing becomes a recording before it is confirmed."""
+    length = request.headers.get("content-length", "")
+    if length.isdecimal() and int(length) > desk.settings.max_upload_bytes + 2**20:
+        raise TooLargeError(
+            f"The upload has {length} bytes, more than {desk.settings.max_upload_bytes}; "
+            "HANDLOOM_MAX_UPLOAD_BYTES sets the limit."
+        )
+    import_id = uuid.uuid4()
+    try:
+        upload = await run_in_threadpool(service.begin_upload, desk, import_id)
+        await receive_upload(request.stream(), request.headers.get("content-type", ""), upload)
+        return await run_in_threadpool(service.add_import, desk, import_id, upload, account_id)
+    except BaseException:  # a client that has gone, too
+        with CancelScope(shield=True):
+            await run_in_threadpool(service.drop_files, desk, import_id)
+        raise
+
+
+@router.get("/{import_id}", response_model=ImportOut, responses=error_responses(404))
+def get_import(import_id: uuid.UUID, desk: DeskDep) -> ImportRow:
+    """An upload and its report."""
+    return service.get_import(desk, import_id)
+
+
+@router.post("/{import_id}/check", response_model=ImportOut, responses=error_responses(404, 409))
+def check_import(import_id: uuid.UUID, body: ImportCheck, desk: DeskDep) -> ImportRow:
+    """Check again with other options."""
+    return service.check_again(desk, import_id, body.options)
+
+
+@router.post("/{import_id}/confirm", status_code=201, responses=error_responses(404, 409))
+def confirm_import(
+    import_id: uuid.UUID, body: ImportConfirm, desk: DeskDep, account_id: AccountIdDep, facts: FactsDep
+) -> SequenceOut:
+    """Make it a recording: whole, or not at all."""
+    row = service.confirm_import(desk, import_id, body.name, account_id)
+    with desk.database.reading() as session:
+        return describe_sequences(session, [row], facts)[0]
+
+
+@router.delete("/{import_id}", status_code=204, responses=error_responses(404, 409))
+def delete_import(import_id: uuid.UUID, desk: DeskDep) -> None:
+    """Drop an upload."""
+    service.drop_import(desk, import_id)

@@ -1,0 +1,255 @@
+"""Uploads become recordings: checked first, then moved in whole or not at all.
+
+Files are read and written for seconds to minutes here, so the functions take the database and keep their transactions
+short, instead of working inside the request's.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import shutil
+import uuid
+from datetime import timedelta
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from sqlalchemy import delete, select, update
+
+from server.annotations.service import add_imported_annotations
+from server.database import Database, utc_now
+from server.errors import ConflictError, InvalidError, NotFoundError
+from server.imports.models import ImportRow
+from server.imports.upload import Upload
+from server.sequences import service as sequences
+from server.sequences.models import SequenceRow
+from server.settings import Settings
+from server.storage import Storage
+from tracker import (
+    ArchiveLimits,
+    ImportOptions,
+    ImportReport,
+    TrackerError,
+    check_import,
+    extract_archive,
+    load_annotations,
+    run_import,
+)
+
+AREA = "uploads"
+FILES, UNPACKED = "files", "unpacked"
+
+
+@dataclasses.dataclass(frozen=True)
+class ImportDesk:
+    """Where imports are worked on."""
+
+    database: Database
+    storage: Storage
+    settings: Settings
+
+    def folder(self, import_id: uuid.UUID) -> Path:
+        """Folder of an upload."""
+        return self.storage.folder(AREA, import_id)
+
+    def source(self, import_id: uuid.UUID) -> Path:
+        """Folder of its files, unpacked if they came packed."""
+        folder = self.folder(import_id)
+        return folder / UNPACKED if (folder / UNPACKED).exists() else folder / FILES
+
+
+def begin_upload(desk: ImportDesk, import_id: uuid.UUID) -> Upload:
+    """Make room for an upload."""
+    folder = desk.folder(import_id) / FILES
+    folder.mkdir(parents=True)
+    return Upload(folder, desk.settings.max_upload_files, desk.settings.max_upload_bytes)
+
+
+def drop_files(desk: ImportDesk, import_id: uuid.UUID) -> None:
+    """Remove an upload's files."""
+    desk.storage.remove(AREA, import_id)
+
+
+def add_import(desk: ImportDesk, import_id: uuid.UUID, upload: Upload, account_id: uuid.UUID) -> ImportRow:
+    """Look at an upload that has arrived whole, and note what was found."""
+    if not upload.names:
+        raise InvalidError("The upload holds no files. Choose the recording's folder, its files, or a zip of them.")
+    options = parse_options(upload.fields.get("options", ""))
+    _unpack(desk, import_id, upload)
+    name = (options.get("name") or propose_name(upload.names)).strip()
+    report = _check(desk, import_id, options, name)
+    row = ImportRow(
+        id=import_id,
+        state="checked" if report["ok"] else "refused",
+        name=name,
+        options=options,
+        report=report,
+        file_count=len(upload.names),
+        byte_count=upload.byte_count,
+        created_by=account_id,
+    )
+    with desk.database.writing() as session:
+        session.add(row)
+    return row
+
+
+def get_import(desk: ImportDesk, import_id: uuid.UUID) -> ImportRow:
+    """The import of this id."""
+    with desk.database.reading() as session:
+        row = session.get(ImportRow, import_id)
+    if row is None:
+        raise NotFoundError(f"There is no upload {import_id}; it was dropped, or removed after it had waited too long.")
+    return row
+
+
+def check_again(desk: ImportDesk, import_id: uuid.UUID, options: dict[str, Any]) -> ImportRow:
+    """Look at an upload with other options."""
+    row = _get_open(desk, import_id)
+    ImportOptions.from_json(options)
+    name = (options.get("name") or row.name).strip()
+    report = _check(desk, import_id, options, name)
+    state = "checked" if report["ok"] else "refused"
+    changes = {"state": state, "name": name, "options": options, "report": report, "updated_at": utc_now()}
+    with desk.database.writing() as session:
+        query = update(ImportRow).where(ImportRow.id == import_id, ImportRow.state != "confirmed").values(changes)
+        if session.connection().execute(query).rowcount != 1:
+            raise ConflictError("The upload was imported or dropped meanwhile.")
+    return get_import(desk, import_id)
+
+
+def confirm_import(desk: ImportDesk, import_id: uuid.UUID, name: str | None, account_id: uuid.UUID) -> SequenceRow:
+    """Make an upload a recording. Asked again, it gives the same recording."""
+    row = get_import(desk, import_id)
+    if row.state == "refused":
+        raise ConflictError("The upload was refused; its report says why. Check it again with other options.")
+    if row.state == "checked":
+        options = row.options | {"name": name or row.name}
+        try:
+            import_recording(desk, desk.source(import_id), options, account_id, import_id=import_id)
+        except (ConflictError, TrackerError):  # somebody who confirmed it too may have been quicker
+            if get_import(desk, import_id).state != "confirmed":
+                raise
+        drop_files(desk, import_id)
+        row = get_import(desk, import_id)
+    assert row.sequence_id is not None
+    with desk.database.reading() as session:
+        return sequences.get_sequence(session, row.sequence_id)
+
+
+def import_recording(
+    desk: ImportDesk,
+    source: Path,
+    options: dict[str, Any],
+    account_id: uuid.UUID,
+    *,
+    import_id: uuid.UUID | None = None,
+) -> uuid.UUID:
+    """Import a folder: its files first, then its rows in one transaction; without the rows, no files.
+
+    Args:
+        desk: Where to.
+        source: Folder or video; only read.
+        options: What the files do not tell, with `format` when it is not to be recognised.
+        account_id: Who.
+        import_id: The upload that this confirms; a second one that confirms it finds itself too late.
+
+    Returns:
+        Id of the recording.
+    """
+    sequence_id = uuid.uuid4()
+    folder = desk.storage.folder(sequences.AREA, sequence_id)
+    report = run_import(source, folder, options.get("format"), ImportOptions.from_json(options))
+    try:
+        recording = sequences.open_sequence(desk.storage, sequence_id)
+        columns = sequences.describe_recording(recording)
+        path = recording.annotations_path
+        annotations = load_annotations(path) if path is not None and path.exists() else None
+        with desk.database.writing() as session:
+            row = sequences.add_sequence(session, sequence_id, columns, _clean(report, source), account_id)
+            if annotations is not None:
+                add_imported_annotations(session, row, annotations, account_id)
+            if import_id is not None:
+                query = update(ImportRow).where(ImportRow.id == import_id, ImportRow.state == "checked")
+                done = query.values(state="confirmed", sequence_id=sequence_id, updated_at=utc_now())
+                if session.connection().execute(done).rowcount != 1:
+                    raise ConflictError("The upload was imported or dropped meanwhile.")
+    except BaseException:
+        desk.storage.remove(sequences.AREA, sequence_id)
+        raise
+    return sequence_id
+
+
+def drop_import(desk: ImportDesk, import_id: uuid.UUID) -> None:
+    """Forget an upload."""
+    _get_open(desk, import_id)
+    with desk.database.writing() as session:
+        session.execute(delete(ImportRow).where(ImportRow.id == import_id, ImportRow.state != "confirmed"))
+    drop_files(desk, import_id)
+
+
+def remove_abandoned(desk: ImportDesk) -> int:
+    """Remove uploads that nobody confirmed for long, and those that never arrived whole; gives their number."""
+    oldest = utc_now() - timedelta(hours=desk.settings.abandoned_import_hours)
+    with desk.database.writing() as session:
+        query = select(ImportRow).where(ImportRow.state != "confirmed", ImportRow.updated_at < oldest)
+        abandoned = {row.id for row in session.scalars(query)}
+        session.execute(delete(ImportRow).where(ImportRow.id.in_(abandoned)))
+        waiting = set(session.scalars(select(ImportRow.id).where(ImportRow.state != "confirmed")))
+    for import_id in desk.storage.list_ids(AREA):
+        try:
+            is_old = desk.folder(import_id).stat().st_mtime < oldest.timestamp()
+        except FileNotFoundError:
+            continue
+        if import_id in abandoned or (import_id not in waiting and is_old):
+            drop_files(desk, import_id)
+            abandoned.add(import_id)
+    desk.storage.sweep(AREA)
+    return len(abandoned)
+
+
+def parse_options(text: str) -> dict[str, Any]:
+    """Options from a form's field: a JSON object, or nothing."""
+    if not text.strip():
+        return {}
+    try:
+        options = json.loads(text)
+    except (ValueError, RecursionError):
+        raise InvalidError(f"The field `options` is {text[:80]!r}; needed a JSON object.") from None
+    ImportOptions.from_json(options)
+    return options
+
+
+def propose_name(names: list[str]) -> str:
+    """A name for a recording from those of its files: the folder that all lie in, or the file if it is the only one."""
+    tops = {name.split("/")[0] for name in names}
+    top = tops.pop() if len(tops) == 1 else ""
+    name = PurePosixPath(top).stem if top and len(names) == 1 else top
+    return "".join(c for c in name if c.isprintable()).strip()[:200] or "recording"
+
+
+def _unpack(desk: ImportDesk, import_id: uuid.UUID, upload: Upload) -> None:
+    """Unpack an upload that is one archive."""
+    if len(upload.names) != 1 or not upload.names[0].lower().endswith(".zip"):
+        return
+    limits = ArchiveLimits(files=desk.settings.max_upload_files, total_bytes=desk.settings.max_upload_bytes)
+    extract_archive(upload.folder / upload.names[0], desk.folder(import_id) / UNPACKED, limits)
+    shutil.rmtree(upload.folder)
+
+
+def _check(desk: ImportDesk, import_id: uuid.UUID, options: dict[str, Any], name: str) -> dict[str, Any]:
+    source = desk.source(import_id)
+    report = check_import(source, options.get("format"), ImportOptions.from_json(options | {"name": name}))
+    return _clean(report, source)
+
+
+def _clean(report: ImportReport, source: Path) -> dict[str, Any]:
+    """The report without the place where the studio keeps the files."""
+    text = json.dumps(report.to_json(), allow_nan=False)
+    return json.loads(text.replace(json.dumps(f"{source}/")[1:-1], ""))
+
+
+def _get_open(desk: ImportDesk, import_id: uuid.UUID) -> ImportRow:
+    row = get_import(desk, import_id)
+    if row.state == "confirmed":
+        raise ConflictError("The upload has become a recording already. Change or delete the recording instead.")
+    return row

@@ -8,6 +8,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from tracker.kernel_cache import use_kernel_cache
+
 if TYPE_CHECKING:
     from tracker.capture.annotations import Annotation, Annotations, load_annotations, save_annotations
     from tracker.capture.archive import ArchiveLimits, extract_archive
@@ -138,6 +140,9 @@ __all__ = [
     "track_frames",
     "warm_up",
 ]
+
+
+use_kernel_cache()
 
 
 def __getattr__(name: str) -> Any:

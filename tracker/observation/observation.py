@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -70,7 +70,6 @@ class Observation:
         normals: (H, W, 3) float32 world, unit, towards the camera; 0 where there is none.
         depth: (H, W) float32 smoothed depth, m; 0 where there is no value in the region's depth range.
         labels: (H, W) uint8 bits HAND and OTHER; 0 where there is no depth.
-        beyond: (H, W) bool, the sensor saw something behind the region's depth range, so the space before it is free.
         nearest_pixel: (2, H, W, 2) int16 row and column of the nearest pixel that may be hand, and may be other.
         nearest_edge: (2, H, W, 2) int16 the same for depth discontinuities of hand and other; -1 if there is none.
     """
@@ -82,9 +81,26 @@ class Observation:
     normals: npt.NDArray[np.float32]
     depth: npt.NDArray[np.float32]
     labels: npt.NDArray[np.uint8]
-    beyond: npt.NDArray[np.bool_]
     nearest_pixel: npt.NDArray[np.int16]
     nearest_edge: npt.NDArray[np.int16]
+
+    def thin(self, stride: int) -> Observation:
+        """Every `stride`-th pixel, for scoring poses; nearest pixels are left out."""
+        every = (slice(None, None, stride), slice(None, None, stride))
+        K = self.K.copy()
+        K[:2] /= stride
+        labels = np.ascontiguousarray(self.labels[every])
+        nowhere = np.full((2, *labels.shape, 2), -1, dtype=np.int16)
+        return replace(
+            self,
+            K=K,
+            points=np.ascontiguousarray(self.points[every]),
+            normals=np.ascontiguousarray(self.normals[every]),
+            depth=np.ascontiguousarray(self.depth[every]),
+            labels=labels,
+            nearest_pixel=nowhere,
+            nearest_edge=nowhere,
+        )
 
     @property
     def hand_count(self) -> int:
@@ -109,7 +125,6 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, st
     columns = slice(region.column, region.column + region.width, stride)
     raw = frame.depth[rows, columns]
     inside = (raw >= region.near) & (raw <= region.far)
-    beyond = raw > region.far
     depth = np.where(inside, raw, np.float32(0.0))
     if how.bilateral_diameter > 0:
         smooth = cv2.bilateralFilter(depth, how.bilateral_diameter, how.bilateral_depth, how.bilateral_diameter / 2)
@@ -133,7 +148,6 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, st
         normals,
         depth,
         labels,
-        beyond,
         np.stack([pixels for pixels, _ in nearest]),
         np.stack([edges for _, edges in nearest]),
     )

@@ -26,12 +26,15 @@ class DataToModel:
     fingers to their neighbour's contour (docs/objective.md).
     """
 
-    weight: float = 0.1
+    weight: float = 0.2
     max_distance: float = 0.030
     """m (30 mm, §3.2.3)."""
 
     max_pixels: float = 8.0
     """px."""
+
+    stride: int = 2
+    """Every so many discontinuities one is matched: they lie pixel by pixel along a contour."""
 
     jump: float = 0.015
     """Depth step of a discontinuity, m."""
@@ -59,6 +62,7 @@ class DataToModel:
             observation.nearest_edge,
             view.K,
             observation.T_world_camera,
+            self.stride,
             self.jump,
             self.max_pixels,
             self.max_distance,
@@ -83,6 +87,7 @@ def _find_into(
     nearest_edge,
     K,
     T,
+    stride,
     jump,
     max_pixels,
     max_distance,
@@ -93,7 +98,7 @@ def _find_into(
     for row in range(1, height - 1):
         for column in range(1, width - 1):
             f = face[row, column]
-            if f < 0:
+            if f < 0 or (row + column) % stride != 0:
                 continue
             z = 1.0 / inverse_depth[row, column]
             farthest = 1.0 / (z + jump)

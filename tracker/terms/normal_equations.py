@@ -30,7 +30,7 @@ class NormalEquations:
         posed: Where everything is linearised.
         pairs: (P, 2) pairs of bones j <= k that share a face.
         pair_index: (B, B) row of a pair, -1 for none.
-        blocks: (P, 6, 6) Σ w_j w_kᵀ, mm² per squared unit of twist.
+        blocks: (P, 6, 6) Σ w_k w_jᵀ, mm² per squared unit of twist.
         gradients: (B, 6) Σ w_j r.
         cost: Σ weight r², mm².
         count: Residuals added, the paper's C_all.
@@ -126,16 +126,24 @@ def add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, nx, ny,
         for i in range(6):
             g[i] += scale * w[i]
     for first in range(count):
+        j = bones[first]
+        a = wrenches[first]
+        a0, a1, a2 = weight * a[0], weight * a[1], weight * a[2]
+        a3, a4, a5 = weight * a[3], weight * a[4], weight * a[5]
         for second in range(count):
-            j, k = bones[first], bones[second]
+            k = bones[second]
             if j > k:
                 continue
             block = blocks[pair_index[j, k]]
-            a, b = wrenches[first], wrenches[second]
-            for i in range(6):
-                scaled = weight * a[i]
-                for m in range(6):
-                    block[i, m] += scaled * b[m]
+            b = wrenches[second]
+            for m in range(6):
+                value = b[m]
+                block[m, 0] += a0 * value
+                block[m, 1] += a1 * value
+                block[m, 2] += a2 * value
+                block[m, 3] += a3 * value
+                block[m, 4] += a4 * value
+                block[m, 5] += a5 * value
 
 
 @njit(cache=True, nogil=True)
@@ -159,7 +167,7 @@ def _assemble_into(JtJ, Jtr, blocks, gradients, pairs, chains, twists):
             for m in range(6):
                 half[m] = 0.0
                 for i in range(6):
-                    half[m] += twists[d, i] * block[i, m]
+                    half[m] += twists[d, i] * block[m, i]
             for other in range(chains.shape[1]):
                 e = chains[k, other]
                 if e < 0:

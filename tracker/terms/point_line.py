@@ -109,15 +109,24 @@ def _add_rows(
                 y += share * vertices[v, 1]
                 z += share * vertices[v, 2]
         dx, dy, dz = directions[row, 0], directions[row, 1], directions[row, 2]
-        rx, ry, rz = (
-            y * dz - z * dy - moments[row, 0],
-            z * dx - x * dz - moments[row, 1],
-            x * dy - y * dx - moments[row, 2],
+        # |v × d − m| is the distance across d: two rows along n and d × n measure the same as the three of Eq. 8.
+        fx, fy, fz = (
+            dy * moments[row, 2] - dz * moments[row, 1],
+            dz * moments[row, 0] - dx * moments[row, 2],
+            dx * moments[row, 1] - dy * moments[row, 0],
         )
+        if abs(dx) < 0.7:
+            nx, ny, nz = 0.0, dz, -dy
+        else:
+            nx, ny, nz = -dz, 0.0, dx
+        scale = 1.0 / np.sqrt(nx * nx + ny * ny + nz * nz)
+        nx, ny, nz = nx * scale, ny * scale, nz * scale
+        ox, oy, oz = dy * nz - dz * ny, dz * nx - dx * nz, dx * ny - dy * nx
+        first = nx * (x - fx) + ny * (y - fy) + nz * (z - fz)
+        second = ox * (x - fx) + oy * (y - fy) + oz * (z - fz)
         weight = weights[row] * MILLIMETRES * MILLIMETRES
-        cost += weight * (rx * rx + ry * ry + rz * rz)
+        cost += weight * (first * first + second * second)
         count = gather_bones(bones, sums, ids[row], barycentric[row], weight_bones, skinning, bone_vertices)
-        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, 0.0, dz, -dy, rx, weight)
-        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, -dz, 0.0, dx, ry, weight)
-        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, dy, -dx, 0.0, rz, weight)
+        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, nx, ny, nz, first, weight)
+        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, ox, oy, oz, second, weight)
     return cost

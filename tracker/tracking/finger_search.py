@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -12,8 +13,8 @@ from tracker.model.joints import FINGERS
 
 Array = npt.NDArray[np.float64]
 
-CURLS = (0.0, 0.3, 0.6, 0.9)
-"""Shares of a finger's flexion that are tried."""
+BASE_CURLS, OUTER_CURLS = (0.0, 0.35, 0.7), (0.0, 0.4, 0.8)
+"""Shares of the flexion of a finger's base and of its outer joints that are tried."""
 
 SPREADS = (-0.6, 0.0, 0.6)
 """Shares of a finger's side-to-side limits that are tried."""
@@ -33,17 +34,17 @@ def search_fingers(pose: Array, first_dof: int, model: ArticulatedModel, score: 
     """
     best, best_score = pose, score(pose)
     for finger in range(len(FINGERS)):
-        flexion, spread = _finger_dofs(model, finger)
-        for curl in CURLS:
-            for side in SPREADS if len(spread) else (0.0,):
-                trial = best.copy()
-                angles = trial[first_dof + 6 : first_dof + model.num_dofs]
-                angles[flexion] = curl * _farther_limit(model)[flexion]
-                limit = model.skeleton.upper if side > 0 else -model.skeleton.lower
-                angles[spread] = side * limit[spread]
-                value = score(trial)
-                if value > best_score + GAIN:
-                    best, best_score = trial, value
+        base, outer, spread = _finger_dofs(model, finger)
+        far = _farther_limit(model)
+        for curl, bend, side in product(BASE_CURLS, OUTER_CURLS, SPREADS if len(spread) else (0.0,)):
+            trial = best.copy()
+            angles = trial[first_dof + 6 : first_dof + model.num_dofs]
+            angles[base], angles[outer] = curl * far[base], bend * far[outer]
+            limit = model.skeleton.upper if side > 0 else -model.skeleton.lower
+            angles[spread] = side * limit[spread]
+            value = score(trial)
+            if value > best_score + GAIN:
+                best, best_score = trial, value
     return best
 
 
@@ -52,15 +53,19 @@ def curl_fingers(model: ArticulatedModel, share: float) -> Array:
     return np.where(_is_wide(model), share * _farther_limit(model), 0.0)
 
 
-def _finger_dofs(model: ArticulatedModel, finger: int) -> tuple[npt.NDArray, npt.NDArray]:
-    """Joints (indices into K) that bend a finger, and those that move its base sideways."""
+def _finger_dofs(model: ArticulatedModel, finger: int) -> tuple[npt.NDArray, npt.NDArray, npt.NDArray]:
+    """Joints (indices into K) that bend a finger's base, its outer part, and those that move its base sideways."""
     assert model.hand is not None
     bones = model.hand.joint_bones[1 + 4 * finger : 4 + 4 * finger]
     own = np.isin(model.skeleton.dof_bones, bones[bones >= 0])
     wide = _is_wide(model)
     span = model.skeleton.upper - model.skeleton.lower
     at_base = model.skeleton.dof_bones == bones[0]
-    return np.flatnonzero(own & wide), np.flatnonzero(at_base & ~wide & (span > np.deg2rad(15.0)))
+    return (
+        np.flatnonzero(at_base & wide),
+        np.flatnonzero(own & wide & ~at_base),
+        np.flatnonzero(at_base & ~wide & (span > np.deg2rad(15.0))),
+    )
 
 
 def _is_wide(model: ArticulatedModel) -> npt.NDArray[np.bool_]:

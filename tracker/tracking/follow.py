@@ -36,6 +36,12 @@ MIN_PIXELS = 60
 SCORE_DROP = 0.10
 """A score this far below the running one calls for a second try."""
 
+UNEXPLAINED = 0.15
+"""So does this share of hand pixels that the model does not explain: a finger may be hidden in the palm."""
+
+SCORED_PIXELS = 1500
+"""About so many hand pixels are enough to compare bends of a finger by."""
+
 SCORE_MEMORY = 0.9
 """Share of the running score kept from frame to frame."""
 
@@ -133,9 +139,10 @@ def _follow(
     options = FitOptions(iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm)
     best = _attempt(setup, seen, predicted, state.pose, Objective(), options)
     stages |= best.fit.stages
-    if best.quality.is_lost or best.quality.score < state.score - SCORE_DROP:
+    falling = best.quality.is_lost or best.quality.score < state.score - SCORE_DROP
+    if falling or best.quality.explained < 1.0 - UNEXPLAINED:
         started = perf_counter()
-        for start in (state.pose, best.pose):
+        for start in (state.pose, best.pose) if falling else (best.pose,):
             other = _try_again(setup, seen, start, options)
             if other.quality.score > best.quality.score:
                 best = other
@@ -144,18 +151,19 @@ def _follow(
 
 
 def _try_again(setup: TrackSetup, seen: Observation, start: Array, options: FitOptions) -> _Attempt:
-    """A wide fit, a search of single fingers, and the usual fit from there."""
-    wide = Objective(terms={**Objective().terms, **WIDE})
-    far = FitOptions(iterations=2 * options.iterations, damping=1e-2, max_turn=0.25, max_shift=0.02)
-    pose = fit_frame(setup.scene, seen, start, start, wide, far).pose
-    scene = setup.scene
-
-    def score(trial: Array) -> float:
-        return measure_quality(draw(scene.pose_at(trial), seen), seen).score
-
-    for model, where in zip(setup.models, scene.pose_slices, strict=True):
+    """A search of single fingers, a fit with longer reach, and the usual fit from there."""
+    scene, pose = setup.scene, start
+    thin = seen.thin(max(1, round((seen.hand_count / SCORED_PIXELS) ** 0.5)))
+    for index, (model, where) in enumerate(zip(setup.models, scene.pose_slices, strict=True)):
         if model.hand:
+
+            def score(trial: Array, index: int = index) -> float:
+                return measure_quality(draw(scene.pose_at(trial), thin), thin, index).score
+
             pose = search_fingers(pose, where.start, model, score)
+    wide = Objective(terms={**Objective().terms, **WIDE})
+    far = FitOptions(iterations=options.iterations, damping=1e-2, max_turn=0.25, max_shift=0.02)
+    pose = fit_frame(scene, seen, pose, pose, wide, far).pose
     return _attempt(setup, seen, pose, pose, Objective(), options)
 
 

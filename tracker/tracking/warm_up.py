@@ -9,6 +9,7 @@ import numpy as np
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.geometry import se3
+from tracker.kernel_cache import remove_old_caches
 from tracker.model.default_hand import default_hand
 from tracker.model.scene import Scene
 from tracker.observation import Preprocessing
@@ -32,4 +33,5 @@ def warm_up(progress: Callable[[str, float], None] | None = None) -> None:
     color[drawn.face >= 0] = (200, 140, 115)
     frame = Frame(0, camera.id, color, drawn.depth.astype(np.float32))
     find_hand(frame, camera, model, Preprocessing(), 0.1, 1.0, Search(candidates=1, turns=4, rough=1, bent=1, fine=1))
+    remove_old_caches()
     tell("kernels are compiled", 1.0)

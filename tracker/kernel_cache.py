@@ -1,0 +1,53 @@
+"""Where compiled kernels are kept.
+
+numba notices when a file with kernels changes, but not when a kernel that it calls in another file does. So the folder
+of the cache carries a digest of every file whose kernels are called from elsewhere; a change there starts a new folder.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import sys
+from pathlib import Path
+
+SHARED_KERNELS = (
+    "geometry/se3.py",
+    "rendering/zbuffer.py",
+    "terms/normal_equations.py",
+    "terms/residual.py",
+    "terms/surface_point.py",
+    "observation/observation.py",
+)
+"""Files whose kernels, or whose constants, kernels of other files use."""
+
+ROOT = Path.home() / ".cache" / "handloom" / "kernels"
+
+KEPT = 4
+"""So many folders are kept, for those who go back and forth."""
+
+
+def choose_cache_folder(root: Path) -> Path:
+    """The folder below `root` that belongs to the kernels as they are now."""
+    here = Path(__file__).parent
+    digest = hashlib.sha256(b"".join((here / name).read_bytes() for name in SHARED_KERNELS)).hexdigest()[:16]
+    return root / digest
+
+
+def use_kernel_cache() -> None:
+    """Tell numba to keep compiled kernels in the user's cache, unless it was told otherwise; before any kernel exists."""
+    if "NUMBA_CACHE_DIR" in os.environ:
+        return
+    folder = str(choose_cache_folder(ROOT))
+    os.environ["NUMBA_CACHE_DIR"] = folder
+    if "numba" in sys.modules:
+        sys.modules["numba"].config.CACHE_DIR = folder
+
+
+def remove_old_caches() -> None:
+    """Remove all but the newest folders."""
+    if ROOT.is_dir():
+        folders = sorted(ROOT.iterdir(), key=lambda folder: folder.stat().st_mtime, reverse=True)
+        for old in folders[KEPT:]:
+            shutil.rmtree(old, ignore_errors=True)

@@ -14,7 +14,6 @@ from tracker.capture.import_check import IMPORT_FORMATS as IMPORT_FORMATS
 from tracker.capture.import_check import check_import as check_import
 from tracker.capture.import_options import ImportOptions as ImportOptions
 from tracker.capture.import_report import ImportReport as ImportReport
-from tracker.capture.import_run import clean_leftovers as clean_leftovers
 from tracker.capture.import_run import run_import as run_import
 from tracker.capture.recorded_camera import RecordedCamera as RecordedCamera
 from tracker.capture.recorded_object import RecordedObject as RecordedObject
@@ -22,3 +21,4 @@ from tracker.capture.relative_path import find_path_fault as find_path_fault
 from tracker.capture.sequence import Sequence as Sequence
 from tracker.capture.sequence import load_sequence as load_sequence
 from tracker.capture.sequence import save_sequence_json as save_sequence_json
+from tracker.capture.workplace import clean_leftovers as clean_leftovers

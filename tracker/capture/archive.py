@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 import shutil
 import stat
 import struct
 import unicodedata
-import uuid
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -17,6 +14,7 @@ from pathlib import Path
 from typing import BinaryIO, cast
 
 from tracker.capture.relative_path import find_path_fault
+from tracker.capture.workplace import make_workplace
 from tracker.errors import ImportRefusedError
 
 _CHUNK = 1024 * 1024
@@ -60,16 +58,14 @@ def extract_archive(archive: Path | str, folder: Path | str, limits: ArchiveLimi
     limits = limits or ArchiveLimits()
     if folder.is_symlink() or (folder.exists() and (not folder.is_dir() or any(folder.iterdir()))):
         raise ImportRefusedError(f"{folder}: something is there already.")
-    workplace = folder.with_name(f".{folder.name[:150]}.unpacking-{uuid.uuid4().hex}")
     try:
         _check_directory_size(archive, limits)
         with zipfile.ZipFile(archive) as file:
             entries = _check_entries(file, archive, limits)
-            workplace.mkdir(parents=True)
-            _check_space(workplace, entries, archive)
-            for entry in entries:
-                _extract(file, entry, workplace)
-        os.rename(workplace, folder)
+            with make_workplace(folder) as workplace:
+                _check_space(workplace, entries, archive)
+                for entry in entries:
+                    _extract(file, entry, workplace)
     except (
         zipfile.BadZipFile,
         zlib.error,
@@ -82,9 +78,6 @@ def extract_archive(archive: Path | str, folder: Path | str, limits: ArchiveLimi
         raise ImportRefusedError(f"{archive.name}: is no sound zip archive ({cause}). Pack it again.") from None
     except OSError as cause:
         raise ImportRefusedError(f"{archive.name}: cannot be unpacked ({cause.strerror or cause}).") from cause
-    finally:
-        with contextlib.suppress(OSError):
-            shutil.rmtree(workplace)
     return [entry.filename for entry in entries if not entry.is_dir()]
 
 

@@ -63,13 +63,14 @@ def check_import(source: Path | str, format: str | None = None, options: ImportO
 def examine(source: Path, format: str | None, options: ImportOptions) -> CheckedImport:
     """Plan an import and look at every file's header and some pixels."""
     name = options.name or ""
+    told = options.to_json() | ({"format": format} if format else {})
     try:
         files = list_files(source)
         importer = _choose_importer(files, format)
         plan = importer.plan(files, options)
     except (TrackerError, OSError) as fault:
         text = str(fault) if isinstance(fault, TrackerError) else f"Cannot be read: {fault}."
-        return CheckedImport(None, ImportReport(format or "", name, problems=(text,)), {}, {}, source)
+        return CheckedImport(None, ImportReport(format or "", name, problems=(text,), options=told), {}, {}, source)
     problems, warnings = list(plan.problems), list(plan.warnings)
     if files.refused:
         shown = "; ".join(files.refused[:5]) + ("; ..." if len(files.refused) > 5 else "")
@@ -95,6 +96,7 @@ def examine(source: Path, format: str | None, options: ImportOptions) -> Checked
         problems=tuple(dict.fromkeys(problems)),
         warnings=tuple(dict.fromkeys(warnings)),
         left_out=(*plan.left_out, *_find_cut(plan, probes, frame_count)),
+        options=told,
     )
     return CheckedImport(replace(plan, fps=fps), report, sizes, times, files.root)
 

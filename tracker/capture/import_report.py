@@ -107,6 +107,7 @@ class ImportReport:
         problems: Reasons to refuse.
         warnings: Things to know; the import is possible.
         left_out: Original names of frames that are not imported.
+        options: What was told about the recording.
     """
 
     format: str = ""
@@ -121,6 +122,7 @@ class ImportReport:
     problems: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    options: dict[str, Any] = field(default_factory=dict)
 
     @property
     def ok(self) -> bool:

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import hashlib
 import json
 import os
-import re
-import shutil
-import uuid
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
@@ -18,7 +12,6 @@ from pathlib import Path
 import numpy as np
 
 from tracker.capture.annotations import save_annotations
-from tracker.capture.atomic_file import sync_folder
 from tracker.capture.document import read_regular_file
 from tracker.capture.frame_pattern import FramePattern
 from tracker.capture.import_check import CheckedImport, examine
@@ -27,12 +20,12 @@ from tracker.capture.import_plan import ImportPlan, PlannedCamera, Progress
 from tracker.capture.import_report import ImportReport
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.capture.sequence import Sequence, save_sequence_json
+from tracker.capture.workplace import make_workplace
 from tracker.errors import ImportRefusedError, TrackerError
 
 SOURCES_FILE = "sources.json"
 REPORT_FILE = "import_report.json"
 MAX_OTHER_FILE = 1024 * 1024 * 1024
-_LEFTOVER = re.compile(r"\..{1,200}\.importing-[0-9a-f]{32}", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -79,13 +72,8 @@ def run_import(
     if not checked.report.ok or checked.plan is None:
         raise ImportRefusedError(" ".join(checked.report.problems))
     try:
-        destination.parent.mkdir(parents=True, exist_ok=True)
-        clean_leftovers(destination.parent)
-        with _make_workplace(destination) as folder:
+        with make_workplace(destination) as folder:
             _fill(folder, checked, progress)
-            _sync_tree(folder)
-            os.rename(folder, destination)
-            sync_folder(destination.parent)
     except ImportRefusedError:
         raise
     except TrackerError as fault:
@@ -97,39 +85,8 @@ def run_import(
     return checked.report
 
 
-def clean_leftovers(parent: Path | str) -> list[Path]:
-    """Remove what killed imports left in a folder; imports that still run keep theirs."""
-    removed = []
-    for path in Path(parent).iterdir() if Path(parent).is_dir() else ():
-        if not _LEFTOVER.fullmatch(path.name) or path.is_symlink() or not path.is_dir():
-            continue
-        with contextlib.suppress(OSError):
-            descriptor = os.open(path, os.O_RDONLY)
-            try:
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                shutil.rmtree(path)
-                removed.append(path)
-            finally:
-                os.close(descriptor)
-    return removed
-
-
 def _say_nothing(stage: str, share: float) -> None:
     """Progress for callers who did not ask for it."""
-
-
-@contextlib.contextmanager
-def _make_workplace(destination: Path) -> Iterator[Path]:
-    """A locked folder beside the destination, gone at the end unless it was renamed; its lock dies with the process."""
-    folder = destination.with_name(f".{destination.name[:150]}.importing-{uuid.uuid4().hex}")
-    folder.mkdir(mode=0o755)
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        yield folder
-    finally:
-        os.close(descriptor)
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _fill(folder: Path, checked: CheckedImport, progress: Progress) -> None:
@@ -211,15 +168,3 @@ def _copy_others(folder: Path, root: Path, plan: ImportPlan) -> None:
 
 def _write_json(path: Path, document: object) -> None:
     path.write_text(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
-
-
-def _sync_tree(folder: Path) -> None:
-    """Flush every file and name below a folder to the disk."""
-    for parent, _, files in os.walk(folder, topdown=False):
-        for name in files:
-            descriptor = os.open(Path(parent) / name, os.O_RDONLY)
-            try:
-                os.fsync(descriptor)
-            finally:
-                os.close(descriptor)
-        sync_folder(Path(parent))

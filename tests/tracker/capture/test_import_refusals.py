@@ -297,3 +297,14 @@ def test_options_are_read_back_as_they_were() -> None:
     options = ImportOptions(name="a", fx=1.5, hands=("left",), distortion=(0.1, 0, 0, 0), allow_gaps=True)
     assert ImportOptions.from_json(json.loads(json.dumps(options.to_json()))) == options
     assert ImportOptions.from_json({"format": "rgbd_folder", "fx": None, "name": ""}) == ImportOptions()
+
+
+def test_the_truth_of_a_synthetic_recording_comes_along(recording: Path, tmp_path: Path) -> None:
+    (recording / "truth.npz").write_bytes(b"exact")
+    assert run_import(recording, tmp_path / "kept/r").warnings == ()
+    assert (tmp_path / "kept/r/truth.npz").read_bytes() == b"exact"
+
+
+def test_the_report_says_what_was_told(folder: Path) -> None:
+    assert check_import(folder, options=RGBD).options == RGBD.to_json()
+    assert check_import(folder, "tum_rgbd", RGBD).options == RGBD.to_json() | {"format": "tum_rgbd"}

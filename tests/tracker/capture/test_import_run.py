@@ -51,11 +51,11 @@ def test_a_killed_import_leaves_no_recording_and_its_rest_is_cleaned(recording: 
     process.communicate()
     assert process.returncode == -signal.SIGKILL
     left = [p.name for p in store.iterdir()]
-    assert len(left) == 1 and left[0].startswith(".r.importing-")
+    assert len(left) == 1 and left[0].startswith(".r.unfinished-")
     (store / "other").mkdir()
-    (store / ".mine.importing-not").mkdir()
+    (store / ".mine.unfinished-not").mkdir()
     run_import(recording, store / "r")
-    assert sorted(p.name for p in store.iterdir()) == [".mine.importing-not", "other", "r"]
+    assert sorted(p.name for p in store.iterdir()) == [".mine.unfinished-not", "other", "r"]
     assert load_sequence(store / "r").frame_count == 5
 
 

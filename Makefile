@@ -39,10 +39,8 @@ $(WEB): $(NODE_MODULES) $(WEB_SOURCES)
 	cd web && npm run --silent build
 	@touch $@
 
-# numba notices a changed file, not a changed callee in another file: start from nothing when anything changed.
 $(COMPILED): $(PROJECT) $(TRACKER_SOURCES)
 	@echo "setup: compiling the tracker's kernels (about a minute, only after they change) ..."
-	@find tracker \( -name '*.nbi' -o -name '*.nbc' \) -delete
 	$(BIN)/handloom warm-up
 	@touch $@
 

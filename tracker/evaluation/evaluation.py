@@ -109,7 +109,7 @@ class Evaluation:
 def evaluate_track(track: Track, annotations: Annotations) -> Evaluation:
     """Errors of a track at every annotated hand that it holds."""
     places = {int(frame): place for place, frame in enumerate(track.frame)}
-    cameras = {camera: c for c, camera in enumerate((track.setup.camera_id,))}
+    cameras = {camera: c for c, camera in enumerate(track.camera_ids)}
     columns = {name: j for j, name in enumerate(track.joint_names)}
     evaluated, untracked, errors, visibilities = [], [], [], []
     for item in annotations.items:

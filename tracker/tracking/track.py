@@ -27,6 +27,7 @@ class Track:
 
     Attributes:
         setup: Models and options of the run.
+        camera_ids: C cameras of the recording, in the order of `joints_2d`.
         chunk: The columns of all frames.
         joints_3d: (T, J, 3) world, m.
         joints_2d: (T, C, J, 2) px of each camera of the recording, NaN behind it.
@@ -34,6 +35,7 @@ class Track:
     """
 
     setup: TrackSetup
+    camera_ids: tuple[str, ...]
     chunk: TrackChunk
     joints_3d: Array
     joints_2d: Array
@@ -97,6 +99,7 @@ class Track:
                 "joint_names": np.array(self.joint_names, dtype=np.str_),
                 "joints_3d": self.joints_3d,
                 "joints_2d": self.joints_2d,
+                "camera_ids": np.array(self.camera_ids, dtype=np.str_),
                 "object_names": np.array(self.setup.object_names, dtype=np.str_),
                 "T_world_object": self.T_world_object,
                 "pose": self.pose,
@@ -127,14 +130,16 @@ def join_chunks(sequence: Sequence, setup: TrackSetup, chunks: Several[TrackChun
         objects.append(np.concatenate(motions))
     joints_3d = np.stack(joints)
     joints_2d = np.stack([[camera.project(points) for camera in sequence.cameras] for points in joints_3d])
-    return Track(setup, chunk, joints_3d, joints_2d, np.stack(objects))
+    camera_ids = tuple(camera.id for camera in sequence.cameras)
+    return Track(setup, camera_ids, chunk, joints_3d, joints_2d, np.stack(objects))
 
 
 def load_track(folder: Path) -> Track:
     """Read what `Track.save` wrote."""
     folder = Path(folder)
-    arrays = load_arrays(folder / "track.npz", ("joints_3d", "joints_2d", "T_world_object"))
-    return Track(TrackSetup.load(folder), TrackChunk.load(folder / "frames.npz"), **arrays)
+    arrays = load_arrays(folder / "track.npz", ("camera_ids", "joints_3d", "joints_2d", "T_world_object"))
+    camera_ids = tuple(str(camera_id) for camera_id in arrays.pop("camera_ids"))
+    return Track(TrackSetup.load(folder), camera_ids, TrackChunk.load(folder / "frames.npz"), **arrays)
 
 
 def _median(values: Array) -> float | None:

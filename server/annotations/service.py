@@ -133,6 +133,7 @@ def _find_operation(
     done = session.scalars(query).one_or_none()
     if done is None:
         return None
+    row = row or find_annotation(session, place)  # the same operation may have made it since we looked
     if row is None or done.annotation_id != row.id or done.act != change.act or done.points != change.points:
         raise InvalidError(
             f"The operation {change.operation_id} was another change before; {place} was left as it is. "

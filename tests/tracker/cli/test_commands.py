@@ -1,0 +1,104 @@
+"""The commands, one after the other, as a lab would use them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tracker.cli.__main__ import main
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory) -> Path:
+    out = tmp_path_factory.mktemp("recordings") / "pinch"
+    assert main(["synthesize", "--motion", "pinch", "--frames", "0:12", "--out", str(out)]) == 0
+    return out
+
+
+@pytest.fixture(scope="module")
+def tracked(recording, tmp_path_factory) -> Path:
+    out = tmp_path_factory.mktemp("tracks") / "pinch"
+    hand = f"right={recording / 'models' / 'right.npz'}"
+    assert main(["track", str(recording), "--hand", hand, "--no-calibration", "--out", str(out)]) == 0
+    return out
+
+
+def test_a_synthetic_recording_is_tracked_and_comes_back_within_a_millimetre(recording, tracked, capsys):
+    arguments = ["evaluate", str(tracked), "--truth", str(recording / "truth.npz")]
+    arguments += ["--annotations", str(recording / "annotations.json"), "--json"]
+    assert main(arguments) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["truth"]["frames"] == document["annotations"]["evaluated"] == 12
+    assert document["truth"]["joint_error_mm"]["mean"] < 1.0
+    assert document["annotations"]["joint_error_px"]["mean"] < 1.0
+    assert document["truth"]["lost"] == []
+
+
+def test_evaluate_says_the_main_figures_in_words(recording, tracked, capsys):
+    assert main(["evaluate", str(tracked), "--truth", str(recording / "truth.npz")]) == 0
+    said = capsys.readouterr().out
+    assert "mm" in said
+    assert "lost 0" in said
+
+
+def test_a_track_folder_holds_what_scripts_rely_on(tracked):
+    with np.load(tracked / "track.npz") as track:
+        assert track["joints_3d"].shape == (12, 21, 3)
+        assert track["joints_2d"].shape == (12, 1, 21, 2)
+        assert track["joint_names"][0] == "right/wrist"
+        assert set(track["status"]) == {"ok"}
+        assert list(track["frame"]) == list(range(12))
+    summary = json.loads((tracked / "summary.json").read_text())
+    needed = {"frames", "lost", "median_ms", "p95_ms", "stages_ms", "depth_residual_mm", "silhouette_iou", "threads"}
+    assert needed <= set(summary)
+
+
+def test_a_part_of_a_recording_is_tracked_from_its_own_first_frame(recording, tmp_path, capsys):
+    hand = f"right={recording / 'models' / 'right.npz'}"
+    out = tmp_path / "part"
+    arguments = ["track", str(recording), "--hand", hand, "--frames", "5:9", "--no-calibration", "--json"]
+    assert main([*arguments, "--out", str(out)]) == 0
+    assert json.loads(capsys.readouterr().out)["frames"] == 4
+    with np.load(out / "track.npz") as track:
+        assert list(track["frame"]) == [5, 6, 7, 8]
+
+
+def test_bench_prints_the_time_of_a_frame_and_its_floor(capsys):
+    assert main(["bench", "tracking", "--frames", "10", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["one_hand"]
+    assert {"median_ms", "floor_ms", "stages_ms"} <= set(found)
+    assert found["floor_ms"] > 0
+    assert found["lost"] == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["synthesize", "--motion", "juggle", "--out", "x"], "choose one of open-close, wave, count, pinch"),
+        (["synthesize", "--twin", "nowhere", "--out", "x"], "--twin needs --sequence"),
+        (["synthesize", "--twin", "nowhere", "--sequence", "09", "--out", "x"], "has no sequence '09'"),
+        (["synthesize", "--motion", "wave", "--step", "0", "--out", "x"], "--step must be at least 1"),
+        (["synthesize", "--motion", "wave", "--hand", "left=nowhere.npz", "--out", "x"], "nowhere.npz"),
+        (["track", "nowhere", "--out", "x"], "nowhere"),
+        (["evaluate", "nowhere", "--truth", "truth.npz"], "nowhere"),
+        (["evaluate", "nowhere"], "Nothing to compare with"),
+        (["bench", "tracking", "--frames", "3"], "at least 10"),
+    ],
+)
+def test_bad_input_is_exit_code_2_and_says_what_to_do(arguments, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert said in captured.err
+    assert captured.out == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_truth_file_that_is_none_is_refused(tracked, tmp_path, capsys):
+    path = tmp_path / "truth.npz"
+    path.write_bytes(b"not a zip file")
+    assert main(["evaluate", str(tracked), "--truth", str(path)]) == 2
+    assert "not a truth file" in capsys.readouterr().err

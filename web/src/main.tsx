@@ -37,7 +37,7 @@ if (root) {
         defaultColorScheme="dark"
         colorSchemeManager={localStorageColorSchemeManager({ key: "handloom/colours" })}
       >
-        <Notifications position="bottom-right" limit={3} />
+        <Notifications position="top-right" limit={3} />
         <QueryClientProvider client={queries}>
           <RouterProvider router={router} />
         </QueryClientProvider>

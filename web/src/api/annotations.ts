@@ -9,7 +9,7 @@ import type { Annotation } from "./types";
 export const annotationKeys = { of: (recording: string) => ["annotations", recording] as const };
 
 export const fetchAnnotations = (recording: string): Promise<Annotation[]> =>
-  fetchAll<Annotation>(`/sequences/${recording}/annotations`);
+  fetchAll<Annotation>(`/sequences/${recording}/annotations`, { limit: 2000 });
 
 export const useAnnotations = (recording: string | undefined) =>
   useQuery({

@@ -31,6 +31,14 @@ const importKey = (id: string) => ["imports", id] as const;
 export const useImport = (id: string) =>
   useQuery({ queryKey: importKey(id), queryFn: () => request<Import>("GET", `/imports/${id}`), retry: false });
 
+/** Names of the formats that can be asked for. */
+export const useImportFormats = () =>
+  useQuery({
+    queryKey: ["import-form"],
+    queryFn: async () => (await request<{ formats: string[] }>("GET", "/imports/form")).formats,
+    staleTime: Infinity,
+  });
+
 export function sendFiles(
   files: readonly DroppedFile[],
   options: ImportOptions,

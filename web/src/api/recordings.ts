@@ -12,7 +12,7 @@ export async function fetchAll<T>(path: string, query: Record<string, string | n
   const items: T[] = [];
   let cursor: string | null = null;
   do {
-    const page: Page<T> = await request("GET", path, { query: { ...query, limit: 100, cursor } });
+    const page: Page<T> = await request("GET", path, { query: { limit: 100, ...query, cursor } });
     items.push(...page.items);
     cursor = page.next_cursor;
   } while (cursor);

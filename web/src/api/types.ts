@@ -14,13 +14,39 @@ export interface Camera {
   depth_scale: number | null;
 }
 
-/** What the server found in an import; every sentence is meant to be read by people. */
+/** What the server found in an import; problems and warnings are sentences for people. */
 export interface ImportReport {
   ok: boolean;
-  format: string | null;
+  format: string;
+  name: string;
+  fps: number | null;
+  frame_count: number;
+  cameras: CameraReport[];
+  hands: string[];
+  objects: string[];
+  annotations: number;
+  baselines_m: Record<string, number>;
   problems: string[];
   warnings: string[];
-  [fact: string]: unknown;
+}
+
+export interface CameraReport {
+  id: string;
+  width: number;
+  height: number;
+  color_frames: number;
+  depth_frames: number;
+  image_types: Record<string, number>;
+  gaps: string[];
+  timestamps: { monotonic: boolean; median_interval_s: number; jitter_s: number; dropped: number } | null;
+  depth: { sampled_frames: number; empty_frames: number; zero_share: number; saturated_share: number; percentiles_m: number[] } | null;
+  calibration: {
+    field_of_view_deg: number[];
+    principal_offset: number[];
+    rotation_error: number;
+    distortion: number;
+    centre_m: number[];
+  } | null;
 }
 
 export interface Recording {
@@ -52,8 +78,16 @@ export interface Page<T> {
 
 export interface Import {
   id: string;
-  state: "checked" | "refused";
+  state: "checked" | "refused" | "confirmed";
+  /** Proposed for the recording. */
+  name: string;
+  /** What has been told about it so far. */
+  options: Record<string, unknown>;
   report: ImportReport;
+  file_count: number;
+  byte_count: number;
+  sequence_id: string | null;
+  created_at: string;
 }
 
 export interface HandSkeleton {

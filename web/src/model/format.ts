@@ -1,7 +1,8 @@
 /** Numbers and times as people read them. */
 
-/** "1:05", "2 h 03 min". */
+/** "0.3 s", "1:05", "2 h 03 min". */
 export function formatDuration(seconds: number): string {
+  if (seconds < 9.95) return `${Math.max(0, seconds).toFixed(1)} s`;
   const whole = Math.max(0, Math.round(seconds));
   if (whole < 3600) return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
   return `${Math.floor(whole / 3600)} h ${String(Math.floor((whole % 3600) / 60)).padStart(2, "0")} min`;

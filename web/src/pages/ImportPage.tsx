@@ -1,35 +1,21 @@
-import { Alert, Button, Group, List, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Button, Group, Stack, Text, TextInput, Title } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
-import { IconAlertTriangle, IconCircleCheck, IconCircleX } from "@tabler/icons-react";
+import { IconCircleCheck } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link, useNavigate, useParams } from "react-router";
-import { discardImport, useCheckAgain, useConfirmImport, useImport } from "../api/imports";
+import { discardImport, useCheckAgain, useConfirmImport, useImport, type ImportOptions } from "../api/imports";
 import type { Import } from "../api/types";
+import { formatBytes, formatCount } from "../model/format";
+import { EmptyState } from "./parts/EmptyState";
 import { Failure } from "./parts/Failure";
 import { ImportFacts } from "./parts/ImportFacts";
 import { ImportOptionsForm } from "./parts/ImportOptionsForm";
 import { PageSkeleton } from "./parts/PageSkeleton";
+import { Sentences } from "./parts/Sentences";
 import { useTitle } from "./parts/useTitle";
 
-function Sentences({ title, sentences, isProblem }: { title: string; sentences: readonly string[]; isProblem: boolean }) {
-  if (sentences.length === 0) return null;
-  const Icon = isProblem ? IconCircleX : IconAlertTriangle;
-  return (
-    <Alert color={isProblem ? "red" : "yellow"} icon={<Icon size={20} aria-hidden />} title={title} variant="light">
-      <List size="sm" spacing={4}>
-        {sentences.map((sentence) => (
-          <List.Item key={sentence} style={{ overflowWrap: "anywhere" }}>
-            {sentence}
-          </List.Item>
-        ))}
-      </List>
-    </Alert>
-  );
-}
-
 function Confirm({ checked }: { checked: Import }) {
-  const suggestion = checked.report["name"];
-  const [name, setName] = useState(typeof suggestion === "string" ? suggestion : "");
+  const [name, setName] = useState(checked.name);
   const confirm = useConfirmImport(checked.id);
   const navigate = useNavigate();
   const store = (): void =>
@@ -80,6 +66,21 @@ export function ImportPage() {
   }
   if (!checked) return <PageSkeleton />;
   const { report } = checked;
+  if (checked.state === "confirmed") {
+    return (
+      <EmptyState
+        icon={<IconCircleCheck size={48} stroke={1.25} />}
+        title="This import has become a recording"
+        action={
+          <Button component={Link} to={checked.sequence_id ? `/recordings/${checked.sequence_id}` : "/recordings"}>
+            Open the recording
+          </Button>
+        }
+      >
+        Its report stands on the recording's page.
+      </EmptyState>
+    );
+  }
   const discard = async (): Promise<void> => {
     await discardImport(importId).catch(() => undefined);
     void navigate("/recordings");
@@ -90,7 +91,8 @@ export function ImportPage() {
         <div>
           <Title order={1}>Import report</Title>
           <Text className="quiet" mt={4}>
-            {report.ok ? "These files make a recording. Nothing is stored until you say so." : "These files cannot be imported as they are. Nothing was stored."}
+            {formatCount(checked.file_count, "file")}, {formatBytes(checked.byte_count)}.{" "}
+            {report.ok ? "They make a recording. Nothing is stored until you say so." : "They cannot be imported as they are. Nothing was stored."}
           </Text>
         </div>
         <Button variant="default" onClick={() => void discard()}>
@@ -100,9 +102,16 @@ export function ImportPage() {
       <Stack gap="md">
         <Sentences title={report.problems.length === 1 ? "One thing must be mended" : `${report.problems.length} things must be mended`} sentences={report.problems} isProblem />
         <Sentences title="Worth knowing" sentences={report.warnings} isProblem={false} />
-        {report.ok && <div className="card" style={{ padding: 16 }}><Confirm key={String(report["name"])} checked={checked} /></div>}
-        <ImportFacts report={report} />
-        <ImportOptionsForm report={report} isOpen={!report.ok} isBusy={again.isPending} failure={again.error} onCheck={(options) => again.mutate(options)} />
+        {report.ok && <div className="card" style={{ padding: 16 }}><Confirm key={checked.name} checked={checked} /></div>}
+        {report.ok && <ImportFacts report={report} />}
+        <ImportOptionsForm
+          options={checked.options as ImportOptions}
+          isOpen={!report.ok}
+          isBusy={again.isPending}
+          failure={again.error}
+          onCheck={(options) => again.mutate(options)}
+        />
+        {!report.ok && <ImportFacts report={report} />}
       </Stack>
     </div>
   );

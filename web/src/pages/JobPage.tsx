@@ -15,7 +15,7 @@ function Log({ jobId, isLive }: { jobId: string; isLive: boolean }) {
   const { data, error } = useJobLog(jobId, isLive);
   const end = useRef<HTMLDivElement>(null);
   const count = data?.length ?? 0;
-  useEffect(() => end.current?.scrollIntoView({ block: "nearest" }), [count]);
+  useEffect(() => void end.current?.scrollIntoView({ block: "nearest" }), [count]);
   if (error) return <Text className="quiet">The log could not be loaded: {error.message}</Text>;
   return (
     <ScrollArea.Autosize mah={420} className={classes.log} tabIndex={0} aria-label="Log of the job">

@@ -21,6 +21,7 @@ import { HandBadge } from "./parts/HandBadge";
 import { ImportFacts } from "./parts/ImportFacts";
 import { JobRow } from "./parts/JobRow";
 import { PageSkeleton } from "./parts/PageSkeleton";
+import { Sentences } from "./parts/Sentences";
 import { StartTracking } from "./parts/StartTracking";
 import { TrackTable } from "./parts/TrackTable";
 import { useTitle } from "./parts/useTitle";
@@ -215,16 +216,12 @@ export function RecordingPage() {
               </Button>
             </Group>
             <Text className="quiet" size="sm" mb="sm">
-              {recording.report.warnings?.length ? `${formatCount(recording.report.warnings.length, "thing")} worth knowing` : "Nothing unusual was found"}. Content key{" "}
+              {recording.report.warnings.length ? `${formatCount(recording.report.warnings.length, "thing")} worth knowing` : "Nothing unusual was found"}. Content key{" "}
               <Code>{recording.content_key.slice(0, 12)}</Code>
             </Text>
             {isReportShown && (
               <Stack gap="md">
-                {recording.report.warnings?.map((warning) => (
-                  <Text key={warning} size="sm">
-                    {warning}
-                  </Text>
-                ))}
+                <Sentences title="Worth knowing" sentences={recording.report.warnings} isProblem={false} />
                 <ImportFacts report={recording.report} />
               </Stack>
             )}

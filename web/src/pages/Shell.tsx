@@ -1,7 +1,7 @@
 import { ActionIcon, Badge, Group, Kbd, Text, Tooltip, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
 import { IconKeyboard, IconMoon, IconPlugConnectedX, IconSearch, IconSun } from "@tabler/icons-react";
 import { Suspense, useState } from "react";
-import { NavLink, Outlet } from "react-router";
+import { Link, Outlet, useLocation } from "react-router";
 import { useKeymap } from "../actions/useKeymap";
 import { isActive, useJobs, useJobStream } from "../api/jobs";
 import { DropAnywhere } from "./parts/DropAnywhere";
@@ -16,6 +16,12 @@ const ROOMS = [
   { to: "/tracks", label: "Tracks" },
   { to: "/jobs", label: "Jobs" },
 ] as const;
+
+/** An annotator's address lies below its recording, but it is another room. */
+function roomOf(path: string): string {
+  if (path.endsWith("/annotate")) return "/annotate";
+  return path.startsWith("/imports") ? "/recordings" : `/${path.split("/")[1] ?? ""}`;
+}
 
 function ThemeSwitch() {
   const { setColorScheme } = useMantineColorScheme();
@@ -32,18 +38,19 @@ function ThemeSwitch() {
 
 function Brand() {
   return (
-    <NavLink to="/recordings" className={classes.brand} aria-label="Handloom, to the recordings">
+    <Link to="/recordings" className={classes.brand} aria-label="Handloom, to the recordings">
       <img src="/icon.svg" width={24} height={24} alt="" />
       <Text fw={650} size="md" span>
         Handloom
       </Text>
-    </NavLink>
+    </Link>
   );
 }
 
 /** Header, navigation and what is true on every page; the page itself is the outlet. */
 export function Shell() {
   const [isHelpOpen, setHelpOpen] = useState(false);
+  const room = roomOf(useLocation().pathname);
   const isLinked = useJobStream();
   const running = useJobs().data?.filter(isActive).length ?? 0;
   useKeymap("everywhere", { help: () => setHelpOpen(true), search: openSearch });
@@ -57,14 +64,14 @@ export function Shell() {
         <Brand />
         <nav aria-label="Rooms" className={classes.rooms}>
           {ROOMS.map(({ to, label }) => (
-            <NavLink key={to} to={to} className={({ isActive: isHere }) => `${classes.room} ${isHere ? classes.here : ""}`}>
+            <Link key={to} to={to} className={`${classes.room} ${room === to ? classes.here : ""}`} aria-current={room === to ? "page" : undefined}>
               {label}
               {to === "/jobs" && running > 0 && (
                 <Badge size="sm" circle variant="filled" ml={6} aria-label={`${running} running`}>
                   {running}
                 </Badge>
               )}
-            </NavLink>
+            </Link>
           ))}
         </nav>
         <Group gap={4} ml="auto" wrap="nowrap">

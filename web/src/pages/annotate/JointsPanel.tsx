@@ -36,7 +36,7 @@ function StatusMark({ status, color }: { status: JointStatus; color: string }) {
 /** The joints of the active hand, what is known about each, and which comes next. */
 export function JointsPanel({ state, pose, onHand, onJoint }: JointsPanelProps) {
   const active = useRef<HTMLButtonElement>(null);
-  useEffect(() => active.current?.scrollIntoView({ block: "nearest" }), [state.joint]);
+  useEffect(() => void active.current?.scrollIntoView({ block: "nearest" }), [state.joint]);
   return (
     <aside className={classes.panel} aria-label="Joints">
       <div className={classes.hands} role="tablist" aria-label="Hand">

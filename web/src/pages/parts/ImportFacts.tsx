@@ -1,71 +1,101 @@
-import { Code, Table, Text, Title } from "@mantine/core";
-import type { ImportReport } from "../../api/types";
-import { formatName } from "../../model/format";
+import { SimpleGrid, Table, Title } from "@mantine/core";
+import type { ReactNode } from "react";
+import type { CameraReport, ImportReport } from "../../api/types";
+import { formatCount, formatName, formatNumber } from "../../model/format";
+import { Fact } from "./Fact";
 
-const HANDLED = new Set(["ok", "problems", "warnings", "options", "name"]);
+const percent = (share: number): string => `${(100 * share).toFixed(share > 0 && share < 0.1 ? 1 : 0)} %`;
+const metres = (values: readonly number[], index: number): string => formatNumber(values[index], 3);
 
-function show(value: unknown): string {
-  if (value === null || value === undefined) return "–";
-  if (typeof value === "number") return Number.isInteger(value) ? String(value) : value.toPrecision(6).replace(/\.?0+$/, "");
-  if (typeof value === "boolean") return value ? "yes" : "no";
-  if (typeof value === "string") return value;
-  if (Array.isArray(value)) return value.map(show).join(", ");
-  return Object.entries(value as Record<string, unknown>)
-    .map(([key, held]) => `${formatName(key).toLowerCase()} ${show(held)}`)
-    .join(", ");
-}
+/** What is said of a camera, row by row; a row that says nothing of any camera is left out. */
+const ROWS: readonly (readonly [string, (camera: CameraReport) => ReactNode])[] = [
+  ["Size", (camera) => (camera.width > 0 ? `${camera.width} × ${camera.height} px` : null)],
+  ["Colour images", (camera) => camera.color_frames || null],
+  ["Depth images", (camera) => camera.depth_frames || null],
+  [
+    "Kinds of files",
+    (camera) =>
+      Object.entries(camera.image_types)
+        .map(([kind, count]) => `${count} ${kind}`)
+        .join(", ") || null,
+  ],
+  ["Missing frames", (camera) => (camera.gaps.length > 0 ? camera.gaps.join("; ") : "none")],
+  [
+    "Timestamps",
+    ({ timestamps }) =>
+      timestamps &&
+      `every ${formatNumber(1000 * timestamps.median_interval_s)} ms, jitter ${formatNumber(1000 * timestamps.jitter_s)} ms, ` +
+        `${timestamps.dropped > 0 ? `${timestamps.dropped} seem dropped` : "none dropped"}${timestamps.monotonic ? "" : ", not in order"}`,
+  ],
+  [
+    "Depth range",
+    ({ depth }) =>
+      depth && depth.percentiles_m.length >= 5
+        ? `${metres(depth.percentiles_m, 0)} to ${metres(depth.percentiles_m, 4)} m, median ${metres(depth.percentiles_m, 2)} m`
+        : depth
+          ? "not known without the depth unit"
+          : null,
+  ],
+  [
+    "Without depth",
+    ({ depth }) => depth && `${percent(depth.zero_share)} of the pixels${depth.empty_frames > 0 ? `, ${depth.empty_frames} of ${depth.sampled_frames} frames looked at` : ""}`,
+  ],
+  ["Field of view", ({ calibration }) => calibration && calibration.field_of_view_deg.map((angle) => `${formatNumber(angle)}°`).join(" × ")],
+  ["Principal point off the centre", ({ calibration }) => calibration && calibration.principal_offset.map(percent).join(", ")],
+  ["Distortion", ({ calibration }) => calibration && (calibration.distortion > 0 ? formatCount(calibration.distortion, "coefficient") : "none")],
+  ["Position", ({ calibration }) => calibration && `${calibration.centre_m.map((value) => formatNumber(value, 3)).join(", ")} m`],
+];
 
-const isTable = (value: unknown): value is Record<string, unknown>[] =>
-  Array.isArray(value) && value.length > 0 && value.every((row) => typeof row === "object" && row !== null && !Array.isArray(row));
-
-/** The figures of a report: plain facts as a list, lists of things (cameras) as tables. */
+/** The figures of an import report. */
 export function ImportFacts({ report }: { report: ImportReport }) {
-  const facts = Object.entries(report).filter(([name, value]) => !HANDLED.has(name) && value !== null && !(Array.isArray(value) && value.length === 0));
-  const plain = facts.filter(([, value]) => !isTable(value));
-  const tables = facts.filter((fact): fact is [string, Record<string, unknown>[]] => isTable(fact[1]));
+  const cameras = report.cameras ?? [];
+  const rows = ROWS.map(([label, tell]) => [label, cameras.map(tell)] as const).filter(([, cells]) => cells.some((cell) => cell !== null && cell !== undefined));
+  const baselines = Object.entries(report.baselines_m ?? {});
   return (
     <>
-      {tables.map(([name, rows]) => {
-        const columns = [...new Set(rows.flatMap((row) => Object.keys(row)))];
-        return (
-          <section key={name} className="card" style={{ padding: 16, overflowX: "auto" }} aria-label={formatName(name)}>
-            <Title order={2} mb="sm">
-              {formatName(name)}
-            </Title>
-            <Table>
-              <Table.Tbody>
-                {columns.map((column) => (
-                  <Table.Tr key={column}>
-                    <Table.Th w={200} fw={400} className="quiet">
-                      {formatName(column)}
-                    </Table.Th>
-                    {rows.map((row, index) => (
-                      <Table.Td key={index} style={{ overflowWrap: "anywhere" }}>
-                        {show(row[column])}
-                      </Table.Td>
-                    ))}
-                  </Table.Tr>
-                ))}
-              </Table.Tbody>
-            </Table>
-          </section>
-        );
-      })}
-      {plain.length > 0 && (
-        <section className="card" style={{ padding: 16 }} aria-label="Found">
+      <SimpleGrid cols={{ base: 3, md: 6 }} spacing="md">
+        <Fact label="Format">{report.format ? formatName(report.format) : "not recognised"}</Fact>
+        <Fact label="Frames">{report.frame_count.toLocaleString("en")}</Fact>
+        <Fact label="Frames per second">{formatNumber(report.fps, report.fps !== null && Number.isInteger(report.fps) ? 0 : 2)}</Fact>
+        <Fact label="Hands">{report.hands.join(", ") || "–"}</Fact>
+        <Fact label="Objects">{report.objects.join(", ") || "none"}</Fact>
+        <Fact label="Annotations">{report.annotations}</Fact>
+      </SimpleGrid>
+      {cameras.length > 0 && (
+        <section className="card" style={{ padding: 16, overflowX: "auto" }} aria-label="Cameras in these files">
           <Title order={2} mb="sm">
-            Found
+            {formatCount(cameras.length, "camera")}
           </Title>
           <Table>
+            {cameras.length > 1 && (
+              <Table.Thead>
+                <Table.Tr>
+                  <Table.Th w={208} />
+                  {cameras.map((camera) => (
+                    <Table.Th key={camera.id}>{camera.id}</Table.Th>
+                  ))}
+                </Table.Tr>
+              </Table.Thead>
+            )}
             <Table.Tbody>
-              {plain.map(([name, value]) => (
-                <Table.Tr key={name}>
-                  <Table.Th w={200} fw={400} className="quiet">
-                    {formatName(name)}
+              {rows.map(([label, cells]) => (
+                <Table.Tr key={label}>
+                  <Table.Th w={208} fw={400} className="quiet">
+                    {label}
                   </Table.Th>
-                  <Table.Td style={{ overflowWrap: "anywhere" }}>
-                    {typeof value === "object" ? <Code>{show(value)}</Code> : <Text size="sm">{show(value)}</Text>}
-                  </Table.Td>
+                  {cells.map((cell, index) => (
+                    <Table.Td key={cameras[index]?.id} style={{ overflowWrap: "anywhere" }}>
+                      {cell ?? "–"}
+                    </Table.Td>
+                  ))}
+                </Table.Tr>
+              ))}
+              {baselines.map(([pair, distance]) => (
+                <Table.Tr key={pair}>
+                  <Table.Th w={208} fw={400} className="quiet">
+                    Distance {pair}
+                  </Table.Th>
+                  <Table.Td colSpan={cameras.length}>{formatNumber(distance, 3)} m</Table.Td>
                 </Table.Tr>
               ))}
             </Table.Tbody>

@@ -1,11 +1,12 @@
-import { Button, Checkbox, Collapse, Group, NumberInput, SegmentedControl, SimpleGrid, Stack, Text, TextInput, Title, UnstyledButton } from "@mantine/core";
+import { Button, Checkbox, Collapse, Group, NumberInput, SegmentedControl, Select, SimpleGrid, Stack, Text, TextInput, Title, UnstyledButton } from "@mantine/core";
 import { IconChevronDown, IconChevronRight } from "@tabler/icons-react";
 import { useState } from "react";
-import type { ImportOptions } from "../../api/imports";
-import type { ImportReport } from "../../api/types";
+import { useImportFormats, type ImportOptions } from "../../api/imports";
+import { formatName } from "../../model/format";
 
 interface ImportOptionsFormProps {
-  report: ImportReport;
+  /** What has been said so far. */
+  options: ImportOptions;
   /** Open from the start, because something has to be said. */
   isOpen: boolean;
   isBusy: boolean;
@@ -28,12 +29,12 @@ const NUMBERS: readonly { name: NumberName; label: string; help: string; step: n
 const HANDS: Record<string, string[]> = { right: ["right"], left: ["left"], both: ["right", "left"] };
 
 /** What files don't say themselves: intrinsics, units, where images lie. */
-export function ImportOptionsForm({ report, isOpen, isBusy, failure, onCheck }: ImportOptionsFormProps) {
-  const said = (report["options"] ?? {}) as ImportOptions;
+export function ImportOptionsForm({ options: said, isOpen, isBusy, failure, onCheck }: ImportOptionsFormProps) {
   const [isShown, setShown] = useState(isOpen);
   const [options, setOptions] = useState<ImportOptions>(said);
   const set = (change: Partial<ImportOptions>): void => setOptions((now) => ({ ...now, ...change }));
   const hands = Object.keys(HANDS).find((key) => HANDS[key]?.join() === options.hands?.join()) ?? "right";
+  const formats = useImportFormats().data ?? [];
   const Chevron = isShown ? IconChevronDown : IconChevronRight;
 
   const check = (): void => {
@@ -73,7 +74,14 @@ export function ImportOptionsForm({ report, isOpen, isBusy, failure, onCheck }: 
                   onChange={(value) => set({ [name]: typeof value === "number" ? value : undefined })}
                 />
               ))}
-              <TextInput label="Format" description="Found by itself when empty" value={options.format ?? ""} onChange={(event) => set({ format: event.currentTarget.value })} />
+              <Select
+                label="Format"
+                description="Recognised when empty"
+                data={formats.map((value) => ({ value, label: formatName(value) }))}
+                value={options.format ?? null}
+                clearable
+                onChange={(format) => set({ format: format ?? "" })}
+              />
             </SimpleGrid>
             <SimpleGrid cols={2} spacing="md">
               <TextInput

@@ -1,0 +1,24 @@
+import { expect, test } from "vitest";
+import { formatAgo, formatBytes, formatDuration, formatName, formatNumber } from "./format";
+
+test("durations are short for seconds and plain for hours", () => {
+  expect([0.27, 9.99, 65, 3725].map(formatDuration)).toEqual(["0.3 s", "0:10", "1:05", "1 h 02 min"]);
+});
+
+test("times are told as people would", () => {
+  const now = Date.parse("2026-01-10T12:00:00Z");
+  expect(["2026-01-10T11:59:40Z", "2026-01-10T11:58:00Z", "2026-01-10T09:00:00Z", "2026-01-09T10:00:00Z"].map((time) => formatAgo(time, now))).toEqual([
+    "just now",
+    "2 minutes ago",
+    "3 hours ago",
+    "yesterday",
+  ]);
+});
+
+test("what is not known is a dash, never NaN", () => {
+  expect([formatNumber(null), formatNumber(undefined), formatNumber(Number.NaN), formatNumber(2.345, 2)]).toEqual(["–", "–", "–", "2.35"]);
+});
+
+test("names of fields become words", () => {
+  expect([formatName("depth_residual_mm"), formatBytes(1234567), formatBytes(12)]).toEqual(["Depth residual mm", "1.2 MB", "12 B"]);
+});

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import fast_simplification
 import numpy as np
 import numpy.typing as npt
 from scipy.spatial import KDTree
 
-from tracker.errors import TrackerError
+from tracker.errors import ModelFileError, TrackerError
 from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
 from tracker.model.skeleton import Array
 
@@ -73,13 +74,22 @@ def decimate(model: ArticulatedModel, max_faces: int, posed: Array | None = None
     )
 
 
+def decimate_file(path: Path, model: ArticulatedModel, max_faces: int) -> ArticulatedModel:
+    """As `decimate`, for a model that came from this file, which is to blame if it fails."""
+    try:
+        return decimate(model, max_faces)
+    except TrackerError as error:
+        raise ModelFileError(path, f"a mesh that cannot be decimated ({error})", f"about {max_faces} faces") from error
+
+
 def simplify(vertices: Array, faces: Faces, max_faces: int) -> tuple[Array, Faces]:
-    """Quadric edge collapse to about `max_faces` faces.
+    """Quadric edge collapse to about `max_faces` faces; a closed mesh stays closed where that can be had.
 
     Raises:
         TrackerError: The simplifier stopped early whatever its setting.
     """
     reached = len(faces)
+    open_mesh: tuple[Array, Faces] | None = None
     for aggressiveness in AGGRESSIVENESS:
         points, triangles, *_ = fast_simplification.simplify(
             np.ascontiguousarray(vertices, dtype=np.float64),
@@ -89,7 +99,12 @@ def simplify(vertices: Array, faces: Faces, max_faces: int) -> tuple[Array, Face
         )
         reached = min(reached, len(triangles))
         if 0 < len(triangles) <= max_faces * (1.0 + COUNT_TOLERANCE):
-            return np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.int64)
+            found = np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.int64)
+            if is_watertight(found[1]) or not is_watertight(faces):
+                return found
+            open_mesh = open_mesh or found
+    if open_mesh is not None:
+        return open_mesh
     raise TrackerError(
         f"The mesh of {len(faces)} faces could not be reduced to {max_faces}: the simplifier stopped at {reached}. "
         f"Give a mesh without loose pieces and duplicate vertices, or allow more faces."

@@ -52,11 +52,10 @@ class Gltf:
         """Values (N, width) of an accessor of the type `form`; normalised integers become -1 or 0 to 1."""
         accessor = self.item("accessors", index)
         component, count = accessor.get("componentType"), accessor.get("count")
-        if accessor.get("type") != form or component not in COMPONENTS or type(count) is not int:
-            raise self.fail(
-                f"accessors[{index}] of type {str(accessor.get('type'))[:20]} {str(component)[:20]}",
-                f"a {form} of numbers",
-            )
+        if accessor.get("type") != form or type(component) is not int or type(count) is not int:
+            raise self.fail(f"accessors[{index}] of type {str(accessor.get('type'))[:20]}", f"a {form} of numbers")
+        if component not in COMPONENTS:
+            raise self.fail(f"accessors[{index}] of numbers of the kind {component}", "a kind of number of glTF 2.0")
         if "sparse" in accessor or "bufferView" not in accessor:
             raise self.fail(f"a sparse or empty accessors[{index}]", "plain accessors; export without sparse data")
         view = self.item("bufferViews", accessor["bufferView"])

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.model.articulated import ArticulatedModel
-from tracker.model.decimation import decimate, limit_weights
+from tracker.model.decimation import decimate_file, limit_weights
 from tracker.model.gltf_container import Gltf, read_gltf
 from tracker.model.hand_axes import HandChains, derive_hand_joints
 from tracker.model.hand_joint_names import find_side, map_joint_names, missing_joints
@@ -20,6 +20,7 @@ from tracker.model.skeleton import Array
 
 MAX_VERTICES = 500_000
 MAX_JOINTS = 512
+MAX_NODES = 4096
 HAND_LENGTH = (0.08, 0.40)
 """Wrist to tip of the middle finger, m; outside of it the file is surely not in metres."""
 
@@ -63,11 +64,13 @@ def load_gltf_model(path: Path, max_faces: int | None = 1500) -> ArticulatedMode
     chains = HandChains(side, np.zeros(3), {f: (points - chains.wrist) @ R.T for f, points in chains.fingers.items()})
     vertices = (vertices - positions[joints["wrist", ""]]) @ R.T
     model = _build_model(gltf, chains, joints, vertices, faces, weights)
-    return model if max_faces is None else decimate(model, max_faces)
+    return model if max_faces is None else decimate_file(gltf.path, model, max_faces)
 
 
 def _find_skinned_node(gltf: Gltf) -> tuple[dict[str, Any], dict[str, Any]]:
     nodes = gltf.document.get("nodes", [])
+    if isinstance(nodes, list) and len(nodes) > MAX_NODES:
+        raise gltf.fail(f"{len(nodes)} nodes", f"at most {MAX_NODES} nodes, a single hand")
     skinned = (
         [n for n in nodes if isinstance(n, dict) and "skin" in n and "mesh" in n] if isinstance(nodes, list) else []
     )
@@ -261,7 +264,10 @@ def _build_model(
     if weights[:, unmapped].sum() > 0.5 * len(vertices):
         raise gltf.fail("a mesh that mostly follows joints which are no part of a hand", "the mesh of one hand")
     ours = limit_weights(ours)
-    skeleton = build_hand_skeleton(chains, derive_hand_joints(chains))
+    derived = derive_hand_joints(chains)
+    if any(abs(np.linalg.norm(joint.axis) - 1.0) > 1e-6 for joint in derived):
+        raise gltf.fail("a finger that stands square on the palm", "a rest pose with the fingers stretched forward")
+    skeleton = build_hand_skeleton(chains, derived)
     bones = {f: tuple(names.index(f"{f}_{s}") for s in chains.segments(f)) for f in FINGERS}
     tips = np.array([find_tip(vertices, ours[:, bones[finger][-1]], chains.fingers[finger]) for finger in FINGERS])
     return ArticulatedModel(

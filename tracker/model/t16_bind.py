@@ -11,9 +11,9 @@ from tracker.model.skeleton import Array
 
 
 def find_motion_beside(off_path: Path) -> Path | None:
-    """A MOTION file of this model: in its own folder, in a sibling of it, or in `../seq/*/`."""
+    """A MOTION file of this model: in its own folder or in `../seq/*/`."""
     stem = off_path.stem
-    for pattern in (f"{stem}.MOTION*", f"../seq/*/{stem}.MOTION*", f"../*/{stem}.MOTION*"):
+    for pattern in (f"{stem}.MOTION*", f"../seq/*/{stem}.MOTION*"):
         for found in sorted(off_path.parent.glob(pattern)):
             if found.suffix in (".MOTION", ".gz") and found.is_file():
                 return found

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from tracker.errors import ModelFileError
 from tracker.model.articulated import ArticulatedModel, HandParts
-from tracker.model.decimation import decimate, limit_weights
+from tracker.model.decimation import decimate_file, limit_weights
 from tracker.model.hand_parts import find_hand_parts, finger_segments
 from tracker.model.joints import FINGERS
 from tracker.model.skeleton import Array, Skeleton
@@ -84,7 +84,7 @@ def load_t16_model(off_path: Path, max_faces: int | None = 1500, bind: Array | N
         hand=_build_hand(vertices, weights, bind, names, fingers, voi),
         provenance={"file": off_path.name, "format": "T16 model", "bind_pose": bind_source},
     )
-    return model if max_faces is None else decimate(model, max_faces)
+    return model if max_faces is None else decimate_file(off_path, model, max_faces)
 
 
 def load_t16_motion(path: Path) -> tuple[tuple[str, ...], Array, Array]:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 from numba import njit
 
 Array = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+Ints = npt.NDArray[np.integer]
 
 
 def compute_surface_distances(points: Array, vertices: Array, faces: Ints) -> Array:

@@ -5,22 +5,16 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
-import logging
 import os
 import sys
 import tempfile
 import uuid
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from server.cli.guarded import CommandError, load_settings, run_guarded
+from server.cli.import_command import import_recording
+from server.cli.open_studio import OpenStudio, open_studio
 from server.cli.serve import add_serve_arguments, listen, serve
-
-if TYPE_CHECKING:
-    from server.database import Database
-    from server.storage import Storage
-
-log = logging.getLogger(__name__)
 
 NAME = "Sample: open and close"
 MOTION, FRAMES = "open-close", 60
@@ -42,32 +36,21 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from server.database import Database
-    from server.database.migrate import upgrade
-    from server.storage import Storage
-
     settings = load_settings(host=args.host, port=args.port)
     if settings.is_loopback:
         with listen(settings):
             pass  # a port that is taken is better known before the sample is rendered
-        storage = Storage(settings.data_dir)
-        database = Database(settings.sqlalchemy_url)
-        try:
-            upgrade(database)
-            make_sample(database, storage)
-        finally:
-            database.close()
+        with open_studio(settings) as studio:
+            make_sample(studio)
     serve(settings, with_worker=not args.no_worker)
     return 0
 
 
-def make_sample(database: Database, storage: Storage) -> None:
+def make_sample(studio: OpenStudio) -> None:
     """Import the sample recording and queue a job that tracks it, unless that was done before."""
-    from server.cli.import_command import import_recording
     from server.jobs.service import check_track_params, create_job
-    from tracker import ImportOptions
 
-    marker = storage.root / MARKER
+    marker = studio.storage.root / MARKER
     if marker.exists():
         return
     sys.stderr.write(f"handloom: rendering the sample recording, {FRAMES} frames ...\n")
@@ -75,9 +58,8 @@ def make_sample(database: Database, storage: Storage) -> None:
         recording = Path(folder) / "recording"
         _render(recording)
         _thin_annotations(recording / "annotations.json")
-        options = ImportOptions(name=NAME)
-        row, _ = import_recording(database, storage, recording, None, options)
-    with database.writing() as session:
+        row = import_recording(studio, recording, {"name": NAME})
+    with studio.database.writing() as session:
         job = create_job(session, "track", row.id, check_track_params(session, row.id, {}))
     unfinished = marker.with_name(f".{uuid.uuid4().hex}.json")
     unfinished.write_text(json.dumps({"sequence_id": str(row.id), "job_id": str(job.id)}))

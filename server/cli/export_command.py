@@ -11,7 +11,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from server.cli.guarded import CommandError, add_json, answer, load_settings, run_guarded
+from server.cli.guarded import CommandError, add_json, answer, run_guarded
+from server.cli.open_studio import open_studio
 
 if TYPE_CHECKING:
     from sqlalchemy.orm import Session
@@ -37,29 +38,18 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from server.database import Database
-    from server.database.migrate import upgrade
-    from server.storage import Storage
-
     out: Path = args.out.expanduser().absolute()
     if out.exists():
         raise CommandError(f"{out}: is there already; give a name that does not exist yet.")
     if not out.parent.is_dir():
         raise CommandError(f"{out.parent}: is no folder; make it first.")
-    settings = load_settings()
-    storage = Storage(settings.data_dir)
-    database = Database(settings.sqlalchemy_url)
-    try:
-        upgrade(database)
-        with database.reading() as session:
-            if args.format == "track":
-                result = _export_track(session, storage, args.name, out)
-            else:
-                sequence = find_recording(session, args.name)
-                export = _export_annotations if args.format == "annotations" else _export_recording
-                result = export(session, storage, sequence, out)
-    finally:
-        database.close()
+    with open_studio() as studio, studio.database.reading() as session:
+        if args.format == "track":
+            result = _export_track(session, studio.storage, args.name, out)
+        else:
+            sequence = find_recording(session, args.name)
+            export = _export_annotations if args.format == "annotations" else _export_recording
+            result = export(session, studio.storage, sequence, out)
     return answer(args, {"out": str(out), "format": args.format, **result}, f"{args.format} of {args.name}: {out}")
 
 

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import uuid
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from server.cli.guarded import CommandError, add_json, answer, load_settings, run_guarded
+from server.cli.guarded import CommandError, add_json, answer, run_guarded
+from server.cli.open_studio import open_studio
 
 if TYPE_CHECKING:
-    from server.database import Database
+    from server.cli.open_studio import OpenStudio
     from server.sequences.models import SequenceRow
-    from server.storage import Storage
-    from tracker import ImportOptions
 
 NUMBERS = {
     "fps": "frames per second",
@@ -54,54 +52,28 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from server.database import Database
-    from server.database.migrate import upgrade
-    from server.storage import Storage
-    from tracker import ImportOptions
-
     path: Path = args.path.expanduser().absolute()
     if not path.exists():
-        raise CommandError(f"{args.path}: does not exist; needed a recording's folder or file.")
-    names = (*NUMBERS, *TEXTS, "distortion", "hands", "allow-gaps")
+        raise CommandError(f"{args.path}: does not exist; needed a recording's folder or a video.")
+    names = ("format", *NUMBERS, *TEXTS, "distortion", "hands", "allow-gaps")
     given = {name.replace("-", "_"): getattr(args, name.replace("-", "_")) for name in names}
-    options = ImportOptions.from_json({name: value for name, value in given.items() if value is not None})
-    settings = load_settings()
-    database = Database(settings.sqlalchemy_url)
-    try:
-        upgrade(database)
-        row, report = import_recording(database, Storage(settings.data_dir), path, args.format, options)
-    finally:
-        database.close()
-    result = {"id": str(row.id), "name": row.name, "frames": row.frame_count, "report": report}
+    options = {name: value for name, value in given.items() if value is not None}
+    with open_studio() as studio:
+        row = import_recording(studio, path, options)
+    result = {"id": str(row.id), "name": row.name, "frames": row.frame_count, "report": row.report}
     return answer(args, result, f"{row.name}: {row.frame_count} frames imported as {row.id}")
 
 
-def import_recording(
-    database: Database, storage: Storage, path: Path, format_name: str | None, options: ImportOptions
-) -> tuple[SequenceRow, dict[str, Any]]:
-    """Bring a recording in with the annotations it has; its row and the import report. Raises when it is refused."""
+def import_recording(studio: OpenStudio, path: Path, options: dict[str, Any]) -> SequenceRow:
+    """Bring a recording in with the annotations it has. Raises when it is refused."""
     from server.accounts.models import LOCAL_ACCOUNT_ID
-    from server.annotations.service import add_imported_annotations
-    from server.sequences.service import AREA, add_sequence, describe_recording
-    from tracker import ImportRefusedError, load_annotations, load_sequence, run_import
+    from server.imports.service import ImportDesk, import_recording
+    from server.sequences.service import get_sequence
 
-    id_ = uuid.uuid4()
-    folder = storage.folder(AREA, id_)
-    try:
-        report = run_import(path, folder, format_name, options)
-        if not report.ok:
-            raise ImportRefusedError(f"{path} was refused: {'; '.join(str(problem) for problem in report.problems)}")
-        recording = load_sequence(folder)
-        columns = describe_recording(recording)
-        annotated = recording.annotations_path
-        with database.writing() as session:
-            row = add_sequence(session, id_, columns, report.to_json(), LOCAL_ACCOUNT_ID)
-            if annotated is not None and annotated.exists():
-                add_imported_annotations(session, row, load_annotations(annotated), LOCAL_ACCOUNT_ID)
-    except BaseException:
-        storage.remove(AREA, id_)
-        raise
-    return row, report.to_json()
+    desk = ImportDesk(studio.database, studio.storage, studio.settings)
+    id_ = import_recording(desk, path, options, LOCAL_ACCOUNT_ID)
+    with studio.database.reading() as session:
+        return get_sequence(session, id_)
 
 
 def _split(text: str) -> list[str]:

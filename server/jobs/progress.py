@@ -5,6 +5,9 @@ from __future__ import annotations
 import logging
 import os
 import time
+from collections import deque
+from itertools import pairwise
+from statistics import median
 from uuid import UUID
 
 from sqlalchemy.exc import OperationalError
@@ -21,6 +24,9 @@ PUBLISH_SECONDS = 0.2
 TRACKING_BEGINS, TRACKING_ENDS = 0.1, 0.98
 """Share of the progress bar when the first frame is tracked, and after the last."""
 
+RECENT_FRAMES = 15
+"""That the time left is judged by."""
+
 LOST_OWNERSHIP_EXIT = 75
 
 
@@ -34,8 +40,7 @@ class JobProgress:
     def __init__(self, database: Database, job_id: UUID, attempt: int, worker_id: UUID) -> None:
         self._database, self._job_id, self._attempt, self._worker_id = database, job_id, attempt, worker_id
         self._published = 0.0
-        self._frame_seconds: float | None = None
-        self._last_frame: tuple[int, float] | None = None
+        self._moments: deque[tuple[int, float]] = deque(maxlen=RECENT_FRAMES)
         self._last_stage = ""
 
     def stage(self, name: str, share: float) -> None:
@@ -48,12 +53,7 @@ class JobProgress:
 
     def frames(self, done: int, total: int) -> None:
         """Say that `done` of `total` frames are tracked."""
-        now = time.monotonic()
-        if self._last_frame is not None and done > self._last_frame[0]:
-            seconds = (now - self._last_frame[1]) / (done - self._last_frame[0])
-            before = seconds if self._frame_seconds is None else self._frame_seconds
-            self._frame_seconds = 0.9 * before + 0.1 * seconds
-        self._last_frame = (done, now)
+        self._moments.append((done, time.monotonic()))
         self._publish_frames(done, total, at_once=False)
 
     def chunk_done(self, done: int, total: int, message: str) -> None:
@@ -73,11 +73,19 @@ class JobProgress:
         self._publish(changed, stage=name, progress=progress, seconds_left=None)
 
     def _publish_frames(self, done: int, total: int, *, at_once: bool, **values: object) -> None:
-        left = None if self._frame_seconds is None else self._frame_seconds * (total - done)
+        if (seconds := self._seconds_per_frame()) is not None:
+            values["seconds_left"] = seconds * (total - done)
         share = TRACKING_BEGINS + (TRACKING_ENDS - TRACKING_BEGINS) * done / max(total, 1)
-        self._publish(
-            at_once, stage="tracking", progress=share, frames_done=done, frames_total=total, seconds_left=left, **values
-        )
+        self._publish(at_once, stage="tracking", progress=share, frames_done=done, frames_total=total, **values)
+
+    def _seconds_per_frame(self) -> float | None:
+        """Median of the last frames; None until there are two."""
+        steps = [
+            (now - before) / (done - done_before)
+            for (done_before, before), (done, now) in pairwise(self._moments)
+            if done > done_before
+        ]
+        return median(steps) if steps else None
 
     def _publish(self, at_once: bool, **values: object) -> None:
         now = time.monotonic()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import shutil
@@ -27,6 +28,17 @@ from server.database import Database
 from server.database.migrate import upgrade
 from server.imports.service import ImportDesk, import_recording
 from server.settings import Settings
+from server.storage import Storage
+from server.tracks.service import add_track
+from tracker import (
+    TrackOptions,
+    add_commands,
+    join_chunks,
+    load_annotations,
+    load_sequence,
+    start_tracking,
+    track_frames,
+)
 
 MakeRecording = Callable[..., Path]
 BASE_URL = "http://127.0.0.1:8000"
@@ -224,3 +236,50 @@ def add_recording(studio: Studio, make_recording: MakeRecording) -> AddRecording
         return studio.client.get(f"/api/v1/sequences/{id_}").json()
 
     return add
+
+
+RENDERED_FRAMES = 45
+"""Two chunks of a job and a bit."""
+
+
+@pytest.fixture(scope="session")
+def rendered(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A recording folder that Handloom rendered itself: a right hand that opens and closes, every frame annotated."""
+    folder = tmp_path_factory.mktemp("rendered") / "recording"
+    parser = argparse.ArgumentParser()
+    add_commands(parser.add_subparsers())
+    command = ["synthesize", "--motion", "open-close", "--frames", f"0:{RENDERED_FRAMES}", "--out", str(folder)]
+    args = parser.parse_args(command)
+    assert args.run(args) == 0
+    return folder
+
+
+@pytest.fixture(scope="session")
+def tracked_folder(rendered: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A track of the first frames of `rendered`."""
+    folder = tmp_path_factory.mktemp("tracked") / "track"
+    sequence, frames = load_sequence(rendered), range(12)
+    options = TrackOptions(calibrate=False, last_frame=frames[-1])
+    setup, state = start_tracking(sequence, options, None, load_annotations(rendered / "annotations.json"))
+    join_chunks(sequence, setup, [track_frames(sequence, setup, state, frames)[1]]).save(folder)
+    return folder
+
+
+@dataclass
+class Tracked:
+    """A recording in a studio, and a track of it."""
+
+    sequence_id: uuid.UUID
+    track_id: uuid.UUID
+
+
+@pytest.fixture
+def tracked(studio: Studio, rendered: Path, tracked_folder: Path) -> Tracked:
+    storage: Storage = studio.app.state.storage
+    desk = ImportDesk(studio.database, storage, studio.settings)
+    sequence_id = import_recording(desk, rendered, {}, LOCAL_ACCOUNT_ID)
+    track_id = uuid.uuid4()
+    shutil.copytree(tracked_folder, storage.folder("tracks", track_id))
+    with studio.database.writing() as session:
+        add_track(session, storage.folder("tracks", track_id), track_id, sequence_id, None)
+    return Tracked(sequence_id, track_id)

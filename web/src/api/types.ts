@@ -1,17 +1,48 @@
-/** The resources of `/api/v1`, under the names the pages use. */
+/**
+ * The resources of `/api/v1` under the names the pages use. Their types are generated; only what the API hands through
+ * from the tracker as free JSON (reports, summaries, evaluations) is described here.
+ */
 
-export type Side = "right" | "left";
+import type { components } from "./schema";
 
-export interface Camera {
-  id: string;
-  width: number;
-  height: number;
-  K: number[][];
-  distortion: number[];
-  T_world_camera: number[][];
-  has_color: boolean;
-  has_depth: boolean;
-  depth_scale: number | null;
+type Schemas = components["schemas"];
+
+export type Side = Schemas["AnnotationOut"]["hand"];
+export type Camera = Schemas["SequenceCamera"];
+export type Annotation = Schemas["AnnotationOut"];
+/** Image pixels, (0, 0) at the centre of the top-left pixel; v is 0 absent, 1 occluded, 2 visible. */
+export type WirePoint = Annotation["points"][number];
+export type Job = Schemas["JobOut"];
+export type JobState = Job["state"];
+export type LogLine = Schemas["JobLogLine"];
+export type FormField = Schemas["JobFormField"];
+export type TrackFrames = Schemas["TrackFrames"];
+export type TrackJoints = Schemas["TrackJoints"];
+export type ViewerSession = Schemas["ViewerSessionOut"];
+
+export type Recording = Omit<Schemas["SequenceOut"], "report" | "best_track"> & {
+  report: ImportReport | null;
+  best_track: BestTrack | null;
+};
+export type BestTrack = Omit<Schemas["BestTrack"], "summary"> & { summary: TrackSummary };
+export type Track = Omit<Schemas["TrackOut"], "summary"> & { summary: TrackSummary };
+export type Import = Omit<Schemas["ImportOut"], "report"> & { report: ImportReport };
+
+export interface Page<T> {
+  items: T[];
+  next_cursor: string | null;
+}
+
+/** As `summary.json` of a track. */
+export interface TrackSummary {
+  frames: number;
+  lost: number;
+  median_ms: number | null;
+  p95_ms: number | null;
+  stages_ms: Record<string, number> | null;
+  depth_residual_mm: number | null;
+  silhouette_iou: number | null;
+  threads: number | null;
 }
 
 /** What the server found in an import; problems and warnings are sentences for people. */
@@ -47,148 +78,6 @@ export interface CameraReport {
     distortion: number;
     centre_m: number[];
   } | null;
-}
-
-export interface Recording {
-  id: string;
-  name: string;
-  fps: number;
-  frame_count: number;
-  cameras: Camera[];
-  hands: string[];
-  objects: { name: string }[];
-  created_at: string;
-  revision: number;
-  report: ImportReport | null;
-  annotated_frames: number;
-  best_track: BestTrack | null;
-  content_key: string;
-}
-
-export interface BestTrack {
-  id: string;
-  summary: TrackSummary;
-  error_px: number | null;
-}
-
-export interface Page<T> {
-  items: T[];
-  next_cursor: string | null;
-}
-
-export interface Import {
-  id: string;
-  state: "checked" | "refused" | "confirmed";
-  /** Proposed for the recording. */
-  name: string;
-  /** What has been told about it so far. */
-  options: Record<string, unknown>;
-  report: ImportReport;
-  file_count: number;
-  byte_count: number;
-  sequence_id: string | null;
-  created_at: string;
-}
-
-export interface HandSkeleton {
-  joints: string[];
-  edges: [number, number][];
-  fingers: string[];
-}
-
-/** Image pixels, (0, 0) at the centre of the top-left pixel; v is 0 absent, 1 occluded, 2 visible. */
-export type WirePoint = [x: number, y: number, v: number];
-
-export interface Annotation {
-  frame: number;
-  camera: string;
-  hand: Side;
-  points: WirePoint[];
-  revision: number;
-  updated_at: string;
-  author: string | null;
-}
-
-export type JobState = "queued" | "running" | "succeeded" | "failed" | "cancelled";
-
-export interface Job {
-  id: string;
-  kind: string;
-  state: JobState;
-  progress: number;
-  stage: string | null;
-  frames_done: number | null;
-  frames_total: number | null;
-  seconds_left: number | null;
-  params: Record<string, unknown>;
-  sequence_id: string | null;
-  track_id: string | null;
-  error: string | null;
-  created_at: string;
-  started_at: string | null;
-  ended_at: string | null;
-}
-
-export interface LogLine {
-  n: number;
-  time: string;
-  level: string;
-  text: string;
-}
-
-export interface FormField {
-  name: string;
-  type: "integer" | "number" | "boolean" | "text";
-  default: unknown;
-  help: string;
-  choices: string[] | null;
-}
-
-export interface TrackSummary {
-  frames: number;
-  lost: number;
-  median_ms: number | null;
-  p95_ms: number | null;
-  stages_ms: Record<string, number> | null;
-  depth_residual_mm: number | null;
-  silhouette_iou: number | null;
-  threads: number | null;
-}
-
-export interface Track {
-  id: string;
-  sequence_id: string;
-  job_id: string | null;
-  name: string;
-  frame_first: number;
-  frame_count: number;
-  summary: TrackSummary;
-  created_at: string;
-  hands: string[];
-  error_px: number | null;
-}
-
-export interface TrackFrames {
-  frame: number[];
-  status: ("ok" | "lost" | "recovered")[];
-  seconds: (number | null)[];
-  depth_residual_mm: (number | null)[];
-  silhouette_iou: (number | null)[];
-  iterations: (number | null)[];
-}
-
-export interface TrackJoints {
-  joint_names: string[];
-  frames: number[];
-  /** px; null behind the camera */
-  points: (number | null)[][][];
-}
-
-export interface ViewerSession {
-  id: string;
-  url: string;
-  /** Correspondences of the frame that is shown. */
-  terms: { name: string; count: number; color: string }[];
 }
 
 /** Distance of a track's joints to the annotations, px. */

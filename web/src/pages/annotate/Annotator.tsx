@@ -83,6 +83,8 @@ export function Annotator({ recording, session }: AnnotatorProps) {
     setRange(null);
   }, [camera.id]);
 
+  useEffect(() => setView(null), [arrangement]);
+
   useEffect(() => {
     middle.current?.querySelector<HTMLElement>("[data-picture]")?.focus({ preventScroll: true });
   }, []);

@@ -1,6 +1,7 @@
-import { Group, Kbd, Modal, SimpleGrid, Stack, Text, Title } from "@mantine/core";
+import { Group, Kbd, Modal, Stack, Text, Title } from "@mantine/core";
 import { Fragment } from "react";
 import { KEYMAP, type KeyBinding } from "../../model/keymap";
+import classes from "./KeyboardMap.module.css";
 
 const MOUSE: readonly (readonly [string, string])[] = [
   ["Click", "Place the next joint, or choose the one under the cursor"],
@@ -50,9 +51,9 @@ export function KeyboardMap({ isOpen, onClose }: { isOpen: boolean; onClose: () 
   const groups = [...new Set(map.map((binding) => binding.group))];
   return (
     <Modal opened={isOpen} onClose={onClose} title={<Title order={2}>Keyboard map</Title>} size={1040}>
-      <SimpleGrid cols={{ base: 1, sm: 2 }} spacing="xl" verticalSpacing="lg">
+      <div className={classes.columns}>
         {groups.map((group) => (
-          <Stack key={group} gap={2}>
+          <Stack key={group} gap={2} className={classes.group}>
             <Title order={3}>{group === "Track" ? "Track page" : group}</Title>
             {map
               .filter((binding) => binding.group === group)
@@ -61,7 +62,7 @@ export function KeyboardMap({ isOpen, onClose }: { isOpen: boolean; onClose: () 
               ))}
           </Stack>
         ))}
-        <Stack gap={2}>
+        <Stack gap={2} className={classes.group}>
           <Title order={3}>Mouse, on the picture</Title>
           {MOUSE.map(([gesture, label]) => (
             <Group key={gesture} justify="space-between" wrap="nowrap" gap="md" py={2}>
@@ -72,7 +73,7 @@ export function KeyboardMap({ isOpen, onClose }: { isOpen: boolean; onClose: () 
             </Group>
           ))}
         </Stack>
-      </SimpleGrid>
+      </div>
     </Modal>
   );
 }

@@ -46,7 +46,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         app.include_router(router, prefix=API, responses=error_responses(403, 500))
     for router in PAGE_ROUTERS:
         app.include_router(router)
-    app.mount("/", BrowserApp(settings.web_dist))
+    app.router.default = BrowserApp(settings.web_dist)  # what no route takes
     app.add_middleware(Guard, settings=settings)
     return app
 

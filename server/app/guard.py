@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import Request
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from server.accounts.same_origin import SAFE_METHODS, find_host_fault, find_origin_fault
+from server.app.error_handler import answer_error
 from server.settings import Settings
 
 CONTENT_SECURITY_POLICY = "; ".join(
@@ -37,7 +39,10 @@ HEADERS = {
 
 
 class Guard:
-    """Refuses requests to foreign hosts, and writes and sockets from foreign pages; adds the headers."""
+    """Refuses requests to foreign hosts, and writes and sockets from foreign pages; adds the headers.
+
+    It stands outside of all that can fail, so it also answers what nobody foresaw.
+    """
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self.app = app
@@ -58,8 +63,12 @@ class Guard:
                 await self.app(scope, receive, send)
             return
 
+        is_answered = False
+
         async def send_with_headers(message: Message) -> None:
+            nonlocal is_answered
             if message["type"] == "http.response.start":
+                is_answered = True
                 answered = MutableHeaders(scope=message)
                 for name, value in HEADERS.items():
                     answered.setdefault(name, value)
@@ -68,5 +77,11 @@ class Guard:
         if fault:
             refusal = JSONResponse({"error": "ForbiddenError", "detail": fault}, 403)
             await refusal(scope, receive, send_with_headers)
-        else:
+            return
+        try:
             await self.app(scope, receive, send_with_headers)
+        except Exception as error:
+            if is_answered:
+                raise
+            answer = answer_error(Request(scope), error)
+            await answer(scope, receive, send_with_headers)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from tracker.model.hand_axes import HandChains, find_flexion_axis
 from tracker.model.skeleton import Array
 
 
@@ -20,82 +21,91 @@ def find_motion_beside(off_path: Path) -> Path | None:
     return None
 
 
-def estimate_bind(
-    vertices: Array,
-    weights: Array,
-    parents: npt.NDArray[np.int64],
-    lengths: Array,
-    palm_sides: dict[int, Array],
-) -> Array:
-    """Rest poses (B, 4, 4) of the bones from the mesh and its weights alone.
+def estimate_joints(vertices: Array, weights: Array, parents: npt.NDArray[np.int64], lengths: Array) -> Array:
+    """Joints (B, 3) of the bones from the mesh and its weights alone.
 
-    A joint is where the weights of a bone and its parent overlap, moved along the bone until the length in the
-    .SKEL file fits. A bone's first axis runs along it; the third is square to it and to where the palm looks,
-    which in T16's files is the flexion axis to within 10 degrees.
+    A joint is where the weights of a bone and its parent overlap; two joints in a row are then moved along the bone
+    between them until the length in the .SKEL file fits. A bone that branches off the root, whose weights say
+    little, gets its joint on the line from its child's to the root's.
 
     Args:
         vertices: (V, 3).
         weights: (V, B).
         parents: (B,).
         lengths: (B,) from a bone's joint to that of its child.
-        palm_sides: For a bone of a hand, (3,) the direction its palm side looks in.
     """
-    num_bones = len(parents)
-    children = [np.flatnonzero(parents == bone) for bone in range(num_bones)]
-    joints = np.zeros((num_bones, 3))
-    for bone in range(num_bones):
-        joints[bone] = _weighted_joint(vertices, weights, bone, int(parents[bone]))
-    for bone in range(num_bones):
-        if parents[bone] >= 0 and len(children[bone]) == 1:
-            child = int(children[bone][0])
-            along = joints[child] - joints[bone]
-            distance = np.linalg.norm(along)
-            if distance > 0:
-                excess = 0.5 * (distance - lengths[bone]) / distance * along
-                joints[bone] = joints[bone] + excess
-                joints[child] = joints[child] - excess
-    Ts = np.tile(np.eye(4), (num_bones, 1, 1))
-    Ts[:, :3, 3] = joints
-    for bone in range(num_bones):
-        if parents[bone] < 0:
+    joints = np.array([_overlap(vertices, weights, bone, int(parent)) for bone, parent in enumerate(parents)])
+    root = int(np.flatnonzero(parents < 0)[0])
+    is_branching = np.sum(parents == root) > 1
+    for bone, parent in enumerate(parents):
+        children = np.flatnonzero(parents == bone)
+        if parent < 0 or len(children) != 1:
             continue
-        follows = weights[:, bone] > 0.5
-        end = (
-            joints[children[bone][0]]
-            if len(children[bone])
-            else vertices[follows].mean(axis=0)
-            if follows.any()
-            else joints[bone]
-        )
-        Ts[bone, :3, :3] = _frame(end - joints[bone], palm_sides.get(bone))
+        child = int(children[0])
+        if parent == root and is_branching:
+            joints[bone] = joints[child] + lengths[bone] * _unit(joints[root] - joints[child])
+            continue
+        along = joints[child] - joints[bone]
+        excess = 0.5 * (np.linalg.norm(along) - lengths[bone]) * _unit(along)
+        joints[bone] = joints[bone] + excess
+        joints[child] = joints[child] - excess
+    return joints
+
+
+def estimate_frames(joints: Array, ends: Array) -> Array:
+    """Rest poses (B, 4, 4) with the first axis from the joint of a bone (B, 3) to its end (B, 3), least turned."""
+    Ts = np.tile(np.eye(4), (len(joints), 1, 1))
+    Ts[:, :3, 3] = joints
+    for bone, along in enumerate(ends - joints):
+        Ts[bone, :3, :3] = _least_turn(_unit(along))
     return Ts
 
 
-def _weighted_joint(vertices: Array, weights: Array, bone: int, parent: int) -> Array:
-    if parent < 0:
+def turn_to_flexion(
+    Ts: Array, chains: HandChains, finger_bones: dict[str, tuple[int, ...]], flexion_axes: dict[int, Array]
+) -> Array:
+    """Rest poses (B, 4, 4) of a hand, each finger bone rolled so that its axis 2 in .LIMITS is a flexion axis.
+
+    T16's files bend a finger by negative angles, so their axis runs against that of `hand_axes`.
+
+    Args:
+        Ts: (B, 4, 4), first axes along the bones.
+        chains: The joints of the hand.
+        finger_bones: Bones of each finger.
+        flexion_axes: (3,) axis 2 of each bone, bone frame.
+    """
+    Ts = Ts.copy()
+    for finger, bones in finger_bones.items():
+        lateral = find_flexion_axis(chains, finger)
+        for bone in bones:
+            x = Ts[bone, :3, 0]
+            bend = -_unit(lateral - (lateral @ x) * x)
+            own_x = np.array([1.0, 0.0, 0.0])
+            own = _unit(flexion_axes[bone] * [0.0, 1.0, 1.0])
+            world = np.stack([x, bend, np.cross(x, bend)], axis=1)
+            local = np.stack([own_x, own, np.cross(own_x, own)], axis=1)
+            Ts[bone, :3, :3] = world @ local.T
+    return Ts
+
+
+def _overlap(vertices: Array, weights: Array, bone: int, parent: int) -> Array:
+    shared = weights[:, bone] if parent < 0 else weights[:, bone] * weights[:, parent]
+    if shared.sum() < 1e-6:
         shared = weights[:, bone]
-    else:
-        shared = weights[:, bone] * weights[:, parent]
-        if shared.sum() < 1e-6:
-            shared = weights[:, bone]
     total = shared.sum()
     return (shared @ vertices) / total if total > 0 else vertices.mean(axis=0)
 
 
-def _frame(along: Array, palm_side: Array | None) -> Array:
-    """Rotation whose first axis is `along`; with a palm side the third is the flexion axis."""
-    length = np.linalg.norm(along)
-    if length == 0.0:
-        return np.eye(3)
-    x = along / length
-    if palm_side is None:
-        axis = np.cross([1.0, 0.0, 0.0], x)
-        sine, cosine = float(np.linalg.norm(axis)), float(x[0])
-        if sine < 1e-9:
-            return np.eye(3) if cosine > 0 else np.diag([-1.0, -1.0, 1.0])
-        k = axis / sine
-        K = np.array([[0.0, -k[2], k[1]], [k[2], 0.0, -k[0]], [-k[1], k[0], 0.0]])
-        return np.eye(3) + sine * K + (1.0 - cosine) * K @ K
-    y = palm_side - (palm_side @ x) * x
-    y = -y / max(float(np.linalg.norm(y)), 1e-12)
-    return np.stack([x, y, np.cross(x, y)], axis=1)
+def _least_turn(x: Array) -> Array:
+    """The smallest rotation that brings the first axis to x."""
+    axis = np.cross([1.0, 0.0, 0.0], x)
+    sine, cosine = float(np.linalg.norm(axis)), float(x[0])
+    if sine < 1e-9:
+        return np.diag([-1.0, -1.0, 1.0]) if cosine < 0 else np.eye(3)
+    k = axis / sine
+    K = np.array([[0.0, -k[2], k[1]], [k[2], 0.0, -k[0]], [-k[1], k[0], 0.0]])
+    return np.eye(3) + sine * K + (1.0 - cosine) * K @ K
+
+
+def _unit(vector: Array) -> Array:
+    return vector / max(float(np.linalg.norm(vector)), 1e-12)

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from tracker.errors import ModelFileError
-from tracker.model.articulated import ArticulatedModel, HandParts
+from tracker.model.articulated import ArticulatedModel
 from tracker.model.decimation import decimate_file, limit_weights
-from tracker.model.hand_parts import find_hand_parts, finger_segments
-from tracker.model.joints import FINGERS
 from tracker.model.skeleton import Array, Skeleton
-from tracker.model.t16_bind import estimate_bind, find_motion_beside
+from tracker.model.t16_bind import estimate_frames, estimate_joints, find_motion_beside, turn_to_flexion
+from tracker.model.t16_hand import find_hand
 from tracker.model.t16_text import BoneLimits, read_limits, read_motion, read_off, read_skel, read_skin, read_voi
 
 METRES_PER_UNIT = 1e-3
@@ -27,9 +25,6 @@ excess over the joints with three axes .73, .44, .23 degrees for axis 1, 2, 3; o
 three axes every order reaches every rotation; at the base of the thumb, which has two, no order follows the motions
 exactly (about 1 degree on average).
 """
-
-FINGER_NUMBERS: tuple[str, ...] = ("little", "ring", "middle", "index", "thumb")
-"""Finger number in T16's bone names, and the order of a .VOI row."""
 
 
 def load_t16_model(off_path: Path, max_faces: int | None = 1500, bind: Array | None = None) -> ArticulatedModel:
@@ -61,27 +56,30 @@ def load_t16_model(off_path: Path, max_faces: int | None = 1500, bind: Array | N
         raise ModelFileError(
             off_path.with_suffix(".LIMITS"), f"{len(limits)} bones", f"the {len(names)} bones of the .SKEL file"
         )
-    fingers = _find_fingers(names)
+    hand = find_hand(names)
     voi_path = off_path.with_suffix(".VOI")
-    voi = read_voi(voi_path, len(vertices)) if fingers is not None and voi_path.is_file() else None
-    if bind is not None:
-        bind_source = "given"
-    else:
+    voi = read_voi(voi_path, len(vertices)) if hand is not None and voi_path.is_file() else None
+    bind_source = "given"
+    if bind is None:
         bind, bind_source = _find_bind(off_path, names)
     if bind is None:
-        bind = estimate_bind(
-            vertices, weights, parents, lengths_mm * METRES_PER_UNIT, _palm_sides(vertices, fingers, voi)
-        )
+        joints = estimate_joints(vertices, weights, parents, lengths_mm * METRES_PER_UNIT)
+        bind = estimate_frames(joints, _find_ends(vertices, weights, parents, joints))
         bind_source = "estimated from mesh and weights"
+        if hand is not None:
+            chains = hand.chains(joints, vertices[hand.find_tips(vertices, weights, joints, voi)])
+            bind = turn_to_flexion(bind, chains, hand.fingers, {b: limit.axes[1] for b, limit in enumerate(limits)})
     if bind.shape != (len(names), 4, 4):
         raise ModelFileError(off_path, f"a bind pose of shape {bind.shape}", f"({len(names)}, 4, 4), one for each bone")
+    joints = bind[:, :3, 3]
+    tips = np.zeros(0, dtype=np.int64) if hand is None else hand.find_tips(vertices, weights, joints, voi)
     model = ArticulatedModel(
         name=off_path.stem,
         vertices=vertices,
         faces=faces,
         skinning_weights=weights,
         skeleton=_build_skeleton(off_path, names, parents, bind, limits),
-        hand=_build_hand(vertices, weights, bind, names, fingers, voi),
+        hand=None if hand is None else hand.parts(vertices, weights, joints, tips),
         provenance={"file": off_path.name, "format": "T16 model", "bind_pose": bind_source},
     )
     return model if max_faces is None else decimate_file(off_path, model, max_faces)
@@ -107,6 +105,19 @@ def _find_bind(off_path: Path, names: tuple[str, ...]) -> tuple[Array | None, st
     if len(motion_names) != len(names):
         raise ModelFileError(motion, f"{len(motion_names)} bones", f"the {len(names)} bones of {off_path.stem}.SKEL")
     return bind, f"first row of {motion.name}"
+
+
+def _find_ends(vertices: Array, weights: Array, parents: npt.NDArray[np.int64], joints: Array) -> Array:
+    """(B, 3) the joint of a bone's child, or the middle of what follows the bone."""
+    ends = joints.copy()
+    for bone in range(len(parents)):
+        children = np.flatnonzero(parents == bone)
+        follows = weights[:, bone] > 0.5
+        if len(children):
+            ends[bone] = joints[children[0]]
+        elif follows.any():
+            ends[bone] = vertices[follows].mean(axis=0)
+    return ends
 
 
 def _build_skeleton(
@@ -143,56 +154,3 @@ def _build_skeleton(
         lower=ranges_rad[:, 0].copy(),
         upper=ranges_rad[:, 1].copy(),
     )
-
-
-def _find_fingers(names: tuple[str, ...]) -> tuple[str, dict[str, tuple[int, ...]]] | None:
-    """Side and bones of each finger, or None for an object."""
-    bones: dict[str, list[int]] = {finger: [] for finger in FINGERS}
-    sides = set()
-    for bone, name in enumerate(names):
-        match = re.fullmatch(r"([RL])Fing\.([0-4])_(Hand|[0-2])", name)
-        if match:
-            sides.add("right" if match[1] == "R" else "left")
-            bones[FINGER_NUMBERS[int(match[2])]].append(bone)
-    if len(sides) != 1 or any(len(bones[finger]) != len(finger_segments(finger)) for finger in FINGERS):
-        return None
-    return sides.pop(), {finger: tuple(ids) for finger, ids in bones.items()}
-
-
-def _palm_sides(
-    vertices: Array, fingers: tuple[str, dict[str, tuple[int, ...]]] | None, voi: npt.NDArray[np.int64] | None
-) -> dict[int, Array]:
-    if fingers is None or voi is None:
-        return {}
-    sides = {}
-    for number, finger in enumerate(FINGER_NUMBERS):
-        side = vertices[voi[2, number]] - vertices[voi[1, number]]
-        sides.update(dict.fromkeys(fingers[1][finger], side))
-    return sides
-
-
-def _build_hand(
-    vertices: Array,
-    weights: Array,
-    bind: Array,
-    names: tuple[str, ...],
-    fingers: tuple[str, dict[str, tuple[int, ...]]] | None,
-    voi: npt.NDArray[np.int64] | None,
-) -> HandParts | None:
-    if fingers is None:
-        return None
-    side, bones = fingers
-    joints = bind[:, :3, 3]
-    if voi is not None:
-        tips = np.array([voi[0, FINGER_NUMBERS.index(finger)] for finger in FINGERS])
-    else:
-        tips = np.array([_farthest(vertices, weights, joints, bones[finger]) for finger in FINGERS])
-    wrist = next((bone for bone, name in enumerate(names) if name.startswith("Lower Arm")), 0)
-    return find_hand_parts(side, vertices, weights, joints, wrist, bones, tips)
-
-
-def _farthest(vertices: Array, weights: Array, joints: Array, bones: tuple[int, ...]) -> int:
-    """Vertex of the last bone that is farthest along the finger."""
-    along = joints[bones[-1]] - joints[bones[-2]]
-    reach = np.where(np.argmax(weights, axis=1) == bones[-1], vertices @ along, -np.inf)
-    return int(np.argmax(reach))

@@ -50,9 +50,13 @@ B
 -60 60
 -0 0
 """
-MOTION = (
-    "A\n1 0 0 0 1 0 0 0 1 0 5 5\n1 0 0 0 1 0 0 0 1 0 5 500\nB\n1 0 0 0 1 0 0 0 1 15 5 5\n0 0 1 0 1 0 -1 0 0 15 5 500\n"
-)
+MOTION = """A
+1 0 0 0 1 0 0 0 1 0 5 5
+1 0 0 0 1 0 0 0 1 0 5 500
+B
+1 0 0 0 1 0 0 0 1 15 5 5
+0 0 1 0 1 0 -1 0 0 15 5 500
+"""
 FILES = {"OFF": BOX, "SKEL": SKEL, "SKIN": SKIN, "LIMITS": LIMITS, "MOTION": MOTION}
 
 
@@ -192,3 +196,7 @@ def test_the_models_of_t16_are_told_by_their_suffix_and_suffice_alone(shared_dat
     known = load_model(shared_data / "ijcv16" / "models" / "Model_Hand_R.OFF")
     assert model.num_dofs == known.num_dofs == default_hand("right").num_dofs
     assert "estimated" in model.provenance["bind_pose"]
+    cosines = np.einsum("kx,kx->k", model.skeleton.dof_axes, known.skeleton.dof_axes)
+    assert np.degrees(np.arccos(np.median(cosines))) < 10.0 and np.degrees(np.arccos(np.min(cosines))) < 30.0
+    errors = np.linalg.norm(model.skeleton.joints_rest - known.skeleton.joints_rest, axis=1)
+    assert np.median(errors) < 0.006 and errors.max() < 0.016

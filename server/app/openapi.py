@@ -13,7 +13,7 @@ from server.settings import Settings
 def write_document() -> str:
     """The OpenAPI document as JSON text; needs no database and no folder."""
     app = create_app(Settings(data_dir=Path("/nonexistent"), database_url="sqlite://"))
-    return json.dumps(app.openapi(), indent=2, sort_keys=True, ensure_ascii=False) + "\n"
+    return json.dumps(app.openapi(), indent=2, sort_keys=True) + "\n"
 
 
 if __name__ == "__main__":

@@ -102,7 +102,11 @@ def get_track_overlay(
     return FileResponse(path, media_type="image/png", headers={"Cache-Control": IMMUTABLE})
 
 
-@router.get("/tracks/{track_id}/files/{name}", response_class=FileResponse, responses=error_responses(404))
+@router.get(
+    "/tracks/{track_id}/files/{name}",
+    response_class=FileResponse,
+    responses={200: {"content": {"application/octet-stream": {}}}} | error_responses(404),
+)
 def download_track_file(
     track_id: uuid.UUID, name: Literal["track.npz", "summary.json"], session: SessionDep, storage: StorageDep
 ) -> FileResponse:

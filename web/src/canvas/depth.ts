@@ -31,16 +31,28 @@ const STEPS = 256;
 const isLittleEndian = new Uint8Array(new Uint16Array([1]).buffer)[0] === 1;
 
 /** Colours as 32-bit words in the byte order of this machine, near first. */
-const PALETTE: Uint32Array = Uint32Array.from({ length: STEPS }, (_, step) => {
-  const at = (step / (STEPS - 1)) * (ANCHORS.length - 1);
-  const below = Math.min(ANCHORS.length - 2, Math.floor(at));
-  const mix = (channel: 0 | 1 | 2): number => {
-    const [low = 0, high = 0] = [ANCHORS[below]?.[channel], ANCHORS[below + 1]?.[channel]];
-    return Math.round(low + (high - low) * (at - below));
-  };
-  const [r, g, b] = [mix(0), mix(1), mix(2)];
-  return isLittleEndian ? ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0 : ((r << 24) | (g << 16) | (b << 8) | 255) >>> 0;
-});
+const paletteOf = (anchors: readonly (readonly [number, number, number])[]): Uint32Array =>
+  Uint32Array.from({ length: STEPS }, (_, step) => {
+    const at = (step / (STEPS - 1)) * (anchors.length - 1);
+    const below = Math.min(anchors.length - 2, Math.floor(at));
+    const mix = (channel: 0 | 1 | 2): number => {
+      const [low = 0, high = 0] = [anchors[below]?.[channel], anchors[below + 1]?.[channel]];
+      return Math.round(low + (high - low) * (at - below));
+    };
+    const [r, g, b] = [mix(0), mix(1), mix(2)];
+    return isLittleEndian ? ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0 : ((r << 24) | (g << 16) | (b << 8) | 255) >>> 0;
+  });
+
+/** `warm` to see depth; `grey` as a ground for coloured things on top. */
+export type Palette = "warm" | "grey";
+
+const PALETTES: Record<Palette, Uint32Array> = {
+  warm: paletteOf(ANCHORS),
+  grey: paletteOf([
+    [235, 237, 240],
+    [40, 43, 48],
+  ]),
+};
 
 /** Depth from the server's bytes: little-endian uint16, sizes in headers. */
 export function readDepth(bytes: ArrayBuffer, headers: Headers): DepthImage {
@@ -80,13 +92,14 @@ export function findRange(image: DepthImage): DepthRange {
 }
 
 /** Colour every pixel; without a value it stays transparent. `out` is RGBA, (height * width) words. */
-export function colorDepthInto(out: Uint32Array, image: DepthImage, range: DepthRange): void {
+export function colorDepthInto(out: Uint32Array, image: DepthImage, range: DepthRange, palette: Palette = "warm"): void {
+  const colors = PALETTES[palette];
   const near = range.near / image.scale;
   const factor = (STEPS - 1) / Math.max(1e-9, range.far / image.scale - near);
   for (let index = 0; index < image.raw.length; index += 1) {
     const raw = image.raw[index] ?? 0;
     const step = Math.min(STEPS - 1, Math.max(0, Math.round((raw - near) * factor)));
-    out[index] = raw === 0 ? 0 : (PALETTE[step] ?? 0);
+    out[index] = raw === 0 ? 0 : (colors[step] ?? 0);
   }
 }
 
@@ -97,14 +110,14 @@ export const scaleRange = (range: DepthRange, factor: number): DepthRange => ({
 });
 
 /** A canvas with the coloured depth, to be drawn like an image. */
-export function paintDepth(image: DepthImage, range: DepthRange): HTMLCanvasElement {
+export function paintDepth(image: DepthImage, range: DepthRange, palette: Palette): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
   canvas.width = image.width;
   canvas.height = image.height;
   const context = canvas.getContext("2d");
   if (context) {
     const pixels = context.createImageData(image.width, image.height);
-    colorDepthInto(new Uint32Array(pixels.data.buffer), image, range);
+    colorDepthInto(new Uint32Array(pixels.data.buffer), image, range, palette);
     context.putImageData(pixels, 0, 0);
   }
   return canvas;

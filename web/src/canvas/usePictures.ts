@@ -2,7 +2,7 @@ import { useEffect, useMemo, useRef, useState } from "react";
 import { fetchBitmap, fetchBytes } from "../api/client";
 import { colorUrl, depthUrl } from "../api/recordings";
 import type { Camera, Recording } from "../api/types";
-import { findRange, paintDepth, readDepth, type DepthImage, type DepthRange } from "./depth";
+import { findRange, paintDepth, readDepth, type DepthImage, type DepthRange, type Palette } from "./depth";
 import { createFrameCache, framesToLoad, type FrameCache } from "./frameCache";
 
 const MEGABYTE = 1e6;
@@ -72,6 +72,7 @@ export interface Pictures {
 interface Wanted {
   color: boolean;
   depth: boolean;
+  palette?: Palette;
 }
 
 /** Colour and depth of one frame of one camera. `range` null chooses one from the first depth image seen. */
@@ -91,8 +92,8 @@ export function usePictures(recording: Recording, camera: Camera, frame: number,
   if (depth.picture && found.current?.key !== key) found.current = { key, range: findRange(depth.picture) };
   const usedRange = range ?? (found.current?.key === key ? found.current.range : null);
   const painted = useMemo(
-    () => (depth.picture && usedRange ? paintDepth(depth.picture, usedRange) : null),
-    [depth.picture, usedRange?.near, usedRange?.far],
+    () => (depth.picture && usedRange ? paintDepth(depth.picture, usedRange, wanted.palette ?? "warm") : null),
+    [depth.picture, usedRange?.near, usedRange?.far, wanted.palette],
   );
 
   return {

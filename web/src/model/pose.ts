@@ -41,6 +41,21 @@ export const decidedCount = (pose: Pose | undefined): number =>
 
 export const isEmpty = (pose: Pose | undefined): boolean => decidedCount(pose) === 0;
 
+/** The joint to do after this one: the next that nobody has decided about, or the same when all are done. */
+export function nextOpenJoint(pose: Pose, joint: number): number {
+  for (let step = 1; step <= JOINT_COUNT; step += 1) {
+    const candidate = (joint + step) % JOINT_COUNT;
+    if (statusOf(pose[candidate]) === "unset") return candidate;
+  }
+  return joint;
+}
+
+/** Where marking a hand begins or goes on: its first open joint, or the wrist when all are done. */
+export const firstOpenJoint = (pose: Pose | undefined): number => {
+  const open = (pose ?? []).findIndex((point) => statusOf(point) === "unset");
+  return open < 0 ? 0 : open;
+};
+
 export const withJoint = (pose: Pose, joint: number, point: JointPoint): Pose => pose.with(joint, point);
 
 /** The same joint, with another status; a joint that goes outside keeps its place so that it can come back. */

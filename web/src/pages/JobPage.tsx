@@ -30,6 +30,11 @@ function Log({ jobId, isLive }: { jobId: string; isLive: boolean }) {
   );
 }
 
+const showValue = (value: unknown): string => {
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  return value === "" || value === null ? "–" : typeof value === "string" ? value : JSON.stringify(value);
+};
+
 export function JobPage() {
   const { jobId = "" } = useParams();
   const { data: job, error, refetch } = useJob(jobId);
@@ -104,7 +109,7 @@ export function JobPage() {
                 <Text size="sm" className="quiet">
                   {formatName(name)}
                 </Text>
-                <Code>{typeof value === "string" ? value : JSON.stringify(value)}</Code>
+                <Code>{showValue(value)}</Code>
               </Group>
             ))}
           </Stack>

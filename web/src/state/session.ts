@@ -1,7 +1,7 @@
 /** An open recording in the annotator: its store, with undo and saving watching it. */
 
 import type { Annotation, Recording, Side } from "../api/types";
-import { fromWire, keyText, toWire, type Pose } from "../model/pose";
+import { firstOpenJoint, fromWire, keyText, toWire, type Pose } from "../model/pose";
 import { changedKeys, type AnnotatorState } from "./annotator";
 import type { SaveQueue } from "./saveQueue";
 import { createStore, type Store } from "./store";
@@ -33,13 +33,15 @@ export function openSession(recording: Recording, annotations: readonly Annotati
     else delete poses[key];
   }
   const cameras = recording.cameras.map((camera) => camera.id);
+  const camera = start.camera !== null && cameras.includes(start.camera) ? start.camera : (cameras[0] ?? "");
+  const frame = Math.min(recording.frame_count - 1, Math.max(0, start.frame));
   const store = createStore<AnnotatorState>({
     poses,
-    camera: start.camera !== null && cameras.includes(start.camera) ? start.camera : (cameras[0] ?? ""),
-    frame: Math.min(recording.frame_count - 1, Math.max(0, start.frame)),
+    camera,
+    frame,
     frameCount: recording.frame_count,
     hand: start.hand,
-    joint: 0,
+    joint: firstOpenJoint(poses[keyText({ camera, frame, hand: start.hand })]),
     draft: null,
   });
   const undo = createUndoStack(store);

@@ -1,7 +1,6 @@
 import { JOINT_COUNT, jointsOfFinger, otherHand, WRIST } from "../../model/joints";
-import { activePose, poseAt, type Action } from "../../state/annotator";
-import { emptyPose, statusOf } from "../../model/pose";
-import { nextOpenJoint } from "./place";
+import { activeKey, poseAt, type Action, type AnnotatorState } from "../../state/annotator";
+import { firstOpenJoint, isEmpty, statusOf } from "../../model/pose";
 
 export const selectJoint: Action<number> = (state, joint) => ({ ...state, joint });
 
@@ -37,8 +36,8 @@ export const selectCamera: Action<string> = (state, camera) => {
   return { ...next, joint: openJoint(next) };
 };
 
-function openJoint(state: Parameters<Action>[0]): number {
-  const pose = poseAt(state, { camera: state.camera, frame: state.frame, hand: state.hand }) ?? emptyPose();
-  if (statusOf(activePose(state)[state.joint]) === "unset" && pose.some((point) => statusOf(point) !== "unset")) return state.joint;
-  return statusOf(pose[WRIST]) === "unset" ? WRIST : nextOpenJoint(pose, WRIST);
+/** Where to go on after coming to another image or hand: the same joint if it is open there too, else the first open one. */
+function openJoint(state: AnnotatorState): number {
+  const pose = poseAt(state, activeKey(state));
+  return pose && !isEmpty(pose) && statusOf(pose[state.joint]) === "unset" ? state.joint : firstOpenJoint(pose);
 }

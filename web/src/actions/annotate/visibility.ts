@@ -1,6 +1,5 @@
 import { activePose, withActivePose, type Action } from "../../state/annotator";
-import { hasPlace, statusOf, withJoint, withStatus, type JointStatus } from "../../model/pose";
-import { nextOpenJoint } from "./place";
+import { hasPlace, nextOpenJoint, statusOf, withJoint, withStatus, type JointStatus } from "../../model/pose";
 
 const setStatus = (state: Parameters<Action>[0], joint: number, status: JointStatus): ReturnType<Action> => {
   const pose = activePose(state);

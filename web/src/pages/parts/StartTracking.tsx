@@ -1,5 +1,4 @@
 import { Button, Checkbox, Collapse, Group, Modal, NumberInput, Select, SimpleGrid, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
-import { notifications } from "@mantine/notifications";
 import { useState } from "react";
 import { useNavigate } from "react-router";
 import { useJobForm, useStartTracking } from "../../api/jobs";
@@ -59,7 +58,6 @@ export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps
         onSuccess: (job) => {
           onClose();
           setChanged({});
-          notifications.show({ message: `Tracking ${recording.name} has been started.`, color: "teal" });
           void navigate(`/jobs/${job.id}`);
         },
       },
@@ -101,7 +99,7 @@ export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps
           </SimpleGrid>
           {rest.length > 0 && (
             <>
-              <Button variant="subtle" size="xs" onClick={() => setAllShown(!isAllShown)} aria-expanded={isAllShown} style={{ alignSelf: "flex-start" }}>
+              <Button variant="subtle" size="compact-sm" onClick={() => setAllShown(!isAllShown)} aria-expanded={isAllShown} style={{ alignSelf: "flex-start" }}>
                 {isAllShown ? "Fewer parameters" : "All parameters"}
               </Button>
               <Collapse expanded={isAllShown}>

@@ -25,7 +25,7 @@ interface TrackImageProps {
 export function TrackImage({ track, recording, camera, frame, isMeshShown, isSkeletonShown, onMesh, onSkeleton }: TrackImageProps) {
   const [view, setView] = useState<View | null>(null);
   const [pointer] = useState(createPointerStore);
-  const pictures = usePictures(recording, camera, frame, { color: camera.has_color, depth: !camera.has_color }, null);
+  const pictures = usePictures(recording, camera, frame, { color: camera.has_color, depth: !camera.has_color, palette: "grey" }, null);
   const overlay = useOverlay(isMeshShown ? overlayUrl(track.id, camera.id, frame) : null);
   const joints = useTrackJoints(track.id, camera.id).data;
   const row = useMemo(() => joints?.frames.indexOf(frame) ?? -1, [joints, frame]);

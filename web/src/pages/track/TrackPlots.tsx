@@ -3,7 +3,7 @@ import { useMemo } from "react";
 import { useEvaluation } from "../../api/tracks";
 import type { Track, TrackFrames } from "../../api/types";
 import { Plot, type Curve } from "../../canvas/Plot";
-import { formatNumber } from "../../model/format";
+import { formatName, formatNumber } from "../../model/format";
 import classes from "./TrackReview.module.css";
 
 interface TrackPlotsProps {
@@ -18,6 +18,7 @@ interface TrackPlotsProps {
 }
 
 const PLOT_HEIGHT = 168;
+const TERM_COLORS = ["#22b8cf", "#e83eb4", "#94a3ff", "#ffb088", "#a3e635", "#96f2d7"];
 
 /** Error and timing by frame; a click goes there. */
 export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onSeek }: TrackPlotsProps) {
@@ -46,14 +47,31 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
     [frames],
   );
 
+  const energyCurves = useMemo<Curve[]>(
+    () =>
+      Object.entries(frames.costs).map(([term, values], index) => ({
+        label: formatName(term),
+        unit: "mm²",
+        values,
+        color: TERM_COLORS[index % TERM_COLORS.length] ?? "#999",
+        ...(index % 2 === 1 ? { dash: [5, 3] } : {}),
+        axis: "left",
+        digits: 0,
+      })),
+    [frames],
+  );
+
   const stages = Object.entries(track.summary.stages_ms ?? {});
   return (
     <Tabs value={tab} onChange={(next) => next && onTab(next)} className={classes.plots} keepMounted={false}>
-      <Tabs.List>
+      <Tabs.List style={{ flexWrap: "nowrap" }}>
         <Tabs.Tab value="error">Error</Tabs.Tab>
+        {energyCurves.length > 0 && <Tabs.Tab value="energy">Energy</Tabs.Tab>}
         <Tabs.Tab value="timing">Timing</Tabs.Tab>
         <Text size="xs" className="quiet one-line" ml="auto" my="auto" px={12}>
-          {tab === "timing"
+          {tab === "energy"
+            ? "each term at its last iteration"
+            : tab === "timing"
             ? `median ${formatNumber(track.summary.median_ms)} ms, 95 % below ${formatNumber(track.summary.p95_ms)} ms`
             : evaluation && evaluation.evaluated > 0
               ? `${formatNumber(evaluation.joint_error_px.mean)} px mean error in ${evaluation.evaluated} annotated`
@@ -62,6 +80,9 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
       </Tabs.List>
       <Tabs.Panel value="error" pt="sm">
         <Plot label="Error by frame" frames={frames.frame} curves={errorCurves} lost={lost} frame={frame} height={PLOT_HEIGHT} onSeek={onSeek} />
+      </Tabs.Panel>
+      <Tabs.Panel value="energy" pt="sm">
+        <Plot label="Energy of each term by frame" frames={frames.frame} curves={energyCurves} lost={lost} frame={frame} height={PLOT_HEIGHT} onSeek={onSeek} />
       </Tabs.Panel>
       <Tabs.Panel value="timing" pt="sm">
         <Plot label="Time by frame" frames={frames.frame} curves={timingCurves} lost={lost} frame={frame} height={PLOT_HEIGHT - (stages.length > 0 ? 20 : 0)} onSeek={onSeek} />

@@ -30,7 +30,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const clamp = useCallback((frame: number) => Math.min(last, Math.max(first, frame)), [first, last]);
   const [frame, setFrame] = useState(() => clamp(Number(address.get("frame") ?? first) || first));
   const [cameraId, setCameraId] = useState(() => address.get("camera") ?? recording.cameras[0]?.id ?? "");
-  const [tab, setTab] = useState(() => (address.get("tab") === "timing" ? "timing" : "error"));
+  const [tab, setTab] = useState(() => ["energy", "timing"].find((name) => name === address.get("tab")) ?? "error");
   const camera = recording.cameras.find((one) => one.id === cameraId) ?? recording.cameras[0];
   const [layers, setLayers] = useState({ cloud: true, mesh: true, skeleton: false, correspondences: false });
   const [isMeshShown, setMeshShown] = useState(true);

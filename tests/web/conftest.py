@@ -1,0 +1,258 @@
+"""A real studio (server, worker, database) and a real Chromium that looks at it."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+import zipfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome")
+CHROMIUM_FLAGS = (
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--disable-quic",
+)
+FRAMES = 16
+
+
+def _lacking(message: str) -> None:
+    """Somebody's machine may lack a browser; the one that decides must not."""
+    if os.environ.get("CI", "").lower() in ("1", "true"):
+        pytest.fail(message)
+    pytest.skip(message)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> str:
+    """Path of a Chromium; without one these tests are skipped, and fail in CI."""
+    found = next((path for name in CHROMIUM_NAMES if (path := shutil.which(name))), None)
+    if found is None:
+        _lacking("No Chromium found: install the package `chromium` to run the browser tests.")
+    assert found is not None
+    return found
+
+
+@dataclass(frozen=True)
+class Studio:
+    """A served studio."""
+
+    url: str
+    data_dir: Path
+    log: Path
+
+    def get(self, path: str) -> Any:
+        answer = httpx.get(f"{self.url}/api/v1{path}", timeout=60)
+        answer.raise_for_status()
+        return answer.json()
+
+    def send(self, method: str, path: str, **options: Any) -> httpx.Response:
+        return httpx.request(method, f"{self.url}/api/v1{path}", timeout=60, **options)
+
+
+@pytest.fixture(scope="session")
+def studio(chromium: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+    """`handloom serve` with its worker, on an empty data folder."""
+    if not (ROOT / "web" / "dist" / "index.html").is_file():
+        _lacking("The browser app is not built: run `make setup` first.")
+    folder = tmp_path_factory.mktemp("studio")
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    log = folder / "studio.log"
+    environment = os.environ | {"HANDLOOM_DATA_DIR": str(folder / "data")}
+    with log.open("w") as output:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "server.cli", "serve", "--port", str(port)],
+            cwd=ROOT,
+            env=environment,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+        )
+    studio = Studio(f"http://127.0.0.1:{port}", folder / "data", log)
+    try:
+        _wait_until_up(studio, process)
+        yield studio
+    finally:
+        process.send_signal(signal.SIGTERM)
+        try:
+            process.wait(20)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _wait_until_up(studio: Studio, process: subprocess.Popen[bytes], seconds: float = 90) -> None:
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        if process.poll() is not None:
+            pytest.fail(f"The studio ended with code {process.returncode}:\n{studio.log.read_text()[-4000:]}")
+        try:
+            if httpx.get(f"{studio.url}/api/v1/health", timeout=5).is_success:
+                return
+        except httpx.HTTPError:
+            time.sleep(0.2)
+    pytest.fail(f"The studio was not up after {seconds:g} s:\n{studio.log.read_text()[-4000:]}")
+
+
+@dataclass(frozen=True)
+class Synthesized:
+    """A recording that nobody has annotated, and what somebody would mark in its first frame."""
+
+    folder: Path
+    archive: Path
+    joints: list[tuple[float, float]]
+    """px in frame 0, in the order of the joints."""
+
+
+@pytest.fixture(scope="session")
+def synthesized(tmp_path_factory: pytest.TempPathFactory) -> Synthesized:
+    """Made by the product itself; its annotations are taken away, for they are to be made in the browser."""
+    folder = tmp_path_factory.mktemp("synthesized") / "opening-hand"
+    command = ["synthesize", "--motion", "open-close", "--frames", f"0:{FRAMES}", "--out", str(folder)]
+    subprocess.run([sys.executable, "-m", "server.cli", *command], cwd=ROOT, check=True, capture_output=True)
+    first = next(i for i in json.loads((folder / "annotations.json").read_text())["items"] if i["frame"] == 0)
+    description = json.loads((folder / "sequence.json").read_text())
+    description.pop("annotations", None)
+    (folder / "sequence.json").write_text(json.dumps(description))
+    (folder / "annotations.json").unlink()
+    archive = folder.parent / "opening-hand.zip"
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as file:
+        for path in sorted(folder.rglob("*")):
+            if path.is_file() and path.parts[-2] != "models":
+                file.write(path, path.relative_to(folder.parent))
+    return Synthesized(folder, archive, [(x, y) for x, y, _ in first["points"]])
+
+
+@pytest.fixture
+def recording(studio: Studio, synthesized: Synthesized) -> dict[str, Any]:
+    """A fresh copy of the recording in the studio, imported through the API."""
+    with synthesized.archive.open("rb") as file:
+        made = studio.send("POST", "/imports", files={"files": ("opening-hand.zip", file)})
+    made.raise_for_status()
+    assert made.json()["state"] == "checked", made.json()["report"]["problems"]
+    stored = studio.send("POST", f"/imports/{made.json()['id']}/confirm", json={"name": "Opening hand"})
+    stored.raise_for_status()
+    return stored.json()
+
+
+@pytest.fixture(scope="session")
+def browser(chromium: str) -> Iterator[Any]:
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        launched = playwright.chromium.launch(executable_path=chromium, args=list(CHROMIUM_FLAGS))
+        yield launched
+        launched.close()
+
+
+@dataclass
+class Screenshots:
+    """Pictures for people to look at, in the folder that HANDLOOM_SCREENSHOTS names."""
+
+    folder: Path | None = field(
+        default_factory=lambda: Path(found) if (found := os.environ.get("HANDLOOM_SCREENSHOTS")) else None
+    )
+
+    def take(self, page: Any, name: str) -> None:
+        if self.folder is not None:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            page.screenshot(path=self.folder / f"{name}.png")
+
+
+@pytest.fixture(scope="session")
+def screenshots() -> Screenshots:
+    return Screenshots()
+
+
+OpenPage = Callable[..., Any]
+
+
+@pytest.fixture
+def open_page(browser: Any, studio: Studio) -> Iterator[OpenPage]:
+    """Opens a page of the studio; fails the test if any of them threw an error."""
+    contexts: list[Any] = []
+    errors: list[str] = []
+
+    def note(error: Any) -> None:
+        # The 3D viewer's own code tries `eval` and goes on without it, as its policy says it should.
+        if "unsafe-eval" not in str(error):
+            errors.append(str(error))
+
+    def opened(width: int = 1280, height: int = 720, scheme: str = "dark") -> Any:
+        context = browser.new_context(viewport={"width": width, "height": height}, base_url=studio.url, locale="en-GB")
+        context.set_default_timeout(30_000)
+        context.add_init_script(f"localStorage.setItem('handloom/colours', '{scheme}')")
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", note)
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+    assert not errors, errors
+
+
+@dataclass(frozen=True)
+class Picture:
+    """The annotator's picture, with gestures in image pixels."""
+
+    page: Any
+    index: int = 0
+
+    @property
+    def element(self) -> Any:
+        return self.page.locator("[data-picture]").nth(self.index)
+
+    def wait(self) -> None:
+        """Until the image is there."""
+        self.element.locator("canvas").first.wait_for()
+        self.page.wait_for_function(
+            "(i) => document.querySelectorAll('[data-picture]')[i]?.getAttribute('aria-busy') === 'false'",
+            arg=self.index,
+        )
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """Where an image pixel is in the window; its centre is half a pixel from its corner."""
+        box = self.element.bounding_box()
+        view = json.loads(self.element.get_attribute("data-view"))
+        return box["x"] + view["x"] + view["scale"] * (x + 0.5), box["y"] + view["y"] + view["scale"] * (y + 0.5)
+
+    def click(self, x: float, y: float, **options: Any) -> None:
+        self.page.mouse.click(*self.at(x, y), **options)
+
+    def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+        self.page.mouse.move(*self.at(*start))
+        self.page.mouse.down()
+        self.page.mouse.move(*self.at(*end), steps=6)
+        self.page.mouse.up()
+
+    def wait_until_saved(self) -> None:
+        from playwright.sync_api import expect
+
+        expect(self.page.get_by_test_id("save-state")).to_have_text(re.compile("^saved$"))
+
+
+@pytest.fixture
+def picture_of() -> Callable[[Any], Picture]:
+    return Picture

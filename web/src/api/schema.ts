@@ -24,6 +24,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/hand-models": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Hand Models
+         * @description Hand models that recordings can be tracked with.
+         */
+        get: operations["list_hand_models"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/hand-skeleton": {
         parameters: {
             query?: never;
@@ -1053,6 +1073,47 @@ export interface components {
             error: string;
         };
         /**
+         * HandModelOut
+         * @description A hand model that recordings can be tracked with.
+         */
+        HandModelOut: {
+            /** Bones */
+            bones: string[];
+            /**
+             * Degrees Of Freedom
+             * @description Of its pose, the 6 of the whole hand among them.
+             */
+            degrees_of_freedom: number;
+            /** Faces */
+            faces: number;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Name */
+            name: string;
+            /**
+             * Provenance
+             * @description Where it comes from and under which licence.
+             */
+            provenance: {
+                [key: string]: string;
+            };
+            /**
+             * Shape Parameters
+             * @description What can be fitted of whose hand it is.
+             */
+            shape_parameters: string[];
+            /**
+             * Side
+             * @enum {string}
+             */
+            side: "right" | "left";
+            /** Vertices */
+            vertices: number;
+        };
+        /**
          * HandSkeleton
          * @description The 21 joints of every hand, whatever its model.
          */
@@ -1338,6 +1399,16 @@ export interface components {
         Page_AnnotationRevision_: {
             /** Items */
             items: components["schemas"]["AnnotationRevision"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[HandModelOut] */
+        Page_HandModelOut_: {
+            /** Items */
+            items: components["schemas"]["HandModelOut"][];
             /**
              * Next Cursor
              * @description For `?cursor=` to get what follows; null at the end.
@@ -1750,6 +1821,53 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["AccountOut"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_hand_models: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_HandModelOut_"];
                 };
             };
             /** @description Forbidden */

@@ -1,0 +1,16 @@
+"""`/hand-models`."""
+
+from __future__ import annotations
+
+from fastapi.testclient import TestClient
+
+
+def test_the_default_hands_are_offered_with_ids_that_stay(client: TestClient) -> None:
+    right, left = client.get("/api/v1/hand-models").json()["items"]
+    assert (right["side"], left["side"]) == ("right", "left")
+    assert right["id"] == client.get("/api/v1/hand-models").json()["items"][0]["id"] != left["id"]
+    for model in (right, left):
+        assert (len(model["bones"]), model["degrees_of_freedom"]) == (20, 37)
+        assert 1200 < model["faces"] < 1800
+        assert "size" in model["shape_parameters"]
+        assert model["provenance"]

@@ -17,6 +17,7 @@ import pytest
 
 from server.accounts.models import LOCAL_ACCOUNT_ID
 from server.database import Database
+from server.database.migrate import upgrade
 from server.imports.service import ImportDesk, import_recording
 from server.jobs import service, workers
 from server.jobs.models import JobRow
@@ -103,9 +104,20 @@ def open_bench(settings: Settings, database: Database, recording: Path) -> Itera
 
 
 @pytest.fixture
-def bench(settings: Settings, database: Database, rendered: Path) -> Iterator[Bench]:
+def bench_on_both(settings: Settings, database: Database, rendered: Path) -> Iterator[Bench]:
+    """Once on SQLite, once on PostgreSQL."""
     with open_bench(settings, database, rendered) as opened:
         yield opened
+
+
+@pytest.fixture
+def bench(tmp_path: Path, rendered: Path) -> Iterator[Bench]:
+    settings = Settings(data_dir=tmp_path / "data", database_url=f"sqlite:///{tmp_path}/test.sqlite3")
+    database = Database(settings.sqlalchemy_url)
+    upgrade(database)
+    with open_bench(settings, database, rendered) as opened:
+        yield opened
+    database.close()
 
 
 def assert_same(first: dict[str, np.ndarray], second: dict[str, np.ndarray]) -> None:
@@ -115,7 +127,8 @@ def assert_same(first: dict[str, np.ndarray], second: dict[str, np.ndarray]) -> 
         assert array.tobytes() == second[name].tobytes(), f"{name} differs"
 
 
-def test_a_job_whose_worker_is_killed_again_and_again_ends_with_the_same_bits(bench: Bench) -> None:
+def test_a_job_whose_worker_is_killed_again_and_again_ends_with_the_same_bits(bench_on_both: Bench) -> None:
+    bench = bench_on_both
     worker = bench.start_worker()
     undisturbed = bench.queue()
     bench.wait_for_end(undisturbed)
@@ -154,7 +167,8 @@ def test_a_cancelled_job_stops_at_once_and_resumes_where_it_was_with_the_same_bi
     assert_same(bench.arrays(undisturbed), bench.arrays(cancelled))
 
 
-def test_two_workers_share_the_jobs_and_do_none_twice(bench: Bench) -> None:
+def test_two_workers_share_the_jobs_and_do_none_twice(bench_on_both: Bench) -> None:
+    bench = bench_on_both
     first, second = bench.start_worker(), bench.start_worker()
     jobs = [bench.queue(last_frame=24) for _ in range(5)]
     for job_id in jobs:

@@ -1,0 +1,80 @@
+"""Tracks over REST."""
+
+from __future__ import annotations
+
+import io
+import uuid
+
+import cv2
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+
+from tests.server.conftest import Tracked
+
+API = "/api/v1"
+
+
+@pytest.fixture
+def address(tracked: Tracked) -> str:
+    return f"{API}/tracks/{tracked.track_id}"
+
+
+def test_a_track_tells_what_it_is_and_its_recording_names_it_as_its_best(
+    client: TestClient, tracked: Tracked, address: str
+) -> None:
+    track = client.get(address).json()
+    assert (track["frame_first"], track["frame_count"], track["hands"]) == (0, 12, ["right"])
+    assert track["summary"]["frames"] == 12
+    assert client.get(f"{API}/tracks", params={"sequence_id": str(tracked.sequence_id)}).json()["items"] == [track]
+    recording = client.get(f"{API}/sequences/{tracked.sequence_id}").json()
+    assert recording["best_track"]["id"] == track["id"]
+
+
+def test_columns_have_a_value_for_every_frame(client: TestClient, address: str) -> None:
+    columns = client.get(f"{address}/frames").json()
+    assert columns["frame"] == list(range(12))
+    assert set(columns["status"]) == {"ok"}
+    for name in ("seconds", "depth_residual_mm", "silhouette_iou", "iterations"):
+        assert len(columns[name]) == 12
+    assert all(len(column) == 12 for column in (*columns["costs"].values(), *columns["stages"].values()))
+
+
+def test_joints_lie_where_the_downloaded_track_has_them(client: TestClient, address: str) -> None:
+    answer = client.get(f"{address}/files/track.npz")
+    assert "attachment" in answer.headers["content-disposition"]
+    arrays = np.load(io.BytesIO(answer.content))
+    joints = client.get(f"{address}/joints", params={"camera": "cam0"}).json()
+    assert joints["joint_names"] == arrays["joint_names"].tolist()
+    assert np.allclose(joints["points"], arrays["joints_2d"][:, 0], atol=1e-3)
+    assert client.get(f"{address}/joints", params={"camera": "cam7"}).status_code == 404
+    assert client.get(f"{address}/files/summary.json").json()["frames"] == 12
+    assert client.get(f"{address}/files/setup.json").status_code == 422
+    assert client.get(f"{address}/files/..%2ftrack.npz").status_code in (404, 422)
+
+
+def test_the_overlay_covers_the_joints_and_is_drawn_once(client: TestClient, address: str) -> None:
+    answer = client.get(f"{address}/cameras/cam0/frames/5/overlay.png")
+    assert answer.headers["content-type"] == "image/png"
+    assert "immutable" in answer.headers["cache-control"]
+    image = cv2.imdecode(np.frombuffer(answer.content, np.uint8), cv2.IMREAD_UNCHANGED)
+    assert image.shape[2] == 4
+    points = np.array(client.get(f"{address}/joints").json()["points"][5])
+    middle = np.round(points[9]).astype(int)  # middle_mcp
+    assert image[middle[1], middle[0], 3] > 0
+    assert image[0, 0, 3] == 0
+    blue, _, red = image[middle[1], middle[0], :3].astype(int)
+    assert red > blue, "a right hand is orange"
+    assert client.get(f"{address}/cameras/cam0/frames/5/overlay.png").content == answer.content
+    assert client.get(f"{address}/cameras/cam0/frames/12/overlay.png").status_code == 404
+    assert client.get(f"{address}/cameras/cam1/frames/5/overlay.png").status_code == 404
+
+
+def test_a_deleted_track_is_gone_until_it_is_restored(client: TestClient, tracked: Tracked, address: str) -> None:
+    assert client.delete(address).status_code == 200
+    assert client.get(address).status_code == 404
+    assert client.get(f"{API}/tracks").json()["items"] == []
+    assert client.get(f"{API}/sequences/{tracked.sequence_id}").json()["best_track"] is None
+    assert client.post(f"{address}/restore").status_code == 200
+    assert client.get(address).status_code == 200
+    assert client.post(f"{API}/tracks/{uuid.uuid4()}/restore").status_code == 404

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import pytest
 from fastapi.testclient import TestClient
+from starlette.types import Receive, Scope, Send
+from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from server.accounts.same_origin import parse_host
 from server.app import create_app
+from server.app.guard import Guard
 from server.settings import Settings
 from tests.server.conftest import BASE_URL
 
@@ -90,6 +93,22 @@ def test_every_answer_carries_the_headers(client: TestClient) -> None:
     policy = answers[0].headers["content-security-policy"]
     assert "frame-ancestors 'self'" in policy
     assert "script-src 'self';" in policy
+
+
+def test_sockets_are_for_our_own_pages_and_hosts(settings: Settings) -> None:
+    async def echo(scope: Scope, receive: Receive, send: Send) -> None:
+        socket = WebSocket(scope, receive, send)
+        await socket.accept()
+        await socket.send_text("open")
+        await socket.close()
+
+    client = TestClient(Guard(echo, settings), base_url=BASE_URL)
+    for headers in ({}, {"Origin": BASE_URL}):
+        with client.websocket_connect("/viewer/x", headers=headers) as socket:
+            assert socket.receive_text() == "open"
+    for headers in ({"Origin": "http://evil.example"}, {"Origin": "null"}, {"Host": "evil.example"}):
+        with pytest.raises(WebSocketDisconnect), client.websocket_connect("/viewer/x", headers=headers):
+            pass
 
 
 def test_pages_cannot_be_made_to_load_code_from_elsewhere() -> None:

@@ -46,15 +46,3 @@ def test_a_removal_that_was_interrupted_is_finished(storage: Storage) -> None:
     assert storage.list_ids("tracks") == []
     storage.sweep("tracks")
     assert not half.exists()
-
-
-def test_a_folder_is_moved_whole_to_a_free_place_only(storage: Storage) -> None:
-    source, id_ = storage.root / "work", uuid.uuid4()
-    source.mkdir()
-    (source / "file").write_text("x")
-    target = storage.move(source, "tracks", id_)
-    assert (target / "file").read_text() == "x"
-    assert not source.exists()
-    source.mkdir()
-    with pytest.raises(AssertionError):
-        storage.move(source, "tracks", id_)

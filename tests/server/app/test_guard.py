@@ -13,6 +13,7 @@ from server.app.guard import Guard
 from server.settings import Settings
 from tests.server.conftest import BASE_URL
 
+SOCKET = "ws://127.0.0.1:8000/viewer/x"
 WRITE = ("POST", "/api/v1/sequences/00000000-0000-4000-8000-000000000009/restore")
 
 
@@ -104,10 +105,10 @@ def test_sockets_are_for_our_own_pages_and_hosts(settings: Settings) -> None:
 
     client = TestClient(Guard(echo, settings), base_url=BASE_URL)
     for headers in ({}, {"Origin": BASE_URL}):
-        with client.websocket_connect("/viewer/x", headers=headers) as socket:
+        with client.websocket_connect(SOCKET, headers=headers) as socket:
             assert socket.receive_text() == "open"
     for headers in ({"Origin": "http://evil.example"}, {"Origin": "null"}, {"Host": "evil.example"}):
-        with pytest.raises(WebSocketDisconnect), client.websocket_connect("/viewer/x", headers=headers):
+        with pytest.raises(WebSocketDisconnect), client.websocket_connect(SOCKET, headers=headers):
             pass
 
 

@@ -28,12 +28,14 @@ class CalibrationOptions:
         rounds: Shape steps, each after refitting every pose.
         iterations: Iterations of each refit.
         prior: Weight of β² against all correspondences' mean squared mm.
+        modes: Leading coefficients that are fitted; the rest say too little in depth and keep their start.
         step: Finite difference of a shape parameter.
     """
 
     rounds: int = 8
     iterations: int = 4
-    prior: float = 0.05
+    prior: float = 0.15
+    modes: int = 6
     step: float = 1e-3
 
 
@@ -89,7 +91,9 @@ def calibrate_shape(
             count += count_frame
         weight = options.prior * count
         A[np.diag_indices_from(A)] += weight
-        change = np.clip(np.linalg.solve(A, -(b + weight * shape)), -0.7, 0.7)
+        free = slice(0, options.modes)
+        change = np.zeros_like(shape)
+        change[free] = np.clip(np.linalg.solve(A[free, free], -(b + weight * shape)[free]), -0.7, 0.7)
         shape = np.clip(shape + change, base.shape.lower, base.shape.upper)
         if progress:
             progress((turn + 1) / options.rounds)
@@ -147,11 +151,11 @@ def _shape_derivative(base: ArticulatedModel, shape: Array, posed: PosedScene, p
 
 
 def propose_shapes(base: ArticulatedModel) -> list[Array]:
-    """Shape coefficients (S,) to try where nothing is known: the mean hand, a small and a large one."""
+    """Shape coefficients (S,) to try beside the mean hand: smaller and larger ones."""
     assert base.shape is not None
     place = base.shape.names.index("size")
     shapes = []
-    for size in (0.0, -1.5, 1.5):
+    for size in (-1.5, -0.75, 0.75, 1.5):
         shape = np.zeros(len(base.shape.names))
         shape[place] = np.clip(size, base.shape.lower[place], base.shape.upper[place])
         shapes.append(shape)

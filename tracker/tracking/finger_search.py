@@ -16,7 +16,7 @@ Array = npt.NDArray[np.float64]
 BASE_CURLS, OUTER_CURLS = (0.0, 0.35, 0.7), (0.0, 0.4, 0.8)
 """Shares of the flexion of a finger's base and of its outer joints that are tried."""
 
-SPREADS = (-0.6, 0.0, 0.6)
+SPREADS = (-0.8, -0.4, 0.0, 0.4, 0.8)
 """Shares of a finger's side-to-side limits that are tried."""
 
 GAIN = 0.003
@@ -51,6 +51,12 @@ def search_fingers(pose: Array, first_dof: int, model: ArticulatedModel, score: 
 def curl_fingers(model: ArticulatedModel, share: float) -> Array:
     """(K,) joint angles with every joint of a wide range at a share of its farther limit, rad."""
     return np.where(_is_wide(model), share * _farther_limit(model), 0.0)
+
+
+def measure_curl(model: ArticulatedModel, angles: Array) -> float:
+    """Mean share of their farther limit at which joints of a wide range (K,) stand: 0 an open hand, 1 a fist."""
+    wide = _is_wide(model)
+    return float(np.mean(np.clip(angles[wide] / _farther_limit(model)[wide], 0.0, 1.0)))
 
 
 def _finger_dofs(model: ArticulatedModel, finger: int) -> tuple[npt.NDArray, npt.NDArray, npt.NDArray]:

@@ -42,6 +42,12 @@ UNEXPLAINED = 0.15
 SCORED_PIXELS = 1500
 """About so many hand pixels are enough to compare bends of a finger by."""
 
+SCORE_GAIN = 0.02
+"""A search was worth it if it raised the score by this."""
+
+FINGER_REST, IMAGE_REST = 4, 15
+"""Frames to wait after a search of fingers, or of the whole image, in vain."""
+
 SCORE_MEMORY = 0.9
 """Share of the running score kept from frame to frame."""
 
@@ -93,23 +99,30 @@ def follow_frame(
     read_at = perf_counter()
     frame, camera = setup.read(sequence, state.next_frame)
     started = perf_counter()
-    attempt, stages = _follow(frame, camera, setup, state)
+    attempt, rest, stages = _follow(frame, camera, setup, state)
     status = "ok"
     if attempt is None or attempt.quality.is_lost:
-        found = _recover(frame, camera, setup) if recover else None
+        found = _find_again(frame, camera, setup) if recover else None
         attempt, status = (found, "recovered") if found else (attempt, "lost")
+    elif recover and rest[1] == 0 and attempt.quality.score < state.score - SCORE_DROP:
+        searched_at = perf_counter()
+        found = _find_again(frame, camera, setup)
+        is_better = found is not None and found.quality.score > attempt.quality.score + SCORE_GAIN
+        attempt, status = (found, "recovered") if found and is_better else (attempt, "ok")
+        rest = (rest[0], 0 if is_better else IMAGE_REST)
+        stages["searching the image"] = perf_counter() - searched_at
     seconds = perf_counter() - started
     stages["reading"] = started - read_at
-    is_lost = status == "lost"
+    is_followed = status == "ok" and not state.is_lost
+    is_lost = status == "lost" or attempt is None
     pose = state.pose if is_lost or attempt is None else attempt.pose
-    score = state.score
-    if attempt is not None and not is_lost:
-        known = status == "ok" and state.score > 0.0
-        score = (SCORE_MEMORY * state.score if known else 0.0) + (
-            1.0 - SCORE_MEMORY if known else 1.0
-        ) * attempt.quality.score
     next_state = TrackState(
-        state.next_frame + 1, pose, state.pose if status == "ok" and not state.is_lost else pose, score, is_lost
+        state.next_frame + 1,
+        pose,
+        state.pose if is_followed else pose,
+        _running_score(state, attempt, status),
+        is_lost,
+        rest,
     )
     return next_state, FrameResult(
         state.next_frame,
@@ -122,32 +135,44 @@ def follow_frame(
     )
 
 
+def _running_score(state: TrackState, attempt: _Attempt | None, status: str) -> float:
+    if attempt is None or status == "lost":
+        return state.score
+    if status == "recovered" or state.score == 0.0:
+        return attempt.quality.score
+    return SCORE_MEMORY * state.score + (1.0 - SCORE_MEMORY) * attempt.quality.score
+
+
 def _follow(
     frame: Frame, camera: Camera, setup: TrackSetup, state: TrackState
-) -> tuple[_Attempt | None, dict[str, float]]:
-    """Fit from the predicted pose, and again with longer reach if that went badly."""
+) -> tuple[_Attempt | None, tuple[int, int], dict[str, float]]:
+    """Fit from the predicted pose, and again after a search of fingers if that left something unexplained."""
     stages: dict[str, float] = {}
+    rest = (max(0, state.rest[0] - 1), max(0, state.rest[1] - 1))
     if state.is_lost:
-        return None, stages
+        return None, rest, stages
     predicted = state.predict(setup.scene)
     started = perf_counter()
     seen = _look(frame, camera, setup, predicted)
     stages["observing"] = perf_counter() - started
     if seen is None:
-        return None, stages
-    iterations = setup.options.first_iterations if state.score == 0.0 else setup.options.iterations
+        return None, rest, stages
+    is_first = state.next_frame == setup.options.first_frame
+    iterations = setup.options.first_iterations if is_first else setup.options.iterations
     options = FitOptions(iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm)
     best = _attempt(setup, seen, predicted, state.pose, Objective(), options)
     stages |= best.fit.stages
-    falling = best.quality.is_lost or best.quality.score < state.score - SCORE_DROP
-    if falling or best.quality.explained < 1.0 - UNEXPLAINED:
+    is_falling = best.quality.is_lost or best.quality.score < state.score - SCORE_DROP
+    if is_falling or (best.quality.explained < 1.0 - UNEXPLAINED and rest[0] == 0):
         started = perf_counter()
-        for start in (state.pose, best.pose) if falling else (best.pose,):
+        before = best.quality.score
+        for start in (state.pose, best.pose) if is_falling else (best.pose,):
             other = _try_again(setup, seen, start, options)
             if other.quality.score > best.quality.score:
                 best = other
+        rest = (0 if best.quality.score > before + SCORE_GAIN else FINGER_REST, rest[1])
         stages["second try"] = perf_counter() - started
-    return best, stages
+    return best, rest, stages
 
 
 def _try_again(setup: TrackSetup, seen: Observation, start: Array, options: FitOptions) -> _Attempt:
@@ -185,7 +210,7 @@ def _look(frame: Frame, camera: Camera, setup: TrackSetup, pose: Array) -> Obser
     return seen if seen.hand_count >= MIN_PIXELS else None
 
 
-def _recover(frame: Frame, camera: Camera, setup: TrackSetup) -> _Attempt | None:
+def _find_again(frame: Frame, camera: Camera, setup: TrackSetup) -> _Attempt | None:
     """Look for every hand in the whole image."""
     near, far = depth_range(frame)
     poses = []

@@ -20,8 +20,8 @@ CUT = 0.020
 REACH = 0.200
 """Hand pixels farther than this from the palm belong to something else, m."""
 
-ARM_RADIUS, ARM_SPREAD = 0.038, 0.45
-"""Behind the wrist, pixels within this radius (m) and this slope of the hand's axis are the forearm."""
+ARM_RADIUS = 0.045
+"""Behind the wrist, pixels this near to the line through the middle of all that is there are the forearm, m."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Quality:
     @property
     def is_lost(self) -> bool:
         """Whether no one should believe this pose."""
-        return self.inside < 0.55 or self.explained < 0.5 or self.silhouette_iou < 0.45 or self.depth_residual > 0.010
+        return self.score < 0.4 or self.inside < 0.6 or self.explained < 0.5 or self.depth_residual > 0.010
 
 
 def measure_quality(view: View, observation: Observation, model: int = 0) -> Quality:
@@ -80,6 +80,7 @@ def measure_quality(view: View, observation: Observation, model: int = 0) -> Qua
 @njit(cache=True, nogil=True)
 def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forward, palm):
     height, width = labels.shape
+    arm = _arm_direction(labels, points, wrist, forward)
     residuals = np.zeros(height * width)
     number = 0
     drawn = drawn_alike = seen = seen_alike = both = 0
@@ -91,7 +92,7 @@ def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forwar
             z = 1.0 / inverse_depth[row, column] if is_drawn else 0.0
             hidden = labels[row, column] != 0 and depth[row, column] < z - ALIKE
             difference = abs(depth[row, column] - z)
-            counts_seen = is_hand and (is_drawn or _belongs(points[row, column], wrist, forward, palm))
+            counts_seen = is_hand and (is_drawn or _belongs(points[row, column], wrist, forward, palm, arm))
             if is_drawn and (is_hand or not hidden):
                 drawn += 1
                 if is_hand:
@@ -109,14 +110,37 @@ def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forwar
 
 
 @njit(cache=True, nogil=True)
-def _belongs(point, wrist, forward, palm):
+def _arm_direction(labels, points, wrist, forward):
+    """(3,) mean direction from the wrist to hand pixels behind it; against the fingers where there are none."""
+    sx = sy = sz = 0.0
+    for row in range(labels.shape[0]):
+        for column in range(labels.shape[1]):
+            if labels[row, column] & HAND == 0:
+                continue
+            x, y, z = (
+                points[row, column, 0] - wrist[0],
+                points[row, column, 1] - wrist[1],
+                points[row, column, 2] - wrist[2],
+            )
+            if x * forward[0] + y * forward[1] + z * forward[2] < -0.01 and x * x + y * y + z * z < REACH * REACH:
+                sx, sy, sz = sx + x, sy + y, sz + z
+    length = np.sqrt(sx * sx + sy * sy + sz * sz)
+    direction = np.empty(3)
+    if length > 0.0:
+        direction[0], direction[1], direction[2] = sx / length, sy / length, sz / length
+    else:
+        direction[0], direction[1], direction[2] = -forward[0], -forward[1], -forward[2]
+    return direction
+
+
+@njit(cache=True, nogil=True)
+def _belongs(point, wrist, forward, palm, arm):
     """Whether a hand pixel should have been explained by this hand: near its palm and not on its forearm."""
     px, py, pz = point[0] - palm[0], point[1] - palm[1], point[2] - palm[2]
     if px * px + py * py + pz * pz > REACH * REACH:
         return False
     wx, wy, wz = point[0] - wrist[0], point[1] - wrist[1], point[2] - wrist[2]
-    along = wx * forward[0] + wy * forward[1] + wz * forward[2]
-    if along > 0.0:
+    if wx * forward[0] + wy * forward[1] + wz * forward[2] > 0.0:
         return True
-    limit = ARM_RADIUS - ARM_SPREAD * along
-    return wx * wx + wy * wy + wz * wz - along * along > limit * limit
+    along = wx * arm[0] + wy * arm[1] + wz * arm[2]
+    return wx * wx + wy * wy + wz * wz - along * along > ARM_RADIUS * ARM_RADIUS

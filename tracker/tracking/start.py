@@ -39,6 +39,9 @@ Progress = Callable[[str, float], None]
 MIN_MARKED = 6
 """With fewer marked joints a hand is looked for in the depth alone."""
 
+SIZE_GAIN = 0.01
+"""Another size is taken if it raises the score by this."""
+
 CALIBRATION_FRAMES = 10
 """Frames of the first second that the shape is fitted to."""
 
@@ -78,7 +81,7 @@ def start_tracking(
         placed.append(_begin(sequence, setup, frames, marked, tell))
     setup = TrackSetup(names, tuple(model for model, _ in placed), camera_id, options)
     pose = np.concatenate([pose for _, pose in placed])
-    return setup, TrackState(frames[0], pose, pose, 0.0, not np.any(pose))
+    return setup, TrackState(frames[0], pose, pose, is_lost=not np.any(pose))
 
 
 def _begin(
@@ -89,15 +92,28 @@ def _begin(
     if base.shape is None or not setup.options.calibrate:
         _, pose = _place(sequence, setup, frames[0], marked)
         return base, np.zeros(base.num_dofs) if pose is None else pose
-    best_shape, best_pose, best_score = np.zeros(len(base.shape.names)), None, -np.inf
-    for shape in propose_shapes(base):
-        sized = replace(setup, models=(with_shape(base, shape),))
-        score, pose = _place(sequence, sized, frames[0], marked)
-        if pose is not None and score > best_score:
-            best_shape, best_pose, best_score = shape, pose, score
-    if best_pose is None:
+    score, pose = _place(sequence, setup, frames[0], marked)
+    if pose is None:
         return base, np.zeros(base.num_dofs)
-    return _calibrate(sequence, setup, frames, best_shape, best_pose, tell)
+    shape = np.zeros(len(base.shape.names))
+    for other in propose_shapes(base):
+        sized = replace(setup, models=(with_shape(base, other),))
+        other_score, other_pose = _settle(sequence, sized, frames[0], pose)
+        if other_score > score + SIZE_GAIN:
+            shape, pose, score = other, other_pose, other_score
+    return _calibrate(sequence, setup, frames, shape, pose, score, tell)
+
+
+def _settle(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> tuple[float, Array]:
+    """Score and pose of a hand of another size that starts at a pose."""
+    frame, camera = setup.read(sequence, index)
+    region = region_around(setup.scene.pose_at(pose).vertices, camera)
+    if region is None:
+        return -1.0, pose
+    seen = observe(frame, camera, region, setup.preprocessing)
+    options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
+    pose = fit_frame(setup.scene, seen, pose, pose, Objective(), options).pose
+    return measure_quality(draw(setup.scene.pose_at(pose), seen), seen).score, pose
 
 
 def _place(sequence: Sequence, setup: TrackSetup, index: int, marked: Annotation | None) -> tuple[float, Array | None]:
@@ -129,9 +145,9 @@ def _place_marked(
 
 
 def _calibrate(
-    sequence: Sequence, setup: TrackSetup, frames: range, shape: Array, pose: Array, tell: Progress
+    sequence: Sequence, setup: TrackSetup, frames: range, shape: Array, pose: Array, score: float, tell: Progress
 ) -> tuple[ArticulatedModel, Array]:
-    """Follow the hand through the first second, then fit its shape to some of those frames."""
+    """Follow the hand through the first second, while it goes well, then fit its shape to some of those frames."""
     base = setup.models[0]
     assert base.shape is not None
     sized = replace(setup, models=(with_shape(base, shape),))
@@ -142,7 +158,7 @@ def _calibrate(
     poses: list[Array] = []
     for done, index in enumerate(first_second):
         state, result = follow_frame(sequence, sized, state, recover=False)
-        if result.status != "ok":
+        if result.status != "ok" or result.quality is None or result.quality.score < 0.9 * score:
             break
         seen = _look(sequence, sized, index, state.pose) if done % every == 0 else None
         if seen is not None:

@@ -13,12 +13,13 @@ from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.joints import HAND_JOINTS
 from tracker.model.scene import Scene
-from tracker.observation import Observation, Preprocessing, observe
+from tracker.observation import Observation, Preprocessing, Region, observe
 from tracker.terms.data_to_model import DataToModel
 from tracker.terms.data_to_surface import DataToSurface
+from tracker.terms.joint_prior import Regularization
 from tracker.terms.model_to_data import ModelToData
 from tracker.terms.silhouette import Silhouette
-from tracker.tracking.finger_search import curl_fingers, search_fingers
+from tracker.tracking.finger_search import curl_fingers, measure_curl, search_fingers
 from tracker.tracking.frame_fit import FitOptions, draw, fit_frame
 from tracker.tracking.objective import Objective
 from tracker.tracking.palm_candidates import PalmCandidate, find_palm_candidates
@@ -26,6 +27,15 @@ from tracker.tracking.quality import Quality, measure_quality
 from tracker.tracking.region import region_around, whole_image
 
 Array = npt.NDArray[np.float64]
+
+REACH = 0.22
+"""A hand's pixels are this near to its palm, m."""
+
+MIN_PIXELS = 50
+"""Fewer hand pixels than this are no hand."""
+
+SCORED_PIXELS = 1200
+"""About so many hand pixels are enough to compare bends of a finger by."""
 
 
 @dataclass(frozen=True)
@@ -36,21 +46,25 @@ class Search:
         candidates: Places where a palm could be.
         turns: Directions of the fingers in the palm's plane.
         curls: Shares of the fingers' flexion tried, 0 open.
-        rough: Hypotheses of each place refined on the coarse image.
+        likely: Merit below the best hypothesis at which one is still fitted rigidly.
+        rough: Of those, fitted with their fingers on the coarse image.
         bent: Of those, given a search of single fingers.
-        fine: Of all those, refined on the fine image.
-        nearness: Score lost per metre behind the nearest place: what is captured is usually held out.
+        fine: Of those, fitted on the fine image.
         width: Columns of the coarse image.
+        nearness: Merit lost per metre of depth: what is captured is usually held out.
+        openness: Merit lost by a fist against an open hand: a forearm can pass for a fist.
     """
 
     candidates: int = 8
     turns: int = 16
     curls: tuple[float, ...] = (0.0, 0.45)
-    rough: int = 8
-    bent: int = 2
-    fine: int = 6
-    nearness: float = 0.4
+    likely: float = 0.25
+    rough: int = 24
+    bent: int = 8
+    fine: int = 4
     width: int = 160
+    nearness: float = 0.25
+    openness: float = 0.1
 
 
 @dataclass(frozen=True)
@@ -93,36 +107,37 @@ def find_hand(
     scene = Scene((model,))
     stride = max(1, camera.width // search.width)
     coarse = observe(frame, camera, whole_image(camera, near, far), how, stride)
-    candidates = find_palm_candidates(coarse, search.candidates)
-    if not candidates:
+    judge = _Judge(scene, camera, search)
+    hypotheses: list[tuple[float, Observation, Array]] = []
+    for candidate in find_palm_candidates(coarse, search.candidates):
+        region = _around(candidate, camera, near, far)
+        place = observe(frame, camera, region, how, stride)
+        poses = propose_poses(scene, candidate, camera, search)
+        hypotheses += [(judge.merit(place, pose), place, pose) for pose in poses]
+    if not hypotheses:
         return None
-    judge = _Judge(scene, camera, search.nearness)
-    eager = _Judge(scene, camera, 0.0)
-    roughly = []
-    for candidate in candidates:
-        poses = eager.rank(coarse, propose_poses(scene, candidate, camera, search))[: search.rough]
-        poses = [_refine(scene, coarse, pose, _wide_objective(0.04), 12) for pose in poses]
-        for pose in eager.rank(coarse, poses)[: search.bent]:
-            bent = search_fingers(pose, 0, model, lambda trial: eager.merit(coarse, trial))
-            roughly.append(_refine(scene, coarse, bent, _wide_objective(0.03), 10))
-    best: Found | None = None
-    best_merit = -np.inf
-    for pose in judge.rank(coarse, roughly)[: search.fine]:
+    least = max(merit for merit, _, _ in hypotheses) - search.likely
+    rigid = [(place, _align(scene, place, pose)) for merit, place, pose in hypotheses if merit > least]
+    settled = [(place, _settle(scene, place, pose)) for place, pose in judge.rank(rigid)[: search.rough]]
+    best = judge.rank(settled)[: search.bent]
+    for _ in range(2):
+        best = [(seen, _bend(scene, judge, seen, pose)) for seen, pose in best]
+    found: Found | None = None
+    found_merit = -np.inf
+    for _, pose in judge.rank(best)[: search.fine]:
         region = region_around(scene.pose_at(pose).vertices, camera)
         if region is None:
             continue
-        fine_stride = max(1, stride // 2)
-        fine = observe(frame, camera, region, how, fine_stride)
-        if fine.hand_count < 50:
+        fine = observe(frame, camera, region, how, max(1, stride // 2))
+        if fine.hand_count < MIN_PIXELS:
             continue
-        pose = _refine(scene, fine, pose, _wide_objective(0.02), 20)
-        pose = search_fingers(pose, 0, model, lambda trial, seen=fine: eager.merit(seen, trial))
+        pose = _bend(scene, judge, fine, pose)
         pose = _refine(scene, fine, pose, Objective(), 20)
         merit = judge.merit(fine, pose)
-        if merit > best_merit:
-            best = Found(pose, measure_quality(draw(scene.pose_at(pose), fine), fine))
-            best_merit = merit
-    return best
+        if merit > found_merit:
+            found = Found(pose, measure_quality(draw(scene.pose_at(pose), fine), fine))
+            found_merit = merit
+    return found
 
 
 @dataclass(frozen=True)
@@ -132,15 +147,15 @@ class _Judge:
     Attributes:
         scene: The hand.
         camera: The camera.
-        nearness: Merit lost per metre of depth.
+        search: What merit is lost for.
     """
 
     scene: Scene
     camera: Camera
-    nearness: float
+    search: Search
 
     def merit(self, observation: Observation, pose: Array) -> float:
-        """Score of a pose, less what of the hand lies outside the image, less its depth."""
+        """Score of a pose, less for what of the hand lies outside the image, for its depth and for closed fingers."""
         posed = self.scene.pose_at(pose)
         score = measure_quality(draw(posed, observation), observation).score
         in_camera = se3.transform(self.camera.T_camera_world, posed.vertices)
@@ -148,11 +163,13 @@ class _Judge:
             columns = self.camera.K[0, 0] * in_camera[:, 0] / in_camera[:, 2] + self.camera.K[0, 2]
             rows = self.camera.K[1, 1] * in_camera[:, 1] / in_camera[:, 2] + self.camera.K[1, 2]
         inside = (columns > 0) & (columns < self.camera.width) & (rows > 0) & (rows < self.camera.height)
-        return score * float(np.mean(inside & (in_camera[:, 2] > 0))) - self.nearness * float(in_camera[0, 2])
+        in_image = float(np.mean(inside & (in_camera[:, 2] > 0)))
+        closed = measure_curl(self.scene.models[0], pose[6:])
+        return score * in_image**2 - self.search.nearness * float(in_camera[0, 2]) - self.search.openness * closed
 
-    def rank(self, observation: Observation, poses: list[Array]) -> list[Array]:
-        """Poses by falling merit; the earlier of equals first."""
-        merits = np.array([self.merit(observation, pose) for pose in poses])
+    def rank(self, poses: list[tuple[Observation, Array]]) -> list[tuple[Observation, Array]]:
+        """Poses, each with what it is to be compared with, by falling merit; the earlier of equals first."""
+        merits = np.array([self.merit(seen, pose) for seen, pose in poses])
         return [poses[i] for i in np.argsort(-merits, kind="stable")]
 
 
@@ -207,6 +224,41 @@ def _wide_objective(reach: float) -> Objective:
     )
 
 
+def _align(scene: Scene, seen: Observation, pose: Array) -> Array:
+    """Fit a hypothesis nearly rigidly."""
+    stiff = replace(_wide_objective(0.04), regularization=Regularization(2.0))
+    return _refine(scene, seen, pose, stiff, 7)
+
+
+def _settle(scene: Scene, seen: Observation, pose: Array) -> Array:
+    """Fit an aligned hypothesis with its fingers."""
+    return _refine(scene, seen, pose, _wide_objective(0.04), 8)
+
+
+def _bend(scene: Scene, judge: _Judge, seen: Observation, pose: Array) -> Array:
+    """Search single fingers, then fit."""
+    thin = seen.thin(max(1, round((seen.hand_count / SCORED_PIXELS) ** 0.5)))
+    pose = search_fingers(pose, 0, scene.models[0], lambda trial: judge.merit(thin, trial))
+    return _refine(scene, seen, pose, _wide_objective(0.03), 8)
+
+
 def _refine(scene: Scene, observation: Observation, pose: Array, objective: Objective, iterations: int) -> Array:
     options = FitOptions(iterations=iterations, damping=3e-2, max_turn=0.25, max_shift=0.02)
     return fit_frame(scene, observation, pose, pose, objective, options).pose
+
+
+def _around(candidate: PalmCandidate, camera: Camera, near: float, far: float) -> Region:
+    """The region within reach of a hand whose palm is at a candidate."""
+    T = camera.T_camera_world
+    x, y, z = T[:3, :3] @ candidate.point + T[:3, 3]
+    column, row = camera.K[0, 0] * x / z + camera.K[0, 2], camera.K[1, 1] * y / z + camera.K[1, 2]
+    reach = REACH * camera.K[0, 0] / z
+    first_column, first_row = max(0, int(column - reach)), max(0, int(row - reach))
+    return Region(
+        first_row,
+        first_column,
+        max(1, min(camera.height, int(row + reach)) - first_row),
+        max(1, min(camera.width, int(column + reach)) - first_column),
+        max(near, z - REACH),
+        min(far, z + REACH),
+    )

@@ -25,6 +25,7 @@ class TrackState:
         earlier_pose: (D,) of the frame before; equal to `pose` where there is none.
         score: Running quality score of good frames.
         is_lost: Whether the hand was lost in the last frame.
+        rest: Frames until bends of fingers, and until the whole image, are searched again after a search in vain.
     """
 
     next_frame: int
@@ -32,6 +33,7 @@ class TrackState:
     earlier_pose: Array
     score: float = 0.0
     is_lost: bool = False
+    rest: tuple[int, int] = (0, 0)
 
     def predict(self, scene: Scene) -> Array:
         """(D,) the pose if roots go on as they moved last; joint angles are kept.
@@ -55,17 +57,19 @@ class TrackState:
                 "earlier_pose": self.earlier_pose,
                 "score": np.array(self.score),
                 "is_lost": np.array(self.is_lost),
+                "rest": np.array(self.rest),
             },
         )
 
     @classmethod
     def load(cls, path: Path) -> TrackState:
         """Read what `save` wrote."""
-        arrays = load_arrays(path, ("next_frame", "pose", "earlier_pose", "score", "is_lost"))
+        arrays = load_arrays(path, ("next_frame", "pose", "earlier_pose", "score", "is_lost", "rest"))
         return cls(
             int(arrays["next_frame"]),
             arrays["pose"],
             arrays["earlier_pose"],
             float(arrays["score"]),
             bool(arrays["is_lost"]),
+            (int(arrays["rest"][0]), int(arrays["rest"][1])),
         )

@@ -1,0 +1,200 @@
+"""The command `handloom`, as people and scripts run it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+
+ROOT = Path(__file__).resolve().parents[3]
+API = "api/v1"
+
+
+def environment(data: Path, **more: str) -> dict[str, str]:
+    return {**os.environ, "HANDLOOM_DATA_DIR": str(data), "PYTHONPATH": str(ROOT), **more}
+
+
+def handloom(data: Path, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "server.cli", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, env=environment(data, **more), timeout=240)
+
+
+@contextmanager
+def serving(data: Path, *arguments: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A studio in a process of its own and its address."""
+    command = [sys.executable, "-m", "server.cli", *arguments]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, env=environment(data), start_new_session=True
+    )
+    assert process.stdout is not None
+    try:
+        line = process.stdout.readline()
+        assert line.startswith("Handloom is at http://127.0.0.1:"), line
+        yield process, line.split()[3]
+    finally:
+        if process.poll() is None:
+            process.terminate()
+        process.wait(30)
+
+
+def wait_for_worker(address: str, other_than: int | None = None) -> int:
+    """Process id of the worker that runs."""
+    ends = time.monotonic() + 60
+    while time.monotonic() < ends:
+        for worker in httpx.get(f"{address}/{API}/workers").json()["items"]:
+            if worker["state"] == "running" and worker["pid"] != other_than:
+                return worker["pid"]
+        time.sleep(0.1)
+    raise AssertionError("no worker")
+
+
+def wait_for_job(address: str, job_id: str, states: tuple[str, ...] = ("succeeded",), frames: int = 0) -> dict:
+    ends = time.monotonic() + 120
+    while time.monotonic() < ends:
+        job = httpx.get(f"{address}/{API}/jobs/{job_id}").json()
+        if job["state"] in states and job["frames_done"] >= frames:
+            return job
+        assert job["state"] != "failed", job["error"]
+        time.sleep(0.05)
+    raise AssertionError(job)
+
+
+def is_alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def wait_for_death(pid: int) -> None:
+    ends = time.monotonic() + 15
+    while is_alive(pid) and time.monotonic() < ends:
+        time.sleep(0.05)
+    assert not is_alive(pid)
+
+
+def test_help_names_every_command_and_is_quick(tmp_path: Path) -> None:
+    began = time.monotonic()
+    shown = handloom(tmp_path, "--help")
+    seconds = time.monotonic() - began
+    assert shown.returncode == 0
+    for command in ("serve", "worker", "demo", "import", "export", "track", "evaluate", "synthesize", "warm-up"):
+        assert command in shown.stdout
+    loaded = handloom_modules(tmp_path)
+    assert not loaded & {"numpy", "cv2", "numba", "fastapi", "sqlalchemy", "dbos", "pydantic"}, loaded
+    assert seconds < 5.0, "even on a busy machine"
+
+
+def handloom_modules(data: Path) -> set[str]:
+    """What `import server.cli` loads."""
+    code = "import sys, server.cli; print(' '.join(sys.modules))"
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment(data))
+    return set(shown.stdout.split())
+
+
+def test_a_host_that_others_can_reach_is_refused(tmp_path: Path) -> None:
+    refused = handloom(tmp_path, "serve", "--host", "0.0.0.0", "--port", "0")
+    assert refused.returncode == 2
+    assert "has no accounts yet" in refused.stderr
+    assert "ssh -L" in refused.stderr
+
+
+def test_a_port_that_is_taken_is_named(tmp_path: Path) -> None:
+    with socket.socket() as holder:
+        holder.bind(("127.0.0.1", 0))
+        holder.listen()
+        port = holder.getsockname()[1]
+        refused = handloom(tmp_path, "serve", "--port", str(port))
+    assert refused.returncode == 1
+    assert f"Port {port} is taken" in refused.stderr
+
+
+def test_settings_that_make_no_sense_are_named(tmp_path: Path) -> None:
+    refused = handloom(tmp_path, "serve", HANDLOOM_PORT="many")
+    assert refused.returncode == 2
+    assert "HANDLOOM_PORT" in refused.stderr
+    assert "Traceback" not in refused.stderr
+
+
+def test_import_and_export_carry_a_recording_in_and_out_again(tmp_path: Path, rendered: Path) -> None:
+    data = tmp_path / "data"
+    done = handloom(data, "import", str(rendered), "--name", "a wave", "--json")
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    assert (result["name"], result["frames"], result["report"]["ok"]) == ("a wave", 45, True)
+    out = tmp_path / "annotations.json"
+    assert handloom(data, "export", "a wave", "--format", "annotations", "--out", str(out)).returncode == 0
+    assert len(json.loads(out.read_text())["items"]) == 45
+    again = handloom(data, "export", "a wave", "--format", "annotations", "--out", str(out))
+    assert again.returncode == 2
+    assert "is there already" in again.stderr
+    folder = tmp_path / "copy"
+    assert handloom(data, "export", result["id"], "--format", "recording", "--out", str(folder)).returncode == 0
+    back = handloom(tmp_path / "other", "import", str(folder), "--json")
+    assert json.loads(back.stdout)["name"] == "a wave"
+    missing = handloom(data, "export", "nobody", "--format", "recording", "--out", str(tmp_path / "x"))
+    assert missing.returncode == 2
+    assert "'a wave'" in missing.stderr
+    untracked = handloom(data, "export", "a wave", "--format", "track", "--out", str(tmp_path / "x"))
+    assert "has no track yet" in untracked.stderr
+
+
+def test_what_is_no_recording_is_refused_and_nothing_stays(tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "notes.txt").write_text("nothing")
+    refused = handloom(tmp_path / "data", "import", str(tmp_path / "folder"))
+    assert refused.returncode == 2
+    assert "Traceback" not in refused.stderr
+    assert list((tmp_path / "data" / "sequences").glob("*")) == []
+    assert handloom(tmp_path / "data", "import", str(tmp_path / "none")).returncode == 2
+
+
+def test_the_studio_does_jobs_and_outlives_its_worker_and_itself(tmp_path: Path, rendered: Path) -> None:
+    data = tmp_path / "data"
+    sequence_id = json.loads(handloom(data, "import", str(rendered), "--json").stdout)["id"]
+    body = {"sequence_id": sequence_id, "params": {"calibrate": False}}
+    with serving(data, "serve", "--port", "0") as (studio, address):
+        worker = wait_for_worker(address)
+        first = httpx.post(f"{address}/{API}/jobs", json=body).json()
+        wait_for_job(address, first["id"], ("running",), frames=3)
+        os.kill(worker, signal.SIGKILL)
+        assert wait_for_job(address, first["id"])["track_id"] is not None
+        worker = wait_for_worker(address, other_than=worker)
+        second = httpx.post(f"{address}/{API}/jobs", json=body).json()
+        wait_for_job(address, second["id"], ("running",), frames=3)
+        studio.kill()  # the studio itself, in mid-job
+        studio.wait(10)
+    wait_for_death(worker)
+    with serving(data, "serve", "--port", "0") as (studio, address):
+        assert wait_for_job(address, second["id"])["frames_done"] == 45
+        worker = wait_for_worker(address)
+        studio.send_signal(signal.SIGINT)
+        assert studio.wait(30) in (0, 130)
+        wait_for_death(worker)
+    out = tmp_path / "track"
+    exported = handloom(data, "export", second["track_id"] or sequence_id, "--format", "track", "--out", str(out))
+    assert exported.returncode == 0, exported.stderr
+    assert (out / "track.npz").is_file()
+
+
+def test_the_demo_makes_its_sample_once_and_tracks_it(tmp_path: Path) -> None:
+    data = tmp_path / "data"
+    for _ in range(2):
+        with serving(data, "demo", "--port", "0") as (_studio, address):
+            (recording,) = httpx.get(f"{address}/{API}/sequences").json()["items"]
+            assert recording["annotated_frames"] == 4
+            (job,) = httpx.get(f"{address}/{API}/jobs").json()["items"]
+            job = wait_for_job(address, job["id"])
+            result = httpx.get(f"{address}/{API}/tracks/{job['track_id']}/evaluation", timeout=60).json()
+            assert result["evaluated"] == 4
+            assert result["joint_error_px"]["mean"] < 4.0

@@ -5,7 +5,7 @@ import { useState } from "react";
 import { Link, useNavigate, useParams } from "react-router";
 import { discardImport, useCheckAgain, useConfirmImport, useImport, type ImportOptions } from "../api/imports";
 import type { Import } from "../api/types";
-import { formatBytes, formatCount } from "../model/format";
+import { formatBytes, formatCount, formatName } from "../model/format";
 import { EmptyState } from "./parts/EmptyState";
 import { Failure } from "./parts/Failure";
 import { ImportFacts } from "./parts/ImportFacts";
@@ -92,7 +92,9 @@ export function ImportPage() {
           <Title order={1}>Import report</Title>
           <Text className="quiet" mt={4}>
             {formatCount(checked.file_count, "file")}, {formatBytes(checked.byte_count)}.{" "}
-            {report.ok ? "They make a recording. Nothing is stored until you say so." : "They cannot be imported as they are. Nothing was stored."}
+            {report.ok
+              ? `Read as: ${formatName(report.format).toLowerCase()}. Nothing is stored until you say so.`
+              : "This cannot be imported as it is. Nothing was stored."}
           </Text>
         </div>
         <Button variant="default" onClick={() => void discard()}>

@@ -163,8 +163,8 @@ export function Annotator({ recording, session }: AnnotatorProps) {
           const other = state.poses[keyText({ camera: state.camera, frame: state.frame, hand })];
           return other && <HandShape key={hand} pose={other} hand={hand} view={shown} active={-1} isFaint />;
         })}
-        {theirs?.points && <GhostShape pose={fromWire(theirs.points)} view={shown} />}
         <HandShape pose={pose} hand={state.hand} view={shown} active={state.joint} areNamesShown={options.areNamesShown} />
+        {theirs?.points && <GhostShape pose={fromWire(theirs.points)} view={shown} />}
       </>
     );
 

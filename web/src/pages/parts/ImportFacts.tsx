@@ -1,7 +1,7 @@
 import { SimpleGrid, Table, Title } from "@mantine/core";
 import type { ReactNode } from "react";
 import type { CameraReport, ImportReport } from "../../api/types";
-import { formatCount, formatName, formatNumber } from "../../model/format";
+import { formatCount, formatNumber } from "../../model/format";
 import { Fact } from "./Fact";
 
 const percent = (share: number): string => `${(100 * share).toFixed(share > 0 && share < 0.1 ? 1 : 0)} %`;
@@ -53,8 +53,7 @@ export function ImportFacts({ report }: { report: ImportReport }) {
   const baselines = Object.entries(report.baselines_m ?? {});
   return (
     <>
-      <SimpleGrid cols={{ base: 3, md: 6 }} spacing="md">
-        <Fact label="Format">{report.format ? formatName(report.format) : "not recognised"}</Fact>
+      <SimpleGrid cols={5} spacing="md">
         <Fact label="Frames">{report.frame_count.toLocaleString("en")}</Fact>
         <Fact label="Frames per second">{formatNumber(report.fps, report.fps !== null && Number.isInteger(report.fps) ? 0 : 2)}</Fact>
         <Fact label="Hands">{report.hands.join(", ") || "–"}</Fact>

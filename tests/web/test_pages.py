@@ -1,0 +1,146 @@
+"""Every page in a real browser, dark and light, small and large: it fits, it can be read out, it says what to do."""
+
+from __future__ import annotations
+
+import re
+import time
+import zipfile
+
+import pytest
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(420)]
+
+SIZES = [(1280, 720), (1920, 1080)]
+
+NAMELESS = """() => [...document.querySelectorAll("button, a[href], input, select, textarea, [role=slider], iframe")]
+  .filter((element) => element.offsetParent !== null || element.tagName === "IFRAME")
+  .filter((element) => {
+    const labels = element.labels ? [...element.labels].map((label) => label.innerText).join("") : "";
+    const pointed = (element.getAttribute("aria-labelledby") ?? "").split(" ")
+      .map((id) => document.getElementById(id)?.innerText ?? "").join("");
+    const name = element.getAttribute("aria-label") || element.title || element.innerText || labels || pointed;
+    return !name?.trim();
+  })
+  .map((element) => element.outerHTML.slice(0, 200))"""
+
+TOO_WIDE = """() =>
+  [document.scrollingElement, document.querySelector("main")].some((element) => element.scrollWidth > innerWidth)"""
+
+
+@pytest.fixture(scope="module")
+def track(studio, synthesized):
+    """A tracked recording with an annotation, made through the API."""
+    with synthesized.archive.open("rb") as file:
+        made = studio.send("POST", "/imports", files={"files": ("opening-hand.zip", file)}).json()
+    recording = studio.send(
+        "POST", f"/imports/{made['id']}/confirm", json={"name": "Opening hand, seen by one camera"}
+    ).json()
+    points = [[x, y, 2] for x, y in synthesized.joints]
+    studio.send(
+        "PUT",
+        f"/sequences/{recording['id']}/annotations/cam0/0/right",
+        json={"points": points, "operation_id": "6a1c1f0e-3a3b-4f0a-9d55-6f1f3b6f0a11"},
+        headers={"If-None-Match": "*"},
+    ).raise_for_status()
+    job = studio.send("POST", "/jobs", json={"kind": "track", "sequence_id": recording["id"], "params": {}}).json()
+    deadline = time.monotonic() + 300
+    while job["state"] in ("queued", "running") and time.monotonic() < deadline:
+        time.sleep(0.5)
+        job = studio.get(f"/jobs/{job['id']}")
+    assert job["state"] == "succeeded", job
+    return studio.get(f"/tracks/{job['track_id']}")
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_every_page_fits_and_every_control_has_a_name(studio, track, open_page, screenshots, width, height, scheme):
+    page = open_page(width, height, scheme)
+    recording = track["sequence_id"]
+    addresses = {
+        "recordings": "/recordings",
+        "recording": f"/recordings/{recording}",
+        "annotate": f"/recordings/{recording}/annotate?frame=0",
+        "tracks": "/tracks",
+        "jobs": "/jobs",
+        "job": f"/jobs/{track['job_id']}",
+        "track": f"/tracks/{track['id']}?frame=3",
+        "missing": "/no-such-page",
+    }
+    for name, address in addresses.items():
+        page.goto(address)
+        page.locator("main h1, main h2, [data-picture] canvas").first.wait_for()
+        page.wait_for_timeout(6000 if name == "track" and screenshots.folder else 800)
+        screenshots.take(page, f"{name}-{width}-{scheme}")
+        assert not page.evaluate(TOO_WIDE), f"{name} scrolls sideways at {width} px"
+        assert page.evaluate(NAMELESS) == [], f"{name} has controls without a name"
+
+
+def test_files_that_cannot_be_imported_get_a_report_that_says_what_to_do(studio, open_page, screenshots, tmp_path):
+    from playwright.sync_api import expect
+
+    archive = tmp_path / "holiday.zip"
+    with zipfile.ZipFile(archive, "w") as file:
+        file.writestr("holiday/readme.txt", "nothing to see")
+    before = len(studio.get("/sequences")["items"])
+    page = open_page()
+    page.goto("/recordings")
+    page.get_by_test_id("choose-files").first.set_input_files(str(archive))
+    expect(page.get_by_role("heading", name="Import report")).to_be_visible()
+    expect(page.get_by_text(re.compile("must be mended"))).to_be_visible()
+    expect(page.get_by_role("button", name="Store the recording")).to_have_count(0)
+    expect(page.get_by_role("button", name="Look again")).to_be_visible()
+    screenshots.take(page, "10-refused")
+    page.get_by_role("button", name="Discard").click()
+    expect(page).to_have_url(re.compile("/recordings$"))
+    assert len(studio.get("/sequences")["items"]) == before
+
+
+def test_what_is_gone_is_said_with_a_way_on(open_page, screenshots):
+    from playwright.sync_api import expect
+
+    nobody = "00000000-0000-4000-8000-000000000000"
+    page = open_page()
+    for address in (
+        f"/recordings/{nobody}",
+        f"/recordings/{nobody}/annotate",
+        f"/tracks/{nobody}",
+        f"/jobs/{nobody}",
+        f"/imports/{nobody}",
+    ):
+        page.goto(address)
+        expect(page.get_by_role("alert")).to_contain_text("could not be")
+        expect(page.get_by_role("button", name="Try again")).to_be_visible()
+    screenshots.take(page, "11-gone")
+
+
+def test_a_deleted_recording_comes_back(studio, recording, open_page):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{recording['id']}")
+    page.get_by_role("button", name="More").click()
+    page.get_by_role("menuitem", name="Delete").click()
+    expect(page.get_by_text("was deleted")).to_be_visible()
+    assert studio.send("GET", f"/sequences/{recording['id']}").status_code == 404
+    page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_role("main").locator(f'a[href="/recordings/{recording["id"]}"]')).to_be_visible()
+    assert studio.get(f"/sequences/{recording['id']}")["name"] == recording["name"]
+
+
+def test_search_and_help_open_by_key_and_lead_somewhere(recording, open_page, screenshots):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto("/jobs")
+    page.locator("main h1, main h2").first.wait_for()
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog")).to_contain_text("Next annotated frame")
+    screenshots.take(page, "12-keyboard-map")
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    page.keyboard.press("Control+k")
+    page.get_by_label("Search", exact=True).fill("Annotate opening hand")
+    screenshots.take(page, "13-search")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    expect(page).to_have_url(re.compile("/annotate"))

@@ -8,7 +8,9 @@ from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
+from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 from starlette.responses import JSONResponse, Response
 
 from server.errors import StudioError
@@ -42,6 +44,13 @@ def answer_error(request: Request, error: Exception) -> Response:
         if error.status_code in (404, 405) and detail in ("Not Found", "Method Not Allowed"):
             detail = f"There is nothing to {request.method} at {request.url.path}."
         return _answer(error.status_code, name, detail, dict(error.headers or {}))
+    if isinstance(error, ClientDisconnect):
+        log.info("%s %s: the client has gone", request.method, request.url.path)
+        return _answer(400, "ClientGoneError", "The request did not arrive whole.")
+    if isinstance(error, OperationalError):
+        log.warning("%s %s: the database does not answer", request.method, request.url.path, exc_info=error)
+        detail = "The database is busy or out of reach; nothing was stored. Try again."
+        return _answer(503, "DatabaseUnavailableError", detail, {"Retry-After": "1"})
     log.error("%s %s failed", request.method, request.url.path, exc_info=error)
     return _answer(500, "InternalError", "The studio failed at this; its log says why. What was saved before is safe.")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -69,6 +70,17 @@ def test_a_failure_of_ours_tells_no_insides(settings: Settings, caplog: pytest.L
     assert "Traceback" not in answer.text
     assert answer.headers["x-content-type-options"] == "nosniff"
     assert "1234" in caplog.text
+
+
+def test_a_database_that_is_busy_for_long_is_no_fault_of_the_request(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("server.database.database.BUSY_TIMEOUT", 0.1)
+    app = create_app(Settings(data_dir=tmp_path))
+    with TestClient(app, base_url=BASE_URL) as client, app.state.database.writing():
+        answer = client.post("/api/v1/sequences/00000000-0000-4000-8000-000000000009/restore")
+        assert (answer.status_code, answer.json()["error"]) == (503, "DatabaseUnavailableError")
+        assert client.get("/api/v1/sequences").status_code == 200
 
 
 def operations() -> list[tuple[str, str, dict[str, Any]]]:

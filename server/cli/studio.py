@@ -41,6 +41,7 @@ class StudioServer(uvicorn.Server):
         if self.started:
             sys.stdout.write(f"Handloom is at {self._address} (data in {self._data_dir}). Stop it with Ctrl+C.\n")
             sys.stdout.flush()
+            self._app.state.viewer_sessions.prepare()
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         self._app.state.is_stopping = True

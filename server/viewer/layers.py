@@ -27,9 +27,11 @@ WRIST_COLOR: Color = (206, 212, 218)
 TERM_COLORS: dict[str, Color] = {
     "model_to_data": (34, 211, 238),
     "data_to_model": (232, 62, 180),
+    "data_to_surface": (163, 230, 53),
+    "silhouette": (255, 214, 10),
     "collision": (255, 59, 48),
-    "salient": (255, 214, 10),
-    "physics": (163, 230, 53),
+    "salient": (255, 255, 255),
+    "physics": (180, 140, 255),
 }
 
 SPARE_TERM_COLORS: tuple[Color, ...] = ((148, 163, 255), (255, 176, 136), (150, 242, 215), (222, 190, 255))

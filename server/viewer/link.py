@@ -48,6 +48,11 @@ class ViewerLink:
         process = self._process
         return process is not None and process.poll() is None
 
+    def start(self) -> None:
+        """Start the viewer process now, so that the first view opens sooner."""
+        with self._lock:
+            self._ensure_started()
+
     def request(self, op: str, session: str, **arguments: Any) -> dict[str, Any]:
         """Ask and wait for the answer."""
         future: Future[dict[str, Any]] = Future()

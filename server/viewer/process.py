@@ -78,9 +78,17 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     descriptor = int(sys.argv[1])
     connection = Connection(socket.socket(fileno=descriptor).detach())
+    threading.Thread(target=_load_tracker, name="load", daemon=True).start()
     ViewerProcess(connection).serve()
     sys.stderr.flush()
     os._exit(0)
+
+
+def _load_tracker() -> None:
+    """What takes seconds, before it is needed."""
+    from tracker import describe_frame, load_track
+
+    log.debug("%s and %s are ready", describe_frame, load_track)
 
 
 if __name__ == "__main__":

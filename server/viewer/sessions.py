@@ -49,6 +49,10 @@ class ViewerSessions:
         self._stopped = threading.Event()
         threading.Thread(target=self._sweep_forever, name="viewer-sessions", daemon=True).start()
 
+    def prepare(self) -> None:
+        """Have the viewer process ready before somebody asks for a view."""
+        self._link.start()
+
     def open(
         self, track_id: uuid.UUID, recording: Path, track: Path, frame: int | None, changes: dict[str, Any]
     ) -> tuple[OpenSession, dict[str, Any]]:

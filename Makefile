@@ -52,7 +52,7 @@ test: setup
 	@status=0; $(MAKE) --no-print-directory test-web || status=1; $(MAKE) --no-print-directory test-python || status=1; exit $$status
 
 test-python: setup
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -rs
 
 test-web: setup
 	cd web && npm test --silent

@@ -36,7 +36,7 @@ def choose_cache_folder(root: Path) -> Path:
 
 
 def use_kernel_cache() -> None:
-    """Tell numba to keep compiled kernels in the user's cache, unless it was told otherwise; before any kernel exists."""
+    """Tell numba, before any kernel exists, to keep compiled kernels in the user's cache unless told otherwise."""
     if "NUMBA_CACHE_DIR" in os.environ:
         return
     folder = str(choose_cache_folder(ROOT))

@@ -54,7 +54,7 @@ class ArticulatedModel:
 
     Attributes:
         name: For people.
-        vertices: (V, 3) rest pose, model frame, m. A vertex that no face uses is allowed (a fingertip kept as a landmark).
+        vertices: (V, 3) rest pose, model frame, m. A vertex that no face uses is allowed: a fingertip kept as a mark.
         faces: (F, 3) counter-clockwise seen from outside.
         skinning_weights: (V, B) rows sum to one, at most MAX_WEIGHTS non-zero.
         skeleton: Bones and revolute joints.

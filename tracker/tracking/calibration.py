@@ -27,7 +27,7 @@ class CalibrationOptions:
     Attributes:
         rounds: Shape steps, each after refitting every pose.
         iterations: Iterations of each refit.
-        prior: Weight of β² against all correspondences' mean squared mm.
+        prior: Weight of β² against the squared mm of one frame's correspondences, each; more frames outweigh it.
         modes: Leading coefficients that are fitted; the rest say too little in depth and keep their start.
         step: Finite difference of a shape parameter.
     """
@@ -89,7 +89,7 @@ def calibrate_shape(
             A += A_frame
             b += b_frame
             count += count_frame
-        weight = options.prior * count
+        weight = options.prior * count / len(observations)
         A[np.diag_indices_from(A)] += weight
         free = slice(0, options.modes)
         change = np.zeros_like(shape)

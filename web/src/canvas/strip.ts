@@ -2,7 +2,8 @@
 
 export interface StripRow {
   readonly label: string;
-  readonly color: string;
+  /** One colour, or one for each value. */
+  readonly color: string | ((value: number) => string);
   /** One value per frame; 0 draws nothing, 1 the full height. */
   readonly values: ArrayLike<number>;
 }
@@ -44,8 +45,8 @@ export function drawStrip(
     const top = index * (rowHeight + gap);
     context.fillStyle = colors.ground;
     context.fillRect(0, top, width, rowHeight);
-    context.fillStyle = row.color;
     columnMaxima(row.values, Math.round(width)).forEach((value, x) => {
+      context.fillStyle = typeof row.color === "string" ? row.color : row.color(value);
       if (value > 0) context.fillRect(x, top + rowHeight * (1 - value), 1, rowHeight * value);
     });
   });
@@ -53,7 +54,7 @@ export function drawStrip(
     const step = width / frameCount;
     const x = frame * step;
     context.fillStyle = colors.cursor;
-    context.globalAlpha = 0.35;
+    context.globalAlpha = 0.22;
     context.fillRect(x, 0, Math.max(step, 2), height);
     context.globalAlpha = 1;
     context.fillRect(Math.min(width - 2, x + step / 2 - 1), 0, 2, height);

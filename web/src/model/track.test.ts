@@ -1,6 +1,7 @@
 import { expect, test } from "vitest";
 import type { TrackFrames } from "../api/types";
 import { badFrames, nextIn } from "./badFrames";
+import { errorColor } from "./errorColor";
 import { trackRows } from "./trackRows";
 
 const track: TrackFrames = {
@@ -25,6 +26,16 @@ test("the way through bad frames goes around", () => {
 
 test("a track that covers a part of the recording stands at its place in the timeline", () => {
   const [error, lost] = trackRows(track, 20);
-  expect([...(error?.values as Float32Array)].slice(9, 15)).toEqual([0, 0.5, 0, 1, 0.25, 0]);
+  const heights = [...(error?.values as Float32Array)].slice(9, 15).map((value) => Math.round(100 * value));
+  expect(heights).toEqual([0, 20, 0, 40, 10, 0]);
   expect([...(lost?.values as Float32Array)].indexOf(1)).toBe(11);
+});
+
+test("errors go from blue to red and stay within the scale", () => {
+  expect([errorColor(-1), errorColor(0), errorColor(1), errorColor(7)]).toEqual([
+    "rgb(62 118 208)",
+    "rgb(62 118 208)",
+    "rgb(214 48 49)",
+    "rgb(214 48 49)",
+  ]);
 });

@@ -2,22 +2,21 @@
 
 import type { TrackFrames } from "../api/types";
 import type { StripRow } from "../canvas/strip";
+import { errorColor, ERROR_FULL_MM } from "./errorColor";
 
-export const ERROR_COLOR = "#8fa3b8";
 export const LOST_COLOR = "#ff5d52";
 
-/** The depth residual of each frame, full height at the worst; lost frames at full height in red above it. */
+/** The depth residual of each frame, at full height from ERROR_FULL_MM on; lost frames in a row of their own. */
 export function trackRows(track: TrackFrames, frameCount: number): StripRow[] {
   const error = new Float32Array(frameCount);
   const lost = new Float32Array(frameCount);
-  const finite = track.depth_residual_mm.filter((value): value is number => value !== null && Number.isFinite(value));
-  const worst = Math.max(1e-9, ...finite);
   track.frame.forEach((frame, index) => {
     if (frame < 0 || frame >= frameCount) return;
-    const value = track.depth_residual_mm[index];
-    error[frame] = value !== null && value !== undefined && Number.isFinite(value) ? value / worst : 0;
+    const residual = track.depth_residual_mm[index];
+    // A good frame still shows a sliver, so that it is told from one that is not in the track.
+    if (typeof residual === "number" && Number.isFinite(residual)) error[frame] = Math.min(1, Math.max(0.08, residual / ERROR_FULL_MM));
     lost[frame] = track.status[index] === "lost" ? 1 : 0;
   });
-  const rows: StripRow[] = [{ label: "error", color: ERROR_COLOR, values: error }];
+  const rows: StripRow[] = [{ label: "error", color: errorColor, values: error }];
   return lost.some((value) => value > 0) ? [...rows, { label: "lost", color: LOST_COLOR, values: lost }] : rows;
 }

@@ -113,7 +113,7 @@ export function ImportPage() {
           failure={again.error}
           onCheck={(options) => again.mutate(options)}
         />
-        {!report.ok && <ImportFacts report={report} />}
+        {!report.ok && report.cameras.length > 0 && <ImportFacts report={report} />}
       </Stack>
     </div>
   );

@@ -25,7 +25,7 @@ const STATUS: Record<JointStatus, { text: string; help: string }> = {
 function StatusMark({ status, color }: { status: JointStatus; color: string }) {
   return (
     <svg width={14} height={14} viewBox="0 0 14 14" aria-hidden style={{ flex: "none" }}>
-      {status === "visible" && <circle cx="7" cy="7" r="5" fill={color} />}
+      {status === "visible" && <circle cx="7" cy="7" r="5" fill={color} stroke="var(--text-quiet)" strokeWidth="0.5" />}
       {status === "occluded" && <circle cx="7" cy="7" r="4.5" fill="none" stroke={color} strokeWidth="2" strokeDasharray="3 2" />}
       {status === "outside" && <path d="M3 3l8 8M11 3l-8 8" stroke={color} strokeWidth="2" fill="none" />}
       {status === "unset" && <circle cx="7" cy="7" r="2" fill="var(--text-quiet)" />}

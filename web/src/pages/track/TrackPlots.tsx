@@ -17,7 +17,7 @@ interface TrackPlotsProps {
   onSeek: (frame: number) => void;
 }
 
-const PLOT_HEIGHT = 168;
+const PLOT_HEIGHT = 160;
 const TERM_COLORS = ["#22b8cf", "#e83eb4", "#94a3ff", "#ffb088", "#a3e635", "#96f2d7"];
 
 /** Error and timing by frame; a click goes there. */
@@ -34,7 +34,7 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
       if (item.camera === camera && item.mean_px !== null) errors.set(item.frame, Math.max(item.mean_px, errors.get(item.frame) ?? 0));
     }
     if (errors.size > 0) {
-      curves.push({ label: "Error against annotations", unit: "px", values: frames.frame.map((at) => errors.get(at) ?? null), color: "#b08cff", axis: "left", isSparse: true });
+      curves.push({ label: "Annotated error", unit: "px", values: frames.frame.map((at) => errors.get(at) ?? null), color: "#b08cff", axis: "left", isSparse: true });
     }
     return curves;
   }, [frames, evaluation, camera]);

@@ -9,6 +9,7 @@ import { badFrames, nextIn } from "../../model/badFrames";
 import { formatNumber } from "../../model/format";
 import { trackRows } from "../../model/trackRows";
 import { usePlayback } from "../annotate/usePlayback";
+import { ErrorLegend } from "./ErrorLegend";
 import { TrackBar } from "./TrackBar";
 import { TrackImage } from "./TrackImage";
 import { TrackPlots } from "./TrackPlots";
@@ -116,7 +117,8 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
         </div>
       </div>
       <div className={classes.timeline}>
-        <FrameStrip rows={rows} frameCount={recording.frame_count} frame={frame} height={32} label="Timeline" onSeek={seek} describe={describe} />
+        <ErrorLegend hasLost={lost.length > 0} />
+        <FrameStrip rows={rows} frameCount={recording.frame_count} frame={frame} height={lost.length > 0 ? 34 : 24} label="Timeline" onSeek={seek} describe={describe} />
       </div>
     </div>
   );

@@ -1,0 +1,25 @@
+/** Errors are blue when small and red when large, with the same scale everywhere. */
+
+/** Depth residual at which the scale ends, mm. */
+export const ERROR_FULL_MM = 10;
+
+const ANCHORS = [
+  [62, 118, 208],
+  [98, 170, 200],
+  [226, 205, 120],
+  [232, 122, 74],
+  [214, 48, 49],
+] as const;
+
+/** Colour of an error, 0 (none) to 1 (the scale's end). */
+export function errorColor(value: number): string {
+  const at = Math.min(1, Math.max(0, value)) * (ANCHORS.length - 1);
+  const below = Math.min(ANCHORS.length - 2, Math.floor(at));
+  const [from, to] = [ANCHORS[below], ANCHORS[below + 1]];
+  if (!from || !to) return "#888888";
+  const [r, g, b] = [0, 1, 2].map((channel) => Math.round((from[channel] ?? 0) + ((to[channel] ?? 0) - (from[channel] ?? 0)) * (at - below)));
+  return `rgb(${r} ${g} ${b})`;
+}
+
+/** The scale as a CSS background. */
+export const errorGradient = `linear-gradient(90deg, ${ANCHORS.map((color) => `rgb(${color.join(" ")})`).join(", ")})`;

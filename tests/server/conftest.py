@@ -11,6 +11,7 @@ import subprocess
 import tempfile
 import uuid
 from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -113,37 +114,75 @@ def _user_exists(name: str) -> bool:
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
-def empty_database_url(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
-    """A database without tables."""
-    if request.param == "sqlite":
-        yield f"sqlite:///{tmp_path}/test.sqlite3"
-        return
-    server = request.getfixturevalue("postgres_url")
+def database_kind(request: pytest.FixtureRequest) -> str:
+    """Every test that uses a database runs on both kinds."""
+    return request.param
+
+
+@contextmanager
+def _make_postgres_database(server: str, template: str) -> Iterator[str]:
     name = f"test_{uuid.uuid4().hex}"
     with psycopg.connect(f"{server}/postgres", autocommit=True) as connection:
-        connection.execute(f'CREATE DATABASE "{name}"')
+        connection.execute(f'CREATE DATABASE "{name}" TEMPLATE "{template}"')
         yield f"{server}/{name}"
         connection.execute(f'DROP DATABASE "{name}" WITH (FORCE)')
 
 
 @pytest.fixture
-def settings(empty_database_url: str, tmp_path: Path) -> Settings:
-    return Settings(data_dir=tmp_path / "data", database_url=empty_database_url)
+def empty_database_url(database_kind: str, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
+    """A database without tables."""
+    if database_kind == "sqlite":
+        yield f"sqlite:///{tmp_path}/empty.sqlite3"
+        return
+    with _make_postgres_database(request.getfixturevalue("postgres_url"), "template0") as url:
+        yield url
+
+
+@pytest.fixture(scope="session")
+def sqlite_template(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file with all tables, to be copied: quicker than to migrate for every test."""
+    path = tmp_path_factory.mktemp("template") / "template.sqlite3"
+    with closing(Database(f"sqlite:///{path}")) as database:
+        upgrade(database)
+    return path
+
+
+@pytest.fixture(scope="session")
+def postgres_template(postgres_url: str) -> str:
+    """Name of a database with all tables, to be copied."""
+    with psycopg.connect(f"{postgres_url}/postgres", autocommit=True) as connection:
+        connection.execute("CREATE DATABASE migrated")
+    with closing(Database(Settings(database_url=f"{postgres_url}/migrated").sqlalchemy_url)) as database:
+        upgrade(database)
+    return "migrated"
 
 
 @pytest.fixture
-def empty_database(settings: Settings) -> Iterator[Database]:
+def settings(database_kind: str, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Settings]:
+    """Settings of a studio of its own, with all tables."""
+    data_dir = tmp_path / "data"
+    if database_kind == "sqlite":
+        path = tmp_path / "test.sqlite3"
+        shutil.copy(request.getfixturevalue("sqlite_template"), path)
+        yield Settings(data_dir=data_dir, database_url=f"sqlite:///{path}")
+        return
+    template = request.getfixturevalue("postgres_template")
+    with _make_postgres_database(request.getfixturevalue("postgres_url"), template) as url:
+        yield Settings(data_dir=data_dir, database_url=url)
+
+
+@pytest.fixture
+def empty_database(empty_database_url: str) -> Iterator[Database]:
     """A database without tables, opened."""
-    database = Database(settings.sqlalchemy_url)
-    yield database
-    database.close()
+    with closing(Database(Settings(database_url=empty_database_url).sqlalchemy_url)) as database:
+        yield database
 
 
 @pytest.fixture
-def database(empty_database: Database) -> Database:
-    """A database with all tables."""
-    upgrade(empty_database)
-    return empty_database
+def database(settings: Settings) -> Iterator[Database]:
+    """A database with all tables, opened."""
+    with closing(Database(settings.sqlalchemy_url)) as database:
+        yield database
 
 
 @dataclass

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from fastapi.testclient import TestClient
 from starlette.types import Receive, Scope, Send
@@ -15,6 +17,12 @@ from tests.server.conftest import BASE_URL
 
 SOCKET = "ws://127.0.0.1:8000/viewer/x"
 WRITE = ("POST", "/api/v1/sequences/00000000-0000-4000-8000-000000000009/restore")
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    """One database will do: nothing here depends on it."""
+    return Settings(data_dir=tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from sqlalchemy import inspect, select
 from server.accounts.models import LOCAL_ACCOUNT_ID, Account
 from server.database import Base, Database
 from server.database.migrate import SCRIPTS, downgrade, find_current, find_head, upgrade
+from server.settings import Settings
 
 for path in sorted((Path(SCRIPTS).parent / "server").glob("*/models.py")):
     import_module(f"server.{path.parent.name}.models")  # they declare the tables
@@ -21,6 +22,13 @@ for path in sorted((Path(SCRIPTS).parent / "server").glob("*/models.py")):
 
 def own_tables(database: Database) -> set[str]:
     return {name for name in inspect(database.engine).get_table_names() if name != "alembic_version"}
+
+
+@pytest.fixture
+def database(empty_database: Database) -> Database:
+    """Migrated here and now."""
+    upgrade(empty_database)
+    return empty_database
 
 
 def test_migrations_make_exactly_the_tables_that_the_code_declares(database: Database) -> None:
@@ -47,8 +55,8 @@ def test_every_migration_can_be_taken_back_alone(empty_database: Database) -> No
         assert own_tables(empty_database) == tables
 
 
-def test_processes_that_start_together_migrate_once(settings) -> None:
-    databases = [Database(settings.sqlalchemy_url) for _ in range(4)]
+def test_processes_that_start_together_migrate_once(empty_database_url: str) -> None:
+    databases = [Database(Settings(database_url=empty_database_url).sqlalchemy_url) for _ in range(4)]
     with ThreadPoolExecutor(4) as pool:
         list(pool.map(upgrade, databases))
     with databases[0].reading() as session:

@@ -37,7 +37,7 @@ div[style*="position: fixed"][style*="width: 20em"] { display: none !important; 
 CONTENT_SECURITY_POLICY = "; ".join(
     (
         "default-src 'none'",
-        "script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:",
+        "script-src 'unsafe-inline' 'unsafe-eval' blob:",  # the glue of its WebAssembly is made by eval
         "style-src 'unsafe-inline'",
         "img-src data: blob:",
         "font-src data:",
@@ -92,7 +92,7 @@ async def relay(browser: WebSocket, port: int) -> None:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
-        with contextlib.suppress(RuntimeError):
+        with contextlib.suppress(RuntimeError, WebSocketDisconnect):  # the browser may be gone
             await browser.close(upstream.close_code or 1000, upstream.close_reason or "")
 
 

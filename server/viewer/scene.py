@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 HAND_SPAN = 0.24
 """Height of what the first view shows at the distance of the hand, m."""
 
-POINT_SIZE = 0.0016
-"""m; a little more than the spacing of a depth sensor's points at arm's length."""
+POINT_SIZE = 0.0008
+"""m; less than the spacing of a depth sensor's points at arm's length, so that the mesh shows between them."""
 
 
 class ViewerScene:

@@ -81,7 +81,7 @@ def move_bones_into(Ms: Array, twists: Array, scene: SceneArrays, pose: Array) -
 
 
 @njit(cache=True, nogil=True)
-def _turn(M: Array, twist: Array, axis: Array, point: Array, angle: float) -> None:
+def _turn(M, twist, axis, point, angle):
     """M <- M exp(angle ξ) for the revolute joint ξ; its world twist goes to `twist`."""
     px = M[0, 0] * point[0] + M[0, 1] * point[1] + M[0, 2] * point[2] + M[0, 3]
     py = M[1, 0] * point[0] + M[1, 1] * point[1] + M[1, 2] * point[2] + M[1, 3]

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from tracker.geometry import se3
 from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel
+from tracker.model.decimation import is_watertight
 from tracker.model.kinematics import SceneArrays, move_bones_into, normals_into, skin_into
 
 Array = npt.NDArray[np.float64]
@@ -46,6 +47,12 @@ class Scene:
     def face_models(self) -> npt.NDArray[np.int32]:
         """(F,) index of the model that a face belongs to."""
         return np.repeat(np.arange(len(self.models), dtype=np.int32), [len(model.faces) for model in self.models])
+
+    @cached_property
+    def open_faces(self) -> npt.NDArray[np.bool_]:
+        """(F,) whether a face belongs to a mesh with holes, so that its inside can be seen."""
+        has_holes = [not is_watertight(model.faces) for model in self.models]
+        return np.repeat(np.array(has_holes, dtype=np.bool_), [len(model.faces) for model in self.models])
 
     @cached_property
     def landmark_slices(self) -> tuple[slice, ...]:

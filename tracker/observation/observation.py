@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
@@ -198,11 +199,21 @@ def _nearest(mask: npt.NDArray[np.uint8]) -> npt.NDArray[np.int16]:
     """(H, W, 2) row and column of the nearest pixel set in the mask; -1 everywhere if none is."""
     nearest = np.full((*mask.shape, 2), -1, dtype=np.int16)
     if mask.any():
-        _, index = cv2.distanceTransformWithLabels(
-            (mask == 0).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
-        )
-        rows, columns = np.nonzero(mask)
-        place = np.zeros((int(index.max()) + 1, 2), dtype=np.int16)
-        place[index[rows, columns]] = np.stack([rows, columns], axis=1)
-        nearest = place[index]
+        _, index = cv2.distanceTransformWithLabels(1 - mask, cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL)
+        _places_into(nearest, mask, index)
     return nearest
+
+
+@njit(cache=True, nogil=True)
+def _places_into(nearest, mask, index):
+    """Turn the index of the nearest set pixel (H, W) into its row and column."""
+    height, width = mask.shape
+    rows = np.zeros(height * width + 1, dtype=np.int16)
+    columns = np.zeros(height * width + 1, dtype=np.int16)
+    for row in range(height):
+        for column in range(width):
+            if mask[row, column]:
+                rows[index[row, column]], columns[index[row, column]] = row, column
+    for row in range(height):
+        for column in range(width):
+            nearest[row, column, 0], nearest[row, column, 1] = rows[index[row, column]], columns[index[row, column]]

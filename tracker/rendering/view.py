@@ -53,7 +53,7 @@ def render_view(posed: PosedScene, K: Array, T_world_camera: Array, height: int,
     face_normals = np.zeros((len(faces), 3))
     vertices_camera = posed.vertices @ T[:3, :3].T + T[:3, 3]
     project_into(projected, vertices_camera, K[0, 0], K[1, 1], K[0, 2], K[1, 2])
-    rasterize_into(inverse_depth, face, projected, faces)
+    rasterize_into(inverse_depth, face, projected, faces, posed.scene.open_faces)
     _face_normals_into(face_normals, posed.vertices, faces)
     return View(posed, K, T, projected, inverse_depth, face, face_normals)
 

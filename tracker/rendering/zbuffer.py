@@ -32,7 +32,8 @@ def render_depth(vertices_camera: Array, faces: Ints, K: Array, width: int, heig
     face = np.full((height, width), -1, dtype=np.int32)
     projected = np.zeros((len(vertices_camera), 3))
     project_into(projected, np.ascontiguousarray(vertices_camera, dtype=np.float64), K[0, 0], K[1, 1], K[0, 2], K[1, 2])
-    rasterize_into(inverse_depth, face, projected, np.ascontiguousarray(faces, dtype=np.int32))
+    both_sides = np.ones(len(faces), dtype=np.bool_)
+    rasterize_into(inverse_depth, face, projected, np.ascontiguousarray(faces, dtype=np.int32), both_sides)
     depth = np.where(face >= 0, 1.0 / np.maximum(inverse_depth, 1e-9), 0.0)
     return Rendering(depth, face)
 
@@ -55,11 +56,13 @@ def project_into(projected: Array, vertices: Array, fx: float, fy: float, cx: fl
 
 
 @njit(cache=True, nogil=True)
-def rasterize_into(inverse_depth: Array, face: Ints, projected: Array, faces: Ints) -> None:
+def rasterize_into(
+    inverse_depth: Array, face: Ints, projected: Array, faces: Ints, both_sides: npt.NDArray[np.bool_]
+) -> None:
     """Draw faces over the buffers; the nearest wins. Buffers (H, W): inverse depth 1/m (0 = empty) and face index.
 
     The order of faces decides between equal depths, so the result is the same on every run. Faces seen from behind are
-    drawn too: a closed mesh hides them, an open one should not have holes.
+    drawn where both_sides (F,) says so: a closed mesh hides them anyway, an open one should not have holes.
     """
     height, width = inverse_depth.shape
     for f in range(len(faces)):
@@ -76,8 +79,8 @@ def rasterize_into(inverse_depth: Array, face: Ints, projected: Array, faces: In
             projected[c, 1],
         )
         area = (xb - xa) * (yc - ya) - (yb - ya) * (xc - xa)
-        if area == 0.0:
-            continue
+        if area == 0.0 or (area > 0.0 and not both_sides[f]):
+            continue  # rows count downwards, so a face seen from outside has a negative area
         top, bottom = min(ya, yb, yc), max(ya, yb, yc)
         left, right = min(xa, xb, xc), max(xa, xb, xc)
         if right < 0.0 or bottom < 0.0 or left > width - 1 or top > height - 1:

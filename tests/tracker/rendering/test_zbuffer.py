@@ -5,7 +5,7 @@ import numpy as np
 from tests.tracker.toys import tube
 from tracker.geometry import se3
 from tracker.model.scene import Scene
-from tracker.rendering import render_depth
+from tracker.rendering import render_depth, render_view
 
 K = np.array([[100.0, 0.0, 31.5], [0.0, 100.0, 23.5], [0.0, 0.0, 1.0]])
 
@@ -48,3 +48,13 @@ def test_nothing_is_drawn_behind_the_camera():
     rendering = render_depth(tube().vertices - [0, 0, 1.0], tube().faces, K, 64, 48)
     assert not rendering.depth.any()
     assert (rendering.face == -1).all()
+
+
+def test_a_closed_mesh_looks_the_same_with_its_hidden_faces_left_out(rng):
+    scene = Scene((tube(),))
+    assert not scene.open_faces.any()
+    pose = scene.rest_pose()
+    pose[:6] = [-0.03, 0.0, 0.25, 0.2, 0.4, 0.1]
+    posed = scene.pose_at(pose)
+    view = render_view(posed, K, np.eye(4), 48, 64)
+    np.testing.assert_array_equal(view.face, render_depth(posed.vertices, scene.arrays.faces, K, 64, 48).face)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import uuid
 from functools import cache
+from typing import TYPE_CHECKING
 
 from server.hand_models.schemas import HandModelOut
-from tracker import ArticulatedModel, default_hand
+
+if TYPE_CHECKING:
+    from tracker import ArticulatedModel
 
 NAMESPACE = uuid.UUID("6d9a0f4e-64d5-4f0e-9a39-0b8f3f4c6f11")
 """Of the ids of models that come with Handloom: they are the same everywhere."""
@@ -15,6 +18,8 @@ NAMESPACE = uuid.UUID("6d9a0f4e-64d5-4f0e-9a39-0b8f3f4c6f11")
 @cache
 def list_hand_models() -> tuple[HandModelOut, ...]:
     """The default right and left hand."""
+    from tracker import default_hand  # loads numba: not before somebody asks
+
     return tuple(_describe(default_hand(side)) for side in ("right", "left"))
 
 

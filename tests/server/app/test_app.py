@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import logging
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +15,6 @@ from server.app import create_app
 from server.app.openapi import write_document
 from server.settings import Settings
 from tests.server.conftest import BASE_URL, Studio
-
-ROOT = Path(__file__).parents[3]
 
 
 def test_the_studio_says_that_it_works(client: TestClient, studio: Studio) -> None:
@@ -115,9 +111,3 @@ def test_every_operation_says_what_it_answers_and_how_it_fails() -> None:
                 assert len(content) == 1, (method, path, status)
                 assert content.get("application/json", {"schema": 1}).get("schema"), (method, path, status)
         assert {"403", "422", "500"} <= responses.keys(), (method, path)
-
-
-def test_the_server_starts_without_the_tracker_s_kernels() -> None:
-    code = "import sys, server.app; print([name for name in ('numba', 'viser', 'dbos') if name in sys.modules])"
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert found.stdout.strip() == "[]"

@@ -23,6 +23,10 @@ COUNT_TOLERANCE = 0.02
 """Share by which the face count reached may exceed the one asked for."""
 
 
+LEAST_WEIGHT = 0.01
+"""Skinning weights below this are dropped: a tenth of a millimetre, but a quarter of the solver's work."""
+
+
 @dataclass(frozen=True)
 class SurfacePoints:
     """Points on a triangle mesh.
@@ -146,8 +150,8 @@ def closest_on_triangles(point: Array, triangles: Array) -> Array:
 
 
 def limit_weights(weights: Array) -> Array:
-    """Rows (V, B) with the MAX_WEIGHTS heaviest entries kept, summing to one."""
-    weights = np.where(weights < 1e-4, 0.0, weights)
+    """Rows (V, B) with the MAX_WEIGHTS heaviest entries of at least LEAST_WEIGHT kept, summing to one."""
+    weights = np.where(weights < LEAST_WEIGHT, 0.0, weights)
     if weights.shape[1] > MAX_WEIGHTS:
         light = np.argsort(-weights, axis=1, kind="stable")[:, MAX_WEIGHTS:]
         weights = weights.copy()

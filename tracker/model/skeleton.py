@@ -15,7 +15,8 @@ class Skeleton:
     """Bones in topological order and the revolute joints that turn them, [T16] Eq. 4.
 
     The motion of bone j is T_j(θ) T_j(0)^-1 = exp(root) · Π exp(θ_k ξ_k) over the joints k on the way from the root to
-    j, every ξ_k a unit twist of the rest pose in the model frame. Joints of one bone are multiplied in their order here.
+    j, every ξ_k a unit twist of the rest pose in the model frame. Joints of one bone are multiplied in the order they
+    have here.
 
     Attributes:
         bone_names: B names.

@@ -25,14 +25,13 @@ interface PlotProps {
   /** Frames to shade. */
   lost: readonly number[];
   frame: number;
-  height: number;
   onSeek: (frame: number) => void;
 }
 
 /** Curves over the frames; a click goes to the frame, the line shows where one is. */
-export function Plot({ label, frames, curves, lost, frame, height, onSeek }: PlotProps) {
-  const { ref, width } = useElementSize();
-  const holder = useRef<HTMLDivElement>(null);
+export function Plot({ label, frames, curves, lost, frame, onSeek }: PlotProps) {
+  const { ref: sizeRef, width, height } = useElementSize();
+  const holder = useRef<HTMLDivElement | null>(null);
   const plot = useRef<uPlot | null>(null);
   const here = useRef(frame);
   const seek = useRef(onSeek);
@@ -42,7 +41,7 @@ export function Plot({ label, frames, curves, lost, frame, height, onSeek }: Plo
 
   useEffect(() => {
     const element = holder.current;
-    if (!element || width === 0) return;
+    if (!element || width === 0 || height < 40) return;
     const style = getComputedStyle(element);
     const [ink, line, bad] = ["--text-quiet", "--line", "--bad"].map((name) => style.getPropertyValue(name)) as [string, string, string];
     const strong = style.getPropertyValue("--mantine-color-text");
@@ -106,6 +105,7 @@ export function Plot({ label, frames, curves, lost, frame, height, onSeek }: Plo
               const x = Math.round(drawn.valToPos(here.current, "x", true));
               ctx.save();
               ctx.strokeStyle = strong;
+              ctx.setLineDash([]);
               ctx.lineWidth = Math.max(1, window.devicePixelRatio);
               ctx.beginPath();
               ctx.moveTo(x, bbox.top);
@@ -138,7 +138,7 @@ export function Plot({ label, frames, curves, lost, frame, height, onSeek }: Plo
 
   const index = frames.indexOf(frame);
   return (
-    <figure ref={ref} className={classes.figure} aria-label={label}>
+    <figure className={classes.figure} aria-label={label}>
       <figcaption className={classes.legend}>
         {curves.map((curve) => {
           const value = index >= 0 ? curve.values[index] : null;
@@ -157,7 +157,13 @@ export function Plot({ label, frames, curves, lost, frame, height, onSeek }: Plo
           );
         })}
       </figcaption>
-      <div ref={holder} style={{ height }} />
+      <div
+        ref={(element) => {
+          holder.current = element;
+          sizeRef(element);
+        }}
+        className={classes.holder}
+      />
     </figure>
   );
 }

@@ -17,7 +17,6 @@ interface TrackPlotsProps {
   onSeek: (frame: number) => void;
 }
 
-const PLOT_HEIGHT = 160;
 const TERM_COLORS = ["#22b8cf", "#e83eb4", "#94a3ff", "#ffb088", "#a3e635", "#96f2d7"];
 
 /** Error and timing by frame; a click goes there. */
@@ -75,17 +74,17 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
             ? `median ${formatNumber(track.summary.median_ms)} ms, 95 % below ${formatNumber(track.summary.p95_ms)} ms`
             : evaluation && evaluation.evaluated > 0
               ? `${formatNumber(evaluation.joint_error_px.mean)} px mean error in ${evaluation.evaluated} annotated`
-              : `median residual ${formatNumber(track.summary.depth_residual_mm)} mm; annotate frames for an error in px`}
+              : "annotate frames for an error in px"}
         </Text>
       </Tabs.List>
-      <Tabs.Panel value="error" pt="sm">
-        <Plot label="Error by frame" frames={frames.frame} curves={errorCurves} lost={lost} frame={frame} height={PLOT_HEIGHT} onSeek={onSeek} />
+      <Tabs.Panel value="error" className={classes.plot}>
+        <Plot label="Error by frame" frames={frames.frame} curves={errorCurves} lost={lost} frame={frame} onSeek={onSeek} />
       </Tabs.Panel>
-      <Tabs.Panel value="energy" pt="sm">
-        <Plot label="Energy of each term by frame" frames={frames.frame} curves={energyCurves} lost={lost} frame={frame} height={PLOT_HEIGHT} onSeek={onSeek} />
+      <Tabs.Panel value="energy" className={classes.plot}>
+        <Plot label="Energy of each term by frame" frames={frames.frame} curves={energyCurves} lost={lost} frame={frame} onSeek={onSeek} />
       </Tabs.Panel>
-      <Tabs.Panel value="timing" pt="sm">
-        <Plot label="Time by frame" frames={frames.frame} curves={timingCurves} lost={lost} frame={frame} height={PLOT_HEIGHT - (stages.length > 0 ? 20 : 0)} onSeek={onSeek} />
+      <Tabs.Panel value="timing" className={classes.plot}>
+        <Plot label="Time by frame" frames={frames.frame} curves={timingCurves} lost={lost} frame={frame} onSeek={onSeek} />
         {stages.length > 0 && (
           <Text size="xs" className="quiet one-line" px={12} h={20}>
             {stages.map(([stage, ms]) => `${stage.replaceAll("_", " ")} ${formatNumber(ms)} ms`).join(" · ")}

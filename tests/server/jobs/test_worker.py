@@ -51,6 +51,16 @@ class Bench:
         self.processes.append(process)
         return process
 
+    def wait_for_workers(self, count: int) -> None:
+        """Wait until so many are there to share the work."""
+        ends = time.monotonic() + 60.0
+        while time.monotonic() < ends:
+            with self.database.reading() as session:
+                if sum(workers.is_alive(row) for row in workers.list_workers(session)) == count:
+                    return
+            time.sleep(0.05)
+        raise AssertionError("the workers do not start")
+
     def kill(self, process: subprocess.Popen[bytes], number: int = signal.SIGKILL) -> None:
         process.send_signal(number)
         process.wait(20)
@@ -170,6 +180,7 @@ def test_a_cancelled_job_stops_at_once_and_resumes_where_it_was_with_the_same_bi
 def test_two_workers_share_the_jobs_and_do_none_twice(bench_on_both: Bench) -> None:
     bench = bench_on_both
     first, second = bench.start_worker(), bench.start_worker()
+    bench.wait_for_workers(2)
     jobs = [bench.queue(last_frame=24) for _ in range(5)]
     for job_id in jobs:
         bench.wait_for_end(job_id)

@@ -108,10 +108,11 @@ export function ImportPage() {
         {report.ok && <ImportFacts report={report} />}
         <ImportOptionsForm
           options={checked.options as ImportOptions}
+          problems={report.problems}
           isOpen={!report.ok}
           isBusy={again.isPending}
           failure={again.error}
-          onCheck={(options) => again.mutate(options)}
+          onCheck={(options) => again.mutate(options, { onSuccess: () => document.getElementById("main")?.scrollTo({ top: 0 }) })}
         />
         {!report.ok && report.cameras.length > 0 && <ImportFacts report={report} />}
       </Stack>

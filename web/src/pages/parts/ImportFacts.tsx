@@ -4,7 +4,11 @@ import type { CameraReport, ImportReport } from "../../api/types";
 import { formatCount, formatNumber } from "../../model/format";
 import { Fact } from "./Fact";
 
-const percent = (share: number): string => `${(100 * share).toFixed(share > 0 && share < 0.1 ? 1 : 0)} %`;
+/** "12 %", "0.4 %", and never "-0 %". */
+const percent = (share: number): string => {
+  const digits = share !== 0 && Math.abs(share) < 0.1 ? 1 : 0;
+  return `${(Number((100 * share).toFixed(digits)) || 0).toFixed(digits)} %`;
+};
 const metres = (values: readonly number[], index: number): string => formatNumber(values[index], 3);
 
 /** What is said of a camera, row by row; a row that says nothing of any camera is left out. */

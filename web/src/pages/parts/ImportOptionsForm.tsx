@@ -1,12 +1,15 @@
 import { Button, Checkbox, Collapse, Group, NumberInput, SegmentedControl, Select, SimpleGrid, Stack, Text, TextInput, Title, UnstyledButton } from "@mantine/core";
 import { IconChevronDown, IconChevronRight } from "@tabler/icons-react";
-import { useState } from "react";
+import { useEffect, useState } from "react";
 import { useImportFormats, type ImportOptions } from "../../api/imports";
 import { formatName } from "../../model/format";
+import classes from "./ImportOptionsForm.module.css";
 
 interface ImportOptionsFormProps {
   /** What has been said so far. */
   options: ImportOptions;
+  /** Sentences that name the options that are missing. */
+  problems: readonly string[];
   /** Open from the start, because something has to be said. */
   isOpen: boolean;
   isBusy: boolean;
@@ -22,18 +25,20 @@ const NUMBERS: readonly { name: NumberName; label: string; help: string; step: n
   { name: "cx", label: "cx", help: "Principal point x, px", step: 1 },
   { name: "cy", label: "cy", help: "Principal point y, px", step: 1 },
   { name: "fps", label: "Frames per second", help: "30 for most depth cameras", step: 1 },
-  { name: "depth_scale", label: "Depth unit, m", help: "0.001 when a unit is a millimetre", step: 0.001 },
-  { name: "world_unit_m", label: "Calibration unit, m", help: "0.001 for mm, or a checkerboard square", step: 0.001 },
+  { name: "depth_scale", label: "Depth unit, m", help: "depth_scale: 0.001 for millimetres", step: 0.001 },
+  { name: "world_unit_m", label: "Calibration unit, m", help: "world_unit_m: 0.001 for mm", step: 0.001 },
 ];
 
 const HANDS: Record<string, string[]> = { right: ["right"], left: ["left"], both: ["right", "left"] };
 
 /** What files don't say themselves: intrinsics, units, where images lie. */
-export function ImportOptionsForm({ options: said, isOpen, isBusy, failure, onCheck }: ImportOptionsFormProps) {
+export function ImportOptionsForm({ options: said, problems, isOpen, isBusy, failure, onCheck }: ImportOptionsFormProps) {
   const [isShown, setShown] = useState(isOpen);
   const [options, setOptions] = useState<ImportOptions>(said);
+  useEffect(() => setShown(isOpen), [isOpen]);
   const set = (change: Partial<ImportOptions>): void => setOptions((now) => ({ ...now, ...change }));
   const hands = Object.keys(HANDS).find((key) => HANDS[key]?.join() === options.hands?.join()) ?? "right";
+  const isNeeded = (name: string): boolean => problems.some((problem) => new RegExp(`\\b${name}\\b`).test(problem));
   const formats = useImportFormats().data ?? [];
   const Chevron = isShown ? IconChevronDown : IconChevronRight;
 
@@ -59,7 +64,7 @@ export function ImportOptionsForm({ options: said, isOpen, isBusy, failure, onCh
         >
           <Stack gap="md" pt="md">
             <Text className="quiet" size="sm">
-              Fill in what you know and look again; what is empty is found out from the files where that is possible.
+              Fill in what you know and look again; what is empty is found out from the files where that is possible. What the report asks for is marked.
             </Text>
             <SimpleGrid cols={4} spacing="md">
               {NUMBERS.map(({ name, label, help, step }) => (
@@ -70,6 +75,8 @@ export function ImportOptionsForm({ options: said, isOpen, isBusy, failure, onCh
                   description={help}
                   value={options[name] ?? ""}
                   step={step}
+                  withAsterisk={isNeeded(name)}
+                  className={isNeeded(name) ? classes.needed : undefined}
                   hideControls
                   onChange={(value) => set({ [name]: typeof value === "number" ? value : undefined })}
                 />

@@ -1,0 +1,24 @@
+"""Rigid-body simulation of hands and the object they hold; [T16] §3.2.6."""
+
+from tracker.physics.displacement import Displacement, measure_displacement, simulate
+from tracker.physics.protocol import SD_OBMAN, SD_SEED, SEARCH, Protocol, StaticPlane, find_down
+from tracker.physics.support import Contact, Support, SupportOptions, find_part_bones, find_support
+from tracker.physics.world import PhysicsWorld
+
+__all__ = [
+    "SD_OBMAN",
+    "SD_SEED",
+    "SEARCH",
+    "Contact",
+    "Displacement",
+    "PhysicsWorld",
+    "Protocol",
+    "StaticPlane",
+    "Support",
+    "SupportOptions",
+    "find_down",
+    "find_part_bones",
+    "find_support",
+    "measure_displacement",
+    "simulate",
+]

@@ -1,0 +1,88 @@
+"""How a simulation is run: its time-step, its materials, which way is down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+GRAVITY = 9.81
+"""m/s²."""
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """A simulation of some steps after which the object's centroid has moved, [T16] §3.2.6 and §4.2.1.
+
+    Everything but the object stands still, so only the object's mass counts. Bullet multiplies the friction and the
+    restitution of two bodies that touch.
+
+    Attributes:
+        name: For reports.
+        time_step: s.
+        steps: Time-steps.
+        substeps: Parts that Bullet takes a time-step in.
+        friction: Of hands and objects.
+        static_friction: Of the static scene.
+        restitution: Of the object; hands and static scene have 0.
+        mass: Of the object, kg.
+        solver_iterations: Of Bullet's constraint solver.
+    """
+
+    name: str
+    time_step: float
+    steps: int = 35
+    substeps: int = 1
+    friction: float = 1.2
+    static_friction: float = 3.0
+    restitution: float = 0.5
+    mass: float = 1.0
+    solver_iterations: int = 50
+
+    def __post_init__(self) -> None:
+        assert self.time_step > 0.0 and self.steps > 0 and self.substeps > 0 and self.mass > 0.0
+
+    @property
+    def contact_friction(self) -> float:
+        """Between hand and object."""
+        return self.friction**2
+
+
+SD_SEED = Protocol("SD-seed", time_step=0.1)
+"""[T16] §4.2.1 to the letter: 35 iterations with a time-step of 0.1 s.
+
+A time-step so long adds 0.98 m/s of fall at once; friction between rigid hulls seldom makes up for it, so a grasp that
+holds under SD_OBMAN may fall by metres here unless something lies below the object.
+"""
+
+SD_OBMAN = Protocol("SD-obman", time_step=1.0 / 240.0, friction=3.0, solver_iterations=150)
+"""The constants that later work on hands and objects settled on: 35 steps of 1/240 s; a free object falls 0.107 m."""
+
+SEARCH = Protocol("search", time_step=1.0 / 240.0)
+"""What the search for support is run with: the materials of [T16] with a time-step that friction can follow."""
+
+
+@dataclass(frozen=True)
+class StaticPlane:
+    """A table, floor or wall: everything behind it is solid, so nothing can pass through it in one step.
+
+    Attributes:
+        point: (3,) on it, world, m.
+        normal: (3,) unit, away from the solid side, world.
+    """
+
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        assert abs(float(np.linalg.norm(self.normal)) - 1.0) < 1e-6, "the normal must be of length 1"
+
+
+def find_down(T_world_camera: Array) -> tuple[float, float, float]:
+    """Unit direction of gravity in the world for a camera that stands upright: its own +y."""
+    assert T_world_camera.shape == (4, 4)
+    x, y, z = (float(value) for value in T_world_camera[:3, 1])
+    return x, y, z

@@ -1,0 +1,176 @@
+"""Which finger parts would hold the object if they touched it, [T16] §3.2.6."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.scene import PosedScene
+from tracker.physics.protocol import SEARCH, Protocol
+from tracker.physics.world import SKIN, Gap, PhysicsWorld
+from tracker.physics.wrench import build_wrenches, find_imbalance
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A finger part that should touch an object.
+
+    Attributes:
+        hand: Index of the hand among the scene's models.
+        part: Name of the part, such as "index_distal".
+        object: Index of the object among the scene's models.
+    """
+
+    hand: int
+    part: str
+    object: int
+
+
+@dataclass(frozen=True)
+class SupportOptions:
+    """How support is looked for.
+
+    Attributes:
+        stable_below: An object whose centroid moves less is held, m (3 mm).
+        near: Finger parts not farther than this are candidates, m (10 mm).
+        most_candidates: The nearest so many are looked at.
+        most_parts: Parts in one combination; at least two.
+        most_simulations: Combinations that are simulated, the most promising of those that the wrench test lets pass.
+        carried: A combination passes that leaves at most this share of the weight uncarried.
+        reach: Still hulls farther from the object than this play no part, m.
+        protocol: Of the simulations.
+    """
+
+    stable_below: float = 0.003
+    near: float = 0.010
+    most_candidates: int = 6
+    most_parts: int = 4
+    most_simulations: int = 4
+    carried: float = 0.05
+    reach: float = 0.030
+    protocol: Protocol = SEARCH
+
+
+@dataclass(frozen=True)
+class Support:
+    """What was found.
+
+    Attributes:
+        displacement: Of the object's centroid as things are, m; at most a little over what counts as fallen.
+        is_stable: Whether that is little.
+        candidates: Parts near enough to be moved, nearest first.
+        contacts: The parts that hold the object best; none when it is held as it is, or nothing can hold it.
+        held_displacement: With these parts in contact, m; `displacement` when there are none.
+        simulated: Combinations simulated.
+        passed: Combinations that the wrench test let pass.
+    """
+
+    displacement: float
+    is_stable: bool
+    candidates: tuple[Contact, ...]
+    contacts: tuple[Contact, ...]
+    held_displacement: float
+    simulated: int
+    passed: int
+
+
+FALLEN = 0.030
+"""m; an object that has moved so far is not coming back, and the simulation of a combination ends."""
+
+
+def find_support(world: PhysicsWorld, posed: PosedScene, options: SupportOptions | None = None) -> Support:
+    """Simulate the pose; if the object falls, try the finger parts near it and keep what holds it best.
+
+    Overlaps of hulls are resolved before anything is simulated (a hull is set back until it just touches), because
+    they would throw the object. A candidate is set forward until it touches.
+
+    Differs from the paper: combinations are first sorted by a wrench test, and at most `most_simulations` of those that
+    pass are simulated; the search ends early at one that moves the object less than a third of `stable_below`.
+    """
+    options = options or SupportOptions()
+    world.place(posed, options.protocol, options.reach)
+    gaps = world.find_gaps(max(options.near, 2.0 * SKIN))
+    settled = {gap.hull: -gap.distance * gap.normal for gap in gaps if gap.distance < 0.0}
+    displacement = world.run(settled, give_up=FALLEN)
+    movable = _find_movable(world, gaps, options)
+    candidates = tuple(contact for _, contact in movable)
+    if displacement < options.stable_below or len(movable) < 2:
+        is_stable = displacement < options.stable_below
+        return Support(displacement, is_stable, candidates, (), displacement, 0, 0)
+    ranked, passed = rank_combinations(world, gaps, [gap for gap, _ in movable], options)
+    best: tuple[int, ...] = ()
+    best_displacement, simulated = displacement, 0
+    for combination in ranked[: options.most_simulations]:
+        moved = settled | {movable[i][0].hull: -movable[i][0].distance * movable[i][0].normal for i in combination}
+        simulated += 1
+        trial = world.run(moved, give_up=min(FALLEN, best_displacement))
+        if trial < best_displacement:
+            best, best_displacement = combination, trial
+        if best_displacement < options.stable_below / 3.0:
+            break
+    if best_displacement >= FALLEN:
+        best, best_displacement = (), displacement
+    contacts = tuple(movable[i][1] for i in best)
+    return Support(displacement, False, candidates, contacts, best_displacement, simulated, passed)
+
+
+def rank_combinations(
+    world: PhysicsWorld, gaps: Sequence[Gap], movable: Sequence[Gap], options: SupportOptions
+) -> tuple[list[tuple[int, ...]], int]:
+    """Combinations of two to `most_parts` of the movable gaps, the most promising first, and how many may hold.
+
+    Those that can carry the weight come first, those that move the fingers least before others; the rest follow by
+    how much they carry. What touches already helps in every combination.
+    """
+    touching = [gap for gap in gaps if gap.distance <= 2.0 * SKIN]
+    plane_points, plane_normals = world.find_plane_contacts()
+    friction = options.protocol.contact_friction
+    plane_friction = options.protocol.static_friction * options.protocol.friction
+
+    def wrenches(points: Array, normals: Array, mu: float) -> Array:
+        return build_wrenches(points, normals, mu, world.centroid, world.radius)
+
+    still = wrenches(plane_points, plane_normals, plane_friction)
+    by_hull = {gap.hull: wrenches(gap.point[None], -gap.normal[None], friction) for gap in [*touching, *movable]}
+    ranks = []
+    for size in range(2, options.most_parts + 1):
+        for combination in combinations(range(len(movable)), size):
+            hulls = {gap.hull for gap in touching} | {movable[i].hull for i in combination}
+            columns = np.concatenate([still, *(by_hull[hull] for hull in sorted(hulls))], axis=1)
+            imbalance = find_imbalance(columns, world.down)
+            passes = imbalance <= options.carried
+            effort = sum(max(movable[i].distance, 0.0) for i in combination)
+            ranks.append((not passes, 0.0 if passes else imbalance, effort, combination))
+    ranks.sort()
+    return [rank[-1] for rank in ranks], sum(not rank[0] for rank in ranks)
+
+
+def find_part_bones(model: ArticulatedModel) -> dict[int, str]:
+    """Bone to name of the finger parts that may support an object: no wrist, no metacarpal, [T16] Fig. 10."""
+    assert model.hand is not None
+    heaviest = np.argmax(model.skinning_weights, axis=1)
+    parts = {}
+    for name, ids in model.hand.finger_parts.items():
+        if len(ids) and name != "wrist" and not name.endswith("_metacarpal"):
+            parts[int(np.bincount(heaviest[ids]).argmax())] = name
+    return parts
+
+
+def _find_movable(world: PhysicsWorld, gaps: Sequence[Gap], options: SupportOptions) -> list[tuple[Gap, Contact]]:
+    found = []
+    parts = {index: find_part_bones(model) for index, model in enumerate(world.scene.models) if model.hand}
+    for gap in gaps:
+        model, hull = world.hulls[gap.hull]
+        if model not in parts or gap.distance > options.near:
+            continue
+        part = parts[model].get(hull.bone)
+        if part is not None:
+            found.append((gap, Contact(model, part, world.moving)))
+    return found[: options.most_candidates]

@@ -1,9 +1,11 @@
 import { ActionIcon, Badge, Group, Kbd, Text, Tooltip, UnstyledButton, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
 import { IconKeyboard, IconMoon, IconPlugConnectedX, IconSearch, IconSun } from "@tabler/icons-react";
-import { Suspense, useState } from "react";
+import { useQueryClient } from "@tanstack/react-query";
+import { Suspense, useEffect, useRef, useState } from "react";
 import { Link, Outlet, useLocation } from "react-router";
 import { useKeymap } from "../actions/useKeymap";
 import { isActive, useJobs, useJobStream } from "../api/jobs";
+import { flushSaving } from "../state/saving";
 import { DropAnywhere } from "./parts/DropAnywhere";
 import { KeyboardMap } from "./parts/KeyboardMap";
 import { PageSkeleton } from "./parts/PageSkeleton";
@@ -47,11 +49,25 @@ function Brand() {
   );
 }
 
+/** When the server is back: send what waits and load what could not be loaded. */
+function useReturn(isLinked: boolean): void {
+  const client = useQueryClient();
+  const wasLinked = useRef(isLinked);
+  useEffect(() => {
+    if (isLinked && !wasLinked.current) {
+      flushSaving();
+      void client.invalidateQueries();
+    }
+    wasLinked.current = isLinked;
+  }, [isLinked, client]);
+}
+
 /** Header, navigation and what is true on every page; the page itself is the outlet. */
 export function Shell() {
   const [isHelpOpen, setHelpOpen] = useState(false);
   const room = roomOf(useLocation().pathname);
   const isLinked = useJobStream();
+  useReturn(isLinked);
   const running = useJobs().data?.filter(isActive).length ?? 0;
   useKeymap("everywhere", { help: () => setHelpOpen(true), search: openSearch });
 

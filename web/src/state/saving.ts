@@ -15,6 +15,9 @@ export function queueOf(recording: string): SaveQueue {
   return queue;
 }
 
+/** Try to send everything that waits, now. */
+export const flushSaving = (): void => queues.forEach((queue) => queue.flush());
+
 /** Send what an earlier visit could not; called once when the app starts. */
 export function resumeSaving(): void {
   const recordings = new Set<string>();
@@ -23,5 +26,5 @@ export function resumeSaving(): void {
     if (match?.[1]) recordings.add(match[1]);
   }
   recordings.forEach((recording) => queueOf(recording).flush());
-  window.addEventListener("online", () => queues.forEach((queue) => queue.flush()));
+  window.addEventListener("online", flushSaving);
 }

@@ -1,6 +1,7 @@
 import { useQueryClient } from "@tanstack/react-query";
 import { useCallback, useEffect, useState, useSyncExternalStore } from "react";
 import { annotationKeys, fetchAnnotations } from "../../api/annotations";
+import { ApiError } from "../../api/client";
 import { recordingKeys } from "../../api/recordings";
 import type { Recording } from "../../api/types";
 import type { AnnotatorState } from "../../state/annotator";
@@ -38,8 +39,10 @@ export function useSession(recording: Recording | undefined, start: () => Start)
         return;
       }
     };
-    setFailure(null);
-    open().catch((reason: Error) => !isGone && setFailure(reason));
+    open().then(
+      () => !isGone && setFailure(null),
+      (reason: Error) => !isGone && setFailure(reason),
+    );
     return () => {
       isGone = true;
       opened?.close();
@@ -50,6 +53,13 @@ export function useSession(recording: Recording | undefined, start: () => Start)
     // Only another recording, or another try, opens another session.
     // eslint-disable-next-line react-hooks/exhaustive-deps
   }, [id, attempt]);
+
+  useEffect(() => {
+    // A server that is only away for a moment needs nobody to press a button.
+    if (!(failure instanceof ApiError && failure.isOffline)) return;
+    const timer = setTimeout(() => setAttempt((count) => count + 1), 3000);
+    return () => clearTimeout(timer);
+  }, [failure]);
 
   return { session, failure, retry: useCallback(() => setAttempt((count) => count + 1), []) };
 }

@@ -48,7 +48,6 @@ export function Search() {
       actions={actions}
       shortcut={null}
       limit={8}
-      highlightQuery
       nothingFound="No recording or page of that name"
       searchProps={{ leftSection: <IconSearch size={18} aria-hidden />, placeholder: "Search recordings, tracks and pages", "aria-label": "Search" }}
     />

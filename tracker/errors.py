@@ -48,5 +48,9 @@ class ModelFileError(TrackerError):
         super().__init__(f"{path}: found {found}; needed {needed}.")
 
 
+class SolveError(TrackerError):
+    """An objective cannot be minimised."""
+
+
 class TrackingError(TrackerError):
     """A recording cannot be tracked as asked."""

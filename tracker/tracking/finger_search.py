@@ -34,11 +34,12 @@ def search_fingers(pose: Array, first_dof: int, model: ArticulatedModel, score: 
     """
     best, best_score = pose, score(pose)
     for finger in range(len(FINGERS)):
-        base, outer, spread = _finger_dofs(model, finger)
+        every, base, outer, spread = _finger_dofs(model, finger)
         far = _farther_limit(model)
         for curl, bend, side in product(BASE_CURLS, OUTER_CURLS, SPREADS if len(spread) else (0.0,)):
             trial = best.copy()
             angles = trial[first_dof + 6 : first_dof + model.num_dofs]
+            angles[every] = 0.0
             angles[base], angles[outer] = curl * far[base], bend * far[outer]
             limit = model.skeleton.upper if side > 0 else -model.skeleton.lower
             angles[spread] = side * limit[spread]
@@ -59,15 +60,18 @@ def measure_curl(model: ArticulatedModel, angles: Array) -> float:
     return float(np.mean(np.clip(angles[wide] / _farther_limit(model)[wide], 0.0, 1.0)))
 
 
-def _finger_dofs(model: ArticulatedModel, finger: int) -> tuple[npt.NDArray, npt.NDArray, npt.NDArray]:
-    """Joints (indices into K) that bend a finger's base, its outer part, and those that move its base sideways."""
+def _finger_dofs(model: ArticulatedModel, finger: int) -> tuple[npt.NDArray, npt.NDArray, npt.NDArray, npt.NDArray]:
+    """Joints (indices into K) of a finger: all, those that bend its base, its outer part, and those that spread it."""
     assert model.hand is not None
     bones = model.hand.joint_bones[1 + 4 * finger : 4 + 4 * finger]
     own = np.isin(model.skeleton.dof_bones, bones[bones >= 0])
+    metacarpal = model.skeleton.parents[bones[0]]
+    in_palm = (model.skeleton.dof_bones == metacarpal) & (model.skeleton.parents[metacarpal] >= 0)
     wide = _is_wide(model)
     span = model.skeleton.upper - model.skeleton.lower
     at_base = model.skeleton.dof_bones == bones[0]
     return (
+        np.flatnonzero(own | in_palm),
         np.flatnonzero(at_base & wide),
         np.flatnonzero(own & wide & ~at_base),
         np.flatnonzero(at_base & ~wide & (span > np.deg2rad(15.0))),

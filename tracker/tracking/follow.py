@@ -45,8 +45,14 @@ SCORED_PIXELS = 1500
 SCORE_GAIN = 0.02
 """A search was worth it if it raised the score by this."""
 
-FINGER_REST, IMAGE_REST = 4, 15
-"""Frames to wait after a search of fingers, or of the whole image, in vain."""
+DOUBTFUL = 0.25
+"""With this share of hand pixels unexplained the whole image is searched, now and then."""
+
+FINGER_REST = 4
+"""Frames to wait after a search of fingers in vain."""
+
+FIRST_IMAGE_REST, LAST_IMAGE_REST = 15, 120
+"""Frames to wait after a search of the image in vain: the first time, and at most; the wait doubles each time."""
 
 SCORE_MEMORY = 0.9
 """Share of the running score kept from frame to frame."""
@@ -104,12 +110,13 @@ def follow_frame(
     if attempt is None or attempt.quality.is_lost:
         found = _find_again(frame, camera, setup) if recover else None
         attempt, status = (found, "recovered") if found else (attempt, "lost")
-    elif recover and rest[1] == 0 and attempt.quality.score < state.score - SCORE_DROP:
+    elif recover and rest[1] == 0 and _is_doubtful(attempt.quality, state):
         searched_at = perf_counter()
         found = _find_again(frame, camera, setup)
-        is_better = found is not None and found.quality.score > attempt.quality.score + SCORE_GAIN
+        is_better = found is not None and found.quality.merit > attempt.quality.merit + SCORE_GAIN
         attempt, status = (found, "recovered") if found and is_better else (attempt, "ok")
-        rest = (rest[0], 0 if is_better else IMAGE_REST)
+        longer = 0 if is_better else min(max(FIRST_IMAGE_REST, 2 * rest[2]), LAST_IMAGE_REST)
+        rest = (rest[0], longer, longer)
         stages["searching the image"] = perf_counter() - searched_at
     seconds = perf_counter() - started
     stages["reading"] = started - read_at
@@ -135,6 +142,11 @@ def follow_frame(
     )
 
 
+def _is_doubtful(quality: Quality, state: TrackState) -> bool:
+    """Whether the hand may well be elsewhere: worse than it was, or much is left unexplained."""
+    return quality.score < state.score - SCORE_DROP or quality.explained < 1.0 - DOUBTFUL
+
+
 def _running_score(state: TrackState, attempt: _Attempt | None, status: str) -> float:
     if attempt is None or status == "lost":
         return state.score
@@ -145,10 +157,10 @@ def _running_score(state: TrackState, attempt: _Attempt | None, status: str) -> 
 
 def _follow(
     frame: Frame, camera: Camera, setup: TrackSetup, state: TrackState
-) -> tuple[_Attempt | None, tuple[int, int], dict[str, float]]:
+) -> tuple[_Attempt | None, tuple[int, int, int], dict[str, float]]:
     """Fit from the predicted pose, and again after a search of fingers if that left something unexplained."""
     stages: dict[str, float] = {}
-    rest = (max(0, state.rest[0] - 1), max(0, state.rest[1] - 1))
+    rest = (max(0, state.rest[0] - 1), max(0, state.rest[1] - 1), state.rest[2])
     if state.is_lost:
         return None, rest, stages
     predicted = state.predict(setup.scene)
@@ -170,7 +182,7 @@ def _follow(
             other = _try_again(setup, seen, start, options)
             if other.quality.score > best.quality.score:
                 best = other
-        rest = (0 if best.quality.score > before + SCORE_GAIN else FINGER_REST, rest[1])
+        rest = (0 if best.quality.score > before + SCORE_GAIN else FINGER_REST, *rest[1:])
         stages["second try"] = perf_counter() - started
     return best, rest, stages
 

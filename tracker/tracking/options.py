@@ -11,8 +11,8 @@ TERMS = ("LO",)
 """Sets of terms that can be asked for, in the paper's letters."""
 
 
-def _option(default: Any, help_text: str) -> Any:
-    return field(default=default, metadata={"help": help_text})
+def _option(default: Any, help_text: str, **metadata: Any) -> Any:
+    return field(default=default, metadata={"help": help_text, **metadata})
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class TrackOptions:
         TrackingError: A value makes no sense; the message says which and what is allowed.
     """
 
-    terms: str = _option("LO", "Terms of the objective: LO fits depth in both directions.")
+    terms: str = _option("LO", "Terms of the objective: LO fits depth in both directions.", choices=TERMS)
     iterations: int = _option(10, "Gauss-Newton iterations on every frame.")
     first_iterations: int = _option(50, "Iterations on the first frame.")
     first_frame: int = _option(0, "First frame to track.")

@@ -20,6 +20,12 @@ CUT = 0.020
 REACH = 0.200
 """Hand pixels farther than this from the palm belong to something else, m."""
 
+COVERAGE_GAIN = 0.25
+"""Merit of covering all hand pixels within reach."""
+
+ARM_LENGTH = 0.120
+"""Fingers do not reach so far behind what is taken for the wrist, m."""
+
 ARM_RADIUS = 0.045
 """Behind the wrist, pixels this near to the line through the middle of all that is there are the forearm, m."""
 
@@ -35,6 +41,7 @@ class Quality:
         silhouette_iou: Drawn and seen pixels (forearm and hidden apart): intersection over union.
         score: 0 to 1, to compare poses by: one minus the mean over that union of |drawn − seen| cut off at 20 mm, in
             units of the cut; a pixel that is only drawn or only seen counts as cut off.
+        coverage: Share of all hand pixels within reach, forearm and all, whose depth agrees with a drawn pixel.
     """
 
     depth_residual: float
@@ -42,11 +49,17 @@ class Quality:
     explained: float
     silhouette_iou: float
     score: float
+    coverage: float
+
+    @property
+    def merit(self) -> float:
+        """To compare different places of a hand by: one that leaves fingers to pass for a forearm covers less."""
+        return self.score + COVERAGE_GAIN * self.coverage
 
     @property
     def is_lost(self) -> bool:
         """Whether no one should believe this pose."""
-        return self.score < 0.4 or self.inside < 0.6 or self.explained < 0.5 or self.depth_residual > 0.010
+        return self.score < 0.4 or self.inside < 0.6 or self.explained < 0.6 or self.depth_residual > 0.010
 
 
 def measure_quality(view: View, observation: Observation, model: int = 0) -> Quality:
@@ -66,13 +79,14 @@ def measure_quality(view: View, observation: Observation, model: int = 0) -> Qua
         forward,
         0.5 * (wrist + middle),
     )
-    drawn, drawn_alike, seen, seen_alike, both = (float(count) for count in counts)
+    drawn, drawn_alike, seen, seen_alike, both, reachable = (float(count) for count in counts)
     union = max(drawn + seen - both, 1.0)
     return Quality(
         depth_residual=float(np.median(residuals)) if len(residuals) else float("inf"),
         inside=drawn_alike / max(drawn, 1.0),
         explained=seen_alike / max(seen, 1.0),
         silhouette_iou=both / union,
+        coverage=seen_alike / max(reachable, 1.0),
         score=1.0 - (float(np.minimum(residuals / CUT, 1.0).sum()) + union - both) / union,
     )
 
@@ -83,7 +97,7 @@ def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forwar
     arm = _arm_direction(labels, points, wrist, forward)
     residuals = np.zeros(height * width)
     number = 0
-    drawn = drawn_alike = seen = seen_alike = both = 0
+    drawn = drawn_alike = seen = seen_alike = both = reachable = 0
     for row in range(height):
         for column in range(width):
             f = face[row, column]
@@ -93,6 +107,8 @@ def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forwar
             hidden = labels[row, column] != 0 and depth[row, column] < z - ALIKE
             difference = abs(depth[row, column] - z)
             counts_seen = is_hand and (is_drawn or _belongs(points[row, column], wrist, forward, palm, arm))
+            if is_hand and _is_near(points[row, column], palm):
+                reachable += 1
             if is_drawn and (is_hand or not hidden):
                 drawn += 1
                 if is_hand:
@@ -106,41 +122,62 @@ def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forwar
                     both += 1
                     if difference < ALIKE:
                         seen_alike += 1
-    return (drawn, drawn_alike, seen, seen_alike, both), residuals[:number]
+    return (drawn, drawn_alike, seen, seen_alike, both, reachable), residuals[:number]
 
 
 @njit(cache=True, nogil=True)
 def _arm_direction(labels, points, wrist, forward):
-    """(3,) mean direction from the wrist to hand pixels behind it; against the fingers where there are none."""
-    sx = sy = sz = 0.0
-    for row in range(labels.shape[0]):
-        for column in range(labels.shape[1]):
-            if labels[row, column] & HAND == 0:
-                continue
-            x, y, z = (
-                points[row, column, 0] - wrist[0],
-                points[row, column, 1] - wrist[1],
-                points[row, column, 2] - wrist[2],
-            )
-            if x * forward[0] + y * forward[1] + z * forward[2] < -0.01 and x * x + y * y + z * z < REACH * REACH:
-                sx, sy, sz = sx + x, sy + y, sz + z
-    length = np.sqrt(sx * sx + sy * sy + sz * sz)
-    direction = np.empty(3)
-    if length > 0.0:
-        direction[0], direction[1], direction[2] = sx / length, sy / length, sz / length
-    else:
-        direction[0], direction[1], direction[2] = -forward[0], -forward[1], -forward[2]
+    """(3,) mean direction from the wrist to hand pixels behind it; zeros where they are too short to be a forearm.
+
+    Fingers end within ARM_LENGTH of their knuckles; what a border of the region cuts off may go on.
+    """
+    height, width = labels.shape
+    direction = np.zeros(3)
+    for row in range(height):
+        for column in range(width):
+            if labels[row, column] & HAND and _is_behind(points[row, column], wrist, forward):
+                for i in range(3):
+                    direction[i] += points[row, column, i] - wrist[i]
+    length = np.sqrt(direction[0] ** 2 + direction[1] ** 2 + direction[2] ** 2)
+    if length == 0.0:
+        return direction
+    direction /= length
+    for row in range(height):
+        for column in range(width):
+            if labels[row, column] & HAND and _is_behind(points[row, column], wrist, forward):
+                is_cut = row == 0 or column == 0 or row == height - 1 or column == width - 1
+                along, across = 0.0, 0.0
+                for i in range(3):
+                    step = points[row, column, i] - wrist[i]
+                    along += step * direction[i]
+                    across += step * step
+                if across - along * along < ARM_RADIUS * ARM_RADIUS and (is_cut or along > ARM_LENGTH):
+                    return direction
+    direction[:] = 0.0
     return direction
+
+
+@njit(cache=True, nogil=True)
+def _is_behind(point, wrist, forward):
+    x, y, z = point[0] - wrist[0], point[1] - wrist[1], point[2] - wrist[2]
+    return x * forward[0] + y * forward[1] + z * forward[2] < -0.01 and x * x + y * y + z * z < REACH * REACH
+
+
+@njit(cache=True, nogil=True)
+def _is_near(point, palm):
+    x, y, z = point[0] - palm[0], point[1] - palm[1], point[2] - palm[2]
+    return x * x + y * y + z * z < REACH * REACH
 
 
 @njit(cache=True, nogil=True)
 def _belongs(point, wrist, forward, palm, arm):
     """Whether a hand pixel should have been explained by this hand: near its palm and not on its forearm."""
-    px, py, pz = point[0] - palm[0], point[1] - palm[1], point[2] - palm[2]
-    if px * px + py * py + pz * pz > REACH * REACH:
+    if not _is_near(point, palm):
         return False
     wx, wy, wz = point[0] - wrist[0], point[1] - wrist[1], point[2] - wrist[2]
     if wx * forward[0] + wy * forward[1] + wz * forward[2] > 0.0:
+        return True
+    if arm[0] == 0.0 and arm[1] == 0.0 and arm[2] == 0.0:
         return True
     along = wx * arm[0] + wy * arm[1] + wz * arm[2]
     return wx * wx + wy * wy + wz * wz - along * along > ARM_RADIUS * ARM_RADIUS

@@ -157,7 +157,7 @@ class _Judge:
     def merit(self, observation: Observation, pose: Array) -> float:
         """Score of a pose, less for what of the hand lies outside the image, for its depth and for closed fingers."""
         posed = self.scene.pose_at(pose)
-        score = measure_quality(draw(posed, observation), observation).score
+        score = measure_quality(draw(posed, observation), observation).merit
         in_camera = se3.transform(self.camera.T_camera_world, posed.vertices)
         with np.errstate(divide="ignore", invalid="ignore"):
             columns = self.camera.K[0, 0] * in_camera[:, 0] / in_camera[:, 2] + self.camera.K[0, 2]

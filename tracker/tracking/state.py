@@ -25,7 +25,8 @@ class TrackState:
         earlier_pose: (D,) of the frame before; equal to `pose` where there is none.
         score: Running quality score of good frames.
         is_lost: Whether the hand was lost in the last frame.
-        rest: Frames until bends of fingers, and until the whole image, are searched again after a search in vain.
+        rest: Frames until bends of fingers, and until the whole image, are searched again after a search in vain, and
+            how long the last rest from searching the image was.
     """
 
     next_frame: int
@@ -33,7 +34,7 @@ class TrackState:
     earlier_pose: Array
     score: float = 0.0
     is_lost: bool = False
-    rest: tuple[int, int] = (0, 0)
+    rest: tuple[int, int, int] = (0, 0, 0)
 
     def predict(self, scene: Scene) -> Array:
         """(D,) the pose if roots go on as they moved last; joint angles are kept.
@@ -71,5 +72,5 @@ class TrackState:
             arrays["earlier_pose"],
             float(arrays["score"]),
             bool(arrays["is_lost"]),
-            (int(arrays["rest"][0]), int(arrays["rest"][1])),
+            (int(arrays["rest"][0]), int(arrays["rest"][1]), int(arrays["rest"][2])),
         )

@@ -15,6 +15,9 @@ from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
 from tracker.synthesis.motion import perform
 from tracker.synthesis.recording import RecordingOptions, write_recording
+from tracker.tracking.follow import track_frames
+from tracker.tracking.options import TrackOptions
+from tracker.tracking.start import start_tracking
 
 FRAMES = 12
 
@@ -40,3 +43,11 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
     sequence = write_recording(performance, folder, RecordingOptions(range(FRAMES)), save_npz_model)
     assert sequence.annotations_path is not None
     return Recorded(sequence, load_annotations(sequence.annotations_path), load_truth(folder / "truth.npz"))
+
+
+@pytest.fixture(scope="session")
+def run(recorded):
+    """The recording tracked from its first annotation with the hand it was drawn with."""
+    setup, start = start_tracking(recorded.sequence, TrackOptions(calibrate=False), annotations=recorded.annotations)
+    end, chunk = track_frames(recorded.sequence, setup, start, range(12))
+    return setup, start, end, chunk

@@ -24,14 +24,6 @@ from tracker.tracking.track import join_chunks, load_track
 SAME_MODEL = TrackOptions(calibrate=False)
 
 
-@pytest.fixture(scope="session")
-def run(recorded):
-    """The recording tracked from its first annotation with the hand it was drawn with."""
-    setup, start = start_tracking(recorded.sequence, SAME_MODEL, annotations=recorded.annotations)
-    end, chunk = track_frames(recorded.sequence, setup, start, range(12))
-    return setup, start, end, chunk
-
-
 def test_the_known_pose_comes_back_within_a_millimetre_and_a_half(recorded, run):
     setup, _, _, chunk = run
     track = join_chunks(recorded.sequence, setup, [chunk])

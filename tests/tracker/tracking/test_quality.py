@@ -1,0 +1,54 @@
+"""A followed hand and a lost one look different in numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracker.observation import observe
+from tracker.tracking.finger_search import curl_fingers
+from tracker.tracking.frame_fit import draw
+from tracker.tracking.quality import Quality, measure_quality
+from tracker.tracking.region import region_around
+
+
+def judge(recorded, run, pose) -> Quality:
+    setup, _, _, _ = run
+    frame, camera = setup.read(recorded.sequence, 3)
+    region = region_around(setup.scene.pose_at(pose).vertices, camera)
+    seen = observe(frame, camera, region, setup.preprocessing)
+    return measure_quality(draw(setup.scene.pose_at(pose), seen), seen)
+
+
+def test_the_right_pose_explains_the_frame(recorded, run):
+    quality = judge(recorded, run, run[3].pose[3])
+    assert not quality.is_lost
+    assert quality.score > 0.85
+    assert quality.explained > 0.95
+    assert quality.depth_residual < 1.5e-3  # m
+
+
+def test_a_hand_beside_the_hand_is_lost(recorded, run):
+    setup, pose = run[0], run[3].pose[3]
+    beside = setup.scene.retract(pose, np.r_[0.08, 0, 0, 0, 0, 0, np.zeros(31)])
+    assert judge(recorded, run, beside).is_lost
+
+
+def test_a_fist_on_an_open_hand_is_worse_in_every_way(recorded, run):
+    pose = run[3].pose[3].copy()
+    right = judge(recorded, run, pose)
+    pose[6:] = curl_fingers(run[0].models[0], 0.9)
+    wrong = judge(recorded, run, pose)
+    assert wrong.score < right.score - 0.1
+    assert wrong.explained < right.explained
+    assert wrong.merit < right.merit
+
+
+def test_a_hand_turned_end_to_end_does_not_pass_its_fingers_off_as_a_forearm(recorded, run):
+    setup, pose = run[0], run[3].pose[3].copy()
+    right = judge(recorded, run, pose)
+    pose[6:] = curl_fingers(setup.models[0], 0.9)
+    posed = setup.scene.pose_at(pose)
+    joints = posed.landmarks(0)
+    axis = np.cross(joints[9] - joints[0], joints[5] - joints[17])
+    turned = setup.scene.retract(pose, np.r_[joints[9] - joints[0], np.pi * axis / np.linalg.norm(axis), np.zeros(31)])
+    assert judge(recorded, run, turned).merit < right.merit - 0.2

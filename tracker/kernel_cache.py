@@ -14,6 +14,8 @@ from pathlib import Path
 
 SHARED_KERNELS = (
     "geometry/se3.py",
+    "geometry/triangle_tree.py",
+    "geometry/triangles.py",
     "rendering/zbuffer.py",
     "terms/normal_equations.py",
     "terms/residual.py",

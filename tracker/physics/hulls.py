@@ -35,6 +35,12 @@ class BoneHull:
     center: Array
     volume: float
 
+    @property
+    def inertia_per_mass(self) -> Array:
+        """(3,) moments about the model's axes of a box of this size, m², as Bullet takes for any hull."""
+        squares = np.ptp(self.vertices, axis=0) ** 2
+        return (squares.sum() - squares) / 12.0
+
 
 def find_bone_hulls(model: ArticulatedModel) -> tuple[BoneHull, ...]:
     """The hulls of the bones that are the heaviest of some vertex of the surface, [T16] §3.2.6."""

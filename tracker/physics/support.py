@@ -12,7 +12,7 @@ import numpy.typing as npt
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import PosedScene
 from tracker.physics.protocol import SEARCH, Protocol
-from tracker.physics.world import SKIN, Gap, PhysicsWorld
+from tracker.physics.world import Gap, PhysicsWorld
 from tracker.physics.wrench import build_wrenches, find_imbalance
 
 Array = npt.NDArray[np.float64]
@@ -96,7 +96,7 @@ def find_support(world: PhysicsWorld, posed: PosedScene, options: SupportOptions
     """
     options = options or SupportOptions()
     world.place(posed, options.protocol, options.reach)
-    gaps = world.find_gaps(max(options.near, 2.0 * SKIN))
+    gaps = world.find_gaps(max(options.near, 2.0 * options.protocol.skin))
     settled = {gap.hull: -gap.distance * gap.normal for gap in gaps if gap.distance < 0.0}
     displacement = world.run(settled, give_up=FALLEN)
     movable = _find_movable(world, gaps, options)
@@ -129,7 +129,7 @@ def rank_combinations(
     Those that can carry the weight come first, those that move the fingers least before others; the rest follow by
     how much they carry. What touches already helps in every combination.
     """
-    touching = [gap for gap in gaps if gap.distance <= 2.0 * SKIN]
+    touching = [gap for gap in gaps if gap.distance <= 2.0 * options.protocol.skin]
     plane_points, plane_normals = world.find_plane_contacts()
     friction = options.protocol.contact_friction
     plane_friction = options.protocol.static_friction * options.protocol.friction

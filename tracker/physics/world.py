@@ -18,11 +18,10 @@ from tracker.physics.protocol import GRAVITY, Protocol, StaticPlane
 
 Array = npt.NDArray[np.float64]
 
-SKIN = 0.001
-"""m; Bullet's usual margin around a hull. Hulls that just touch press 2 mm into each other, as flesh does; rigid bodies
-hold by friction only what they squeeze."""
-
 MAX_PLANE_CONTACTS = 12
+
+BLOCK = 1.0
+"""m; half the side of the block that stands for a plane. Nothing falls through it in one step."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +81,9 @@ class PhysicsWorld:
         self.object_hulls = sorted(find_bone_hulls(scene.models[self.moving]), key=lambda h: (-h.volume, h.bone))
         self._shapes = [self._shape(hull) for _, hull in self.hulls]
         self._object_shapes = [self._shape(hull) for hull in self.object_hulls]
+        self._block_shape = self._bullet.createCollisionShape(
+            self._bullet.GEOM_BOX, halfExtents=[BLOCK] * 3, physicsClientId=self._client
+        )
         self._bodies: dict[int, int] = {}
         self._home: dict[int, tuple[list[float], list[float]]] = {}
         self._moved: set[int] = set()
@@ -92,6 +94,7 @@ class PhysicsWorld:
         self._object_home: tuple[list[float], list[float]] = [0.0] * 3, [0.0, 0.0, 0.0, 1.0]
         self.centroid = np.zeros(3)
         self.radius = 0.0
+        self._skin = 0.0
 
     def __enter__(self) -> PhysicsWorld:
         return self
@@ -126,7 +129,7 @@ class PhysicsWorld:
         )
         bullet.setGravity(*(GRAVITY * self.down), physicsClientId=client)
         self._bodies, self._home, self._moved, self._placed = {}, {}, set(), []
-        self._protocol = protocol
+        self._protocol, self._skin = protocol, protocol.skin
         Rs, centers = self._poses(posed, [(self.moving, hull) for hull in self.object_hulls])
         weights = np.array([hull.volume for hull in self.object_hulls])
         self.centroid = weights @ centers / weights.sum()
@@ -145,14 +148,14 @@ class PhysicsWorld:
         gaps = []
         for index, body in self._bodies.items():
             points = self._bullet.getClosestPoints(
-                self._object, body, max(within - 2.0 * SKIN, 0.0) + 1e-9, physicsClientId=self._client
+                self._object, body, max(within - 2.0 * self._skin, 0.0) + 1e-9, physicsClientId=self._client
             )
             if not points:
                 continue
             nearest = min(points, key=lambda point: point[8])
             # Bullet's normal points from the second body to the first.
             normal = -np.array(nearest[7])
-            gaps.append(Gap(index, nearest[8] + 2.0 * SKIN, np.array(nearest[5]) - SKIN * normal, normal))
+            gaps.append(Gap(index, nearest[8] + 2.0 * self._skin, np.array(nearest[5]) - self._skin * normal, normal))
         return tuple(sorted((gap for gap in gaps if gap.distance <= within), key=lambda gap: (gap.distance, gap.hull)))
 
     def find_plane_contacts(self) -> tuple[Array, Array]:
@@ -160,7 +163,7 @@ class PhysicsWorld:
         corners, normals = [], []
         for plane in self.planes:
             height = (self._corners - np.array(plane.point)) @ np.array(plane.normal)
-            on_plane = self._corners[height <= 2.0 * SKIN]
+            on_plane = self._corners[height <= 2.0 * self._skin]
             if len(on_plane) > MAX_PLANE_CONTACTS:
                 on_plane = on_plane[np.linspace(0, len(on_plane) - 1, MAX_PLANE_CONTACTS).astype(int)]
             corners.append(on_plane)
@@ -217,10 +220,11 @@ class PhysicsWorld:
         return Ms[:, :, :3], np.einsum("nij,nj->ni", Ms[:, :, :3], centers) + Ms[:, :, 3]
 
     def _place_plane(self, plane: StaticPlane, protocol: Protocol) -> None:
-        shape = self._bullet.createCollisionShape(
-            self._bullet.GEOM_PLANE, planeNormal=list(plane.normal), physicsClientId=self._client
-        )
-        self._add(shape, list(plane.point), [0.0, 0.0, 0.0, 1.0], protocol.static_friction)
+        """A large block below the plane."""
+        normal = np.array(plane.normal)
+        turn = Rotation.align_vectors(normal[None], [[0.0, 0.0, 1.0]])[0]
+        center = np.array(plane.point) - BLOCK * normal
+        self._add(self._block_shape, center.tolist(), turn.as_quat().tolist(), protocol.static_friction)
 
     def _place_hulls(self, posed: PosedScene, protocol: Protocol, reach: float) -> None:
         Rs, centers = self._poses(posed, self.hulls)
@@ -235,7 +239,14 @@ class PhysicsWorld:
     def _add(self, shape: int, position: list[float], turn_xyzw: list[float], friction: float) -> int:
         bullet, client = self._bullet, self._client
         body = bullet.createMultiBody(0.0, shape, -1, position, turn_xyzw, physicsClientId=client)
-        bullet.changeDynamics(body, -1, lateralFriction=friction, restitution=0.0, physicsClientId=client)
+        bullet.changeDynamics(
+            body,
+            -1,
+            lateralFriction=friction,
+            restitution=0.0,
+            collisionMargin=self._skin,
+            physicsClientId=client,
+        )
         self._placed.append(body)
         return body
 
@@ -264,13 +275,16 @@ class PhysicsWorld:
             physicsClientId=client,
         )
         self._placed.append(self._object)
-        for link in range(-1, links):
+        for link, (hull, mass) in enumerate(zip(self.object_hulls, masses.tolist(), strict=True), start=-1):
+            # Said outright: what Bullet works out itself depends on the skin that the shape happened to have before.
             bullet.changeDynamics(
                 self._object,
                 link,
+                localInertiaDiagonal=(mass * hull.inertia_per_mass).tolist(),
                 lateralFriction=protocol.friction,
                 restitution=protocol.restitution,
                 linearDamping=0.0,
                 angularDamping=0.0,
+                collisionMargin=self._skin,
                 physicsClientId=client,
             )

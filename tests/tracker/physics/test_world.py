@@ -1,0 +1,120 @@
+"""What is held stays, what is not falls, and the same goes in twice to the same bits."""
+
+import numpy as np
+import pytest
+
+from tests.tracker.grips import BALL_RADIUS, PINCH, cube, gripped
+from tests.tracker.toys import tube
+from tracker.geometry import se3
+from tracker.model.scene import Scene
+from tracker.physics import (
+    SD_OBMAN,
+    SD_SEED,
+    SEARCH,
+    PhysicsWorld,
+    Protocol,
+    StaticPlane,
+    find_down,
+    measure_displacement,
+    simulate,
+)
+
+FREE_FALL = 0.5 * 9.81 * (35 / 240) ** 2
+
+
+def test_a_ball_between_two_opposing_tips_is_held():
+    posed = gripped(PINCH, (0.0, 0.0))
+    with PhysicsWorld(posed.scene) as world:
+        assert simulate(world, posed, SEARCH) < 0.001
+        assert simulate(world, posed, SD_OBMAN) < 0.002
+
+
+def test_a_ball_that_nothing_holds_falls_as_galileo_says():
+    posed = gripped(PINCH, (0.1, 0.1))
+    with PhysicsWorld(posed.scene) as world:
+        assert simulate(world, posed, SEARCH) == pytest.approx(FREE_FALL, rel=0.05)
+        assert measure_displacement(world, posed).seed == pytest.approx(9.81 * 0.1**2 * 35 * 36 / 2, rel=1e-3)
+        world.place(posed, SEARCH)
+        assert 0.03 < world.run(give_up=0.03) < 0.06
+
+
+def test_down_is_an_option():
+    posed = gripped(([0, 0, 1],), (0.0,))
+    with PhysicsWorld(posed.scene, down=(0.0, 0.0, 1.0)) as world:
+        assert simulate(world, posed, SEARCH) < 0.002
+    with PhysicsWorld(posed.scene, down=(0.0, 0.0, -1.0)) as world:
+        assert simulate(world, posed, SEARCH) > 0.05
+    T = se3.exp(np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]))
+    np.testing.assert_allclose(find_down(T), T[:3, :3] @ [0.0, 1.0, 0.0])
+
+
+PARTS = Protocol("SD-seed in parts", time_step=0.1, steps=5, substeps=24)
+
+
+@pytest.mark.parametrize("protocol", [SD_OBMAN, SEARCH, PARTS], ids=lambda p: p.name)
+def test_a_cube_on_a_table_stays(protocol):
+    posed = gripped(PINCH, (0.1, 0.1), cube(0.04))
+    table = StaticPlane((0.0, -0.02 + 0.02, 0.0), (0.0, -1.0, 0.0))  # the cube's lower side touches it
+    with PhysicsWorld(posed.scene, planes=[table]) as world:
+        assert simulate(world, posed, protocol) < 0.003
+
+
+def test_time_steps_may_be_taken_in_parts():
+    posed = gripped(PINCH, (0.1, 0.1))
+    parts = Protocol("parts", time_step=10.0 / 240.0, steps=3, substeps=10)
+    with PhysicsWorld(posed.scene) as world:
+        assert simulate(world, posed, parts) == pytest.approx(0.5 * 9.81 * (30 / 240) ** 2, rel=0.05)
+
+
+def test_gaps_are_measured_between_the_surfaces():
+    posed = gripped(PINCH, (0.005, -0.002))
+    with PhysicsWorld(posed.scene) as world:
+        world.place(posed, SEARCH)
+        near, far = world.find_gaps(0.010)
+        assert near.distance == pytest.approx(-0.002, abs=4e-4) and far.distance == pytest.approx(0.005, abs=4e-4)
+        np.testing.assert_allclose(far.normal, [1.0, 0.0, 0.0], atol=0.1)
+        np.testing.assert_allclose(np.linalg.norm(far.point - world.centroid), BALL_RADIUS, atol=4e-4)
+        assert len(world.find_gaps(0.003)) == 1
+
+
+def test_the_same_simulation_gives_the_same_bits_whatever_was_simulated_before():
+    held, loose = gripped(PINCH, (0.001, -0.001)), None
+    with PhysicsWorld(held.scene) as fresh:
+        expected = simulate(fresh, held, SEARCH)
+        assert simulate(fresh, held, SEARCH) == expected
+    with PhysicsWorld(held.scene) as used:
+        for step in range(12):
+            pose = held.pose.copy()
+            pose[7] += 0.01 * step
+            pose[-3] += 0.001 * step
+            loose = held.scene.pose_at(pose)
+            simulate(used, loose, (SD_SEED, SD_OBMAN, SEARCH)[step % 3])
+            used.find_gaps(0.01)
+            used.run({0: np.array([0.001, 0.0, 0.0])})
+        assert simulate(used, held, SEARCH) == expected
+
+
+def test_an_articulated_object_falls_and_rests_as_one_body():
+    scene = Scene((gripped(PINCH, (0.1, 0.1)).scene.models[0], tube(bones=4, rings=17)))
+    pose = scene.rest_pose()
+    pose[scene.pose_slices[1]][6:] = 0.0
+    pose[scene.pose_slices[1].start + 6] = 0.6
+    pose[scene.pose_slices[0].start + 2] = 1.0
+    posed = scene.pose_at(pose)
+    with PhysicsWorld(scene) as world:
+        assert simulate(world, posed, SEARCH) == pytest.approx(FREE_FALL, rel=0.05)
+        lowest = posed.vertices[scene.vertex_slices[1]][:, 2].min()
+    table = StaticPlane((0.0, 0.0, float(lowest)), (0.0, 0.0, 1.0))
+    with PhysicsWorld(scene, down=(0.0, 0.0, -1.0), planes=[table]) as world:
+        assert simulate(world, posed, SEARCH) < 0.003
+
+
+def test_closed_worlds_give_their_clients_back():
+    posed = gripped(PINCH, (0.0, 0.0))
+    clients = set()
+    for _ in range(5):
+        world = PhysicsWorld(posed.scene)
+        clients.add(world._client)
+        world.close()
+        world.close()
+    assert len(clients) == 1

@@ -1,0 +1,240 @@
+"""Vertices inside parts that they may not enter, and how deep they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from tracker.geometry.triangle_tree import find_distance, find_exits
+from tracker.model.scene import PosedScene
+from tracker.terms.colliding_parts import Crossings, find_crossings
+
+Array = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
+
+TRIES = 3
+"""A region with so many vertices that are outside is outside."""
+
+
+@dataclass(frozen=True)
+class Swallowed:
+    """Vertices inside another part.
+
+    Attributes:
+        ids: (N,) vertices.
+        receivers: (N,) the triangle through which each would leave against its own normal.
+        distances: (N, 2) to that triangle, and to where it would leave along its normal, m.
+        cosines: (N,) between the way back and the normal of the receiver.
+    """
+
+    ids: Ints
+    receivers: Ints
+    distances: Array
+    cosines: Array
+
+
+def find_swallowed(posed: PosedScene, crossings: Crossings, on_crossing_triangles: bool = False) -> Swallowed:
+    """Vertices inside another model or a part that is no neighbour.
+
+    Crossing triangles cut the mesh into regions, and no edge of a region enters or leaves anything: a few vertices
+    (TRIES) say whether a region is inside at all. So a whole piece of surface inside another is found as well, and
+    there is next to nothing to do where nothing crosses.
+
+    Args:
+        posed: The scene.
+        crossings: Of the same posed scene.
+        on_crossing_triangles: Whether vertices of crossing triangles are returned too.
+    """
+    count = len(posed.vertices)
+    ids, receivers = np.empty(count, dtype=np.int32), np.empty(count, dtype=np.int32)
+    distances, cosines = np.empty((count, 2)), np.empty(count)
+    faces = posed.scene.arrays.faces
+    found = _find_swallowed_into(
+        ids,
+        receivers,
+        distances,
+        cosines,
+        crossings.pairs,
+        crossings.parts,
+        crossings.boxes,
+        posed.vertices,
+        posed.normals,
+        faces,
+        on_crossing_triangles,
+    )
+    return Swallowed(ids[:found], receivers[:found], distances[:found], cosines[:found])
+
+
+def measure_penetration(posed: PosedScene) -> float:
+    """The deepest that any vertex is inside a part that it may not enter: its distance to the surface there, m.
+
+    0 where nothing is inside. Recorded and annotated poses interpenetrate too: compare with them, not with zero.
+    """
+    crossings = find_crossings(posed)
+    inside = find_swallowed(posed, crossings, on_crossing_triangles=True)
+    faces = posed.scene.arrays.faces
+    return float(_measure(inside.ids, inside.receivers, crossings.parts, crossings.boxes, posed.vertices, faces))
+
+
+@njit(cache=True, nogil=True)
+def _find_swallowed_into(
+    ids, receivers, distances, cosines, pairs, parts, boxes, vertices, normals, faces, on_crossing_triangles
+):
+    found = 0
+    is_seen = np.zeros(len(vertices), dtype=np.bool_)
+    border = np.empty(len(vertices), dtype=np.int32)
+    region = np.empty(len(vertices), dtype=np.int32)
+    model_boxes = _find_model_boxes(parts, boxes)
+    borders = 0
+    for pair in range(len(pairs)):
+        for side in range(2):
+            for corner in range(3):
+                v = faces[pairs[pair, side], corner]
+                if not is_seen[v]:
+                    is_seen[v] = True
+                    border[borders] = v
+                    borders += 1
+    if on_crossing_triangles:
+        for place in range(borders):
+            found += _look(
+                found,
+                ids,
+                receivers,
+                distances,
+                cosines,
+                parts,
+                boxes,
+                model_boxes,
+                vertices,
+                normals,
+                faces,
+                border[place],
+            )
+    for place in range(borders + len(parts.seeds)):
+        if place < borders:
+            begin, end = parts.neighbour_starts[border[place]], parts.neighbour_starts[border[place] + 1]
+        else:
+            begin, end = place - borders, place - borders + 1
+        for at in range(begin, end):
+            start = parts.neighbours[at] if place < borders else parts.seeds[at]
+            if is_seen[start]:
+                continue
+            count = _spread(region, is_seen, start, parts.neighbour_starts, parts.neighbours)
+            before = found
+            for member in range(count):
+                if member == TRIES and found == before:
+                    break
+                found += _look(
+                    found,
+                    ids,
+                    receivers,
+                    distances,
+                    cosines,
+                    parts,
+                    boxes,
+                    model_boxes,
+                    vertices,
+                    normals,
+                    faces,
+                    region[member],
+                )
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _find_model_boxes(parts, boxes):
+    result = np.empty((len(parts.model_starts) - 1, 6))
+    for model in range(len(result)):
+        result[model, :3], result[model, 3:] = np.inf, -np.inf
+        for group in range(parts.model_starts[model], parts.model_starts[model + 1]):
+            node = parts.tree.roots[group]
+            if node >= 0:
+                for axis in range(3):
+                    result[model, axis] = min(result[model, axis], boxes.nodes[node, axis])
+                    result[model, 3 + axis] = max(result[model, 3 + axis], boxes.nodes[node, 3 + axis])
+    return result
+
+
+@njit(cache=True, nogil=True)
+def _spread(region, is_seen, start, neighbour_starts, neighbours):
+    """Write the vertices that are joined to `start` over unseen vertices, mark them, and return their number."""
+    is_seen[start] = True
+    region[0] = start
+    count, done = 1, 0
+    while done < count:
+        v = region[done]
+        done += 1
+        for place in range(neighbour_starts[v], neighbour_starts[v + 1]):
+            other = neighbours[place]
+            if not is_seen[other]:
+                is_seen[other] = True
+                region[count] = other
+                count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _look(found, ids, receivers, distances, cosines, parts, boxes, model_boxes, vertices, normals, faces, v):
+    """Write vertex v at place `found` if it is inside something; 1 if so, otherwise 0."""
+    point, direction = vertices[v], normals[v]
+    own = parts.vertex_groups[v]
+    deepest = 0.0
+    if direction[0] == 0.0 and direction[1] == 0.0 and direction[2] == 0.0:
+        return 0
+    for model in range(len(model_boxes)):
+        box = model_boxes[model]
+        if (
+            point[0] < box[0]
+            or point[1] < box[1]
+            or point[2] < box[2]
+            or point[0] > box[3]
+            or point[1] > box[4]
+            or point[2] > box[5]
+        ):
+            continue
+        triangle, back, cosine, ahead = find_exits(
+            parts.tree,
+            boxes,
+            parts.allowed,
+            parts.vertices_may_meet[v],
+            own,
+            parts.model_starts[model],
+            parts.model_starts[model + 1],
+            vertices,
+            faces,
+            point,
+            direction,
+        )
+        if triangle >= 0 and back >= deepest:
+            deepest = back
+            ids[found], receivers[found], cosines[found] = v, triangle, cosine
+            distances[found, 0], distances[found, 1] = back, ahead
+    return 1 if deepest > 0.0 else 0
+
+
+@njit(cache=True, nogil=True)
+def _measure(ids, receivers, parts, boxes, vertices, faces):
+    deepest = 0.0
+    for place in range(len(ids)):
+        v = ids[place]
+        group = parts.tree.groups[receivers[place]]
+        model = 0
+        while parts.model_starts[model + 1] <= group:
+            model += 1
+        depth = find_distance(
+            parts.tree,
+            boxes,
+            parts.allowed,
+            parts.vertices_may_meet[v],
+            parts.vertex_groups[v],
+            parts.model_starts[model],
+            parts.model_starts[model + 1],
+            vertices,
+            faces,
+            vertices[v],
+        )
+        deepest = max(deepest, depth)
+    return deepest

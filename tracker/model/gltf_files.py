@@ -53,7 +53,7 @@ def load_gltf_model(path: Path, max_faces: int | None = 1500) -> ArticulatedMode
             f"no joint named like {', '.join(missing[:6])} among {', '.join(names)[:160] or 'unnamed joints'}",
             "a skin whose joint names tell the wrist and each finger's bones, as in WebXR hands",
         )
-    Ts_world_joint = np.stack([_node_to_world(gltf, joint) for joint in joint_nodes])
+    Ts_world_joint = np.stack([node_to_world(gltf, joint) for joint in joint_nodes])
     vertices, faces, weights = _read_mesh(gltf, node, len(joint_nodes))
     vertices = _pose_at_rest(gltf, skin, Ts_world_joint, vertices, weights)
     vertices, faces, weights = _merge_seams(vertices, faces, weights)
@@ -79,7 +79,7 @@ def _find_skinned_node(gltf: Gltf) -> tuple[dict[str, Any], dict[str, Any]]:
     return skinned[0], gltf.item("skins", skinned[0]["skin"])
 
 
-def _node_to_world(gltf: Gltf, index: Any) -> Array:
+def node_to_world(gltf: Gltf, index: Any) -> Array:
     """(4, 4) node to world at the pose the file stands in."""
     nodes = gltf.document["nodes"]
     T = np.eye(4)

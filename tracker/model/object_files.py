@@ -1,0 +1,189 @@
+"""Meshes that users bring, as rigid objects: OBJ, PLY, STL, OFF and static glTF."""
+
+from __future__ import annotations
+
+import io
+import logging
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import trimesh
+
+from tracker.errors import ModelFileError
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.decimation import decimate_file
+from tracker.model.gltf_container import Gltf, read_gltf
+from tracker.model.gltf_files import MAX_NODES, node_to_world
+from tracker.model.object_mesh import clean_mesh
+from tracker.model.skeleton import Skeleton
+from tracker.model.t16_text import read_off
+
+log = logging.getLogger(__name__)
+
+Array = npt.NDArray[np.float64]
+Faces = npt.NDArray[np.int64]
+
+OBJECT_SUFFIXES: tuple[str, ...] = (".obj", ".ply", ".stl", ".off", ".glb", ".gltf")
+
+NEEDED = "triangles of one object (a hand comes as .npz, skinned .glb or .gltf, or a T16 .OFF with its other files)"
+
+MAX_BYTES = 256 * 2**20
+MAX_VERTICES = 500_000
+MAX_FILE_FACES = 1_000_000
+MAX_OBJECT_FACES = 1500
+
+UNITS: tuple[tuple[str, float], ...] = (("metres", 1.0), ("millimetres", 1e-3), ("centimetres", 1e-2))
+"""Tried in this order when nobody says which it is: 10 to 1500 units across are read as mm, as most files are."""
+
+SIZES = (0.010, 1.5)
+"""m; diagonal of the box around an object that hands handle: the first unit that gives one within is taken."""
+
+POSSIBLE_SIZES = (1e-3, 10.0)
+"""m; sizes that are believed when the unit is given."""
+
+
+def load_object(
+    path: Path, max_faces: int | None = MAX_OBJECT_FACES, metres_per_unit: float | None = None
+) -> ArticulatedModel:
+    """A rigid object from a mesh file, in the file's own coordinates scaled to metres.
+
+    One bone, whose joint is the middle of the surface: the six root parameters are all there is. So `T_world_model` of
+    a posed scene, and `T_world_object` of a recording, take the file's coordinates, in m, to the world.
+
+    What was assumed stands in the provenance and in the log: the unit, and that a mesh has holes.
+
+    Args:
+        path: The file.
+        max_faces: Decimate a heavier mesh to so many; None keeps it.
+        metres_per_unit: Length of the file's unit, such as 0.001; guessed from the size of the mesh when left out.
+
+    Raises:
+        ModelFileError: With what was found and what is needed.
+    """
+    path = Path(path)
+    vertices, faces = _read(path)
+    if not len(faces):
+        raise ModelFileError(path, "no triangles", NEEDED)
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise ModelFileError(path, f"vertices of shape {vertices.shape}", "three coordinates for each vertex")
+    if len(vertices) > MAX_VERTICES or len(faces) > MAX_FILE_FACES:
+        raise ModelFileError(
+            path, f"{len(vertices)} vertices and {len(faces)} faces", f"at most {MAX_VERTICES} and {MAX_FILE_FACES}"
+        )
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise ModelFileError(path, f"a face with the vertex {faces.max()}", f"vertices below {len(vertices)}")
+    if not np.all(np.isfinite(vertices[faces])) or np.abs(vertices[faces]).max() > 1e9:
+        raise ModelFileError(path, "coordinates that are not finite", "finite coordinates")
+    used, faces = np.unique(faces, return_inverse=True)
+    mesh = clean_mesh(vertices[used], faces.reshape(-1, 3))
+    if len(mesh.faces) < 2:
+        raise ModelFileError(path, "no triangles with an area", NEEDED)
+    scale, unit = _find_unit(path, mesh.vertices, metres_per_unit)
+    provenance = {"file": path.name, "format": path.suffix[1:].upper(), "unit": unit, "holes": "none"}
+    if mesh.open_edges:
+        provenance["holes"] = f"{mesh.open_edges} edges without just two faces; what is inside is guessed near them"
+        log.warning("%s: the mesh has holes: %s.", path, provenance["holes"])
+    model = ArticulatedModel(
+        name=path.stem,
+        vertices=mesh.vertices * scale,
+        faces=mesh.faces,
+        skinning_weights=np.ones((len(mesh.vertices), 1)),
+        skeleton=_single_bone(path.stem, find_middle(mesh.vertices, mesh.faces) * scale),
+        provenance=provenance,
+    )
+    return model if max_faces is None else decimate_file(path, model, max_faces)
+
+
+def find_middle(vertices: Array, faces: Faces) -> Array:
+    """(3,) centroid of a surface, each triangle weighted by its area."""
+    corners = vertices[faces]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    return areas @ corners.mean(axis=1) / areas.sum()
+
+
+def is_skinned(gltf: Gltf) -> bool:
+    """Whether a glTF holds a skin, as hands do."""
+    skins = gltf.document.get("skins")
+    return isinstance(skins, list) and len(skins) > 0
+
+
+def _find_unit(path: Path, vertices: Array, metres_per_unit: float | None) -> tuple[float, str]:
+    """Metres per unit and what to tell people of it."""
+    size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+    needed = f"an object of {1e3 * SIZES[0]:.0f} mm to {SIZES[1]:.1f} m, or its unit said (metres per unit)"
+    if metres_per_unit is not None:
+        if not (np.isfinite(metres_per_unit) and metres_per_unit > 0.0):
+            raise ModelFileError(path, f"a unit of {metres_per_unit} m", "a positive number of metres")
+        if not POSSIBLE_SIZES[0] <= size * metres_per_unit <= POSSIBLE_SIZES[1]:
+            raise ModelFileError(path, f"a size of {size * metres_per_unit:.3g} m with the unit given", needed)
+        return metres_per_unit, f"{metres_per_unit:g} m, given"
+    for name, scale in UNITS:
+        if SIZES[0] <= size * scale <= SIZES[1]:
+            told = f"{name}, guessed: the object is {size:.4g} units across, {1e3 * size * scale:.4g} mm"
+            log.info("%s: unit %s.", path, told)
+            return scale, told
+    raise ModelFileError(path, f"a size of {size:.4g} units, in no unit that of a thing to hold", needed)
+
+
+def _single_bone(name: str, middle: Array) -> Skeleton:
+    T = np.eye(4)
+    T[:3, 3] = middle
+    none = np.zeros(0)
+    return Skeleton((name,), np.array([-1]), T[None], np.zeros(0, dtype=np.int64), np.zeros((0, 3)), none, none)
+
+
+def _read(path: Path) -> tuple[Array, Faces]:
+    suffix = path.suffix.lower()
+    assert suffix in OBJECT_SUFFIXES
+    if suffix == ".off":
+        return read_off(path)
+    if suffix in (".glb", ".gltf"):
+        return _read_static_gltf(read_gltf(path))
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise ModelFileError(path, f"{path.stat().st_size} bytes", f"at most {MAX_BYTES} bytes")
+        # Read from memory, without a resolver: materials and textures that the file names are not looked for.
+        options: dict[str, Any] = {"skip_materials": True} if suffix == ".obj" else {}
+        mesh = trimesh.load_mesh(io.BytesIO(path.read_bytes()), file_type=suffix[1:], process=False, **options)
+        return np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
+    except ModelFileError:
+        raise
+    except Exception as error:  # whatever the reader trips over, the file is to blame
+        found = f"a {suffix} that cannot be read ({type(error).__name__}: {str(error)[:80]})"
+        raise ModelFileError(path, found, NEEDED) from error
+
+
+def _read_static_gltf(gltf: Gltf) -> tuple[Array, Faces]:
+    """All triangles of all nodes, where the nodes put them."""
+    nodes = gltf.document.get("nodes", [])
+    if not isinstance(nodes, list) or len(nodes) > MAX_NODES:
+        raise gltf.fail("nodes that are no list, or too many", f"at most {MAX_NODES} nodes")
+    vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
+    for number, node in enumerate(nodes):
+        if not isinstance(node, dict) or "mesh" not in node:
+            continue
+        T = node_to_world(gltf, number)
+        primitives = gltf.item("meshes", node["mesh"]).get("primitives")
+        if not isinstance(primitives, list) or not all(isinstance(p, dict) for p in primitives):
+            raise gltf.fail("a mesh without primitives", "triangles")
+        for primitive in primitives:
+            points, ids = _read_primitive(gltf, primitive)
+            if start + len(points) > MAX_VERTICES:
+                raise gltf.fail(f"more than {MAX_VERTICES} vertices", "a lighter mesh")
+            vertices.append(points @ T[:3, :3].T + T[:3, 3])
+            faces.append(ids + start)
+            start += len(points)
+    return np.concatenate(vertices), np.concatenate(faces)
+
+
+def _read_primitive(gltf: Gltf, primitive: dict[str, Any]) -> tuple[Array, Faces]:
+    attributes = primitive.get("attributes")
+    if primitive.get("mode", 4) != 4 or not isinstance(attributes, dict):
+        raise gltf.fail("a primitive that is not made of triangles", "triangles (mode 4)")
+    points = gltf.accessor(attributes.get("POSITION"), "VEC3").astype(np.float64)
+    ids = np.arange(len(points)) if "indices" not in primitive else gltf.accessor(primitive["indices"], "SCALAR")
+    if ids.dtype.kind not in "ui" or len(ids.ravel()) % 3 or ids.max() >= len(points):
+        raise gltf.fail(f"{ids.size} indices up to {ids.max()} for {len(points)} vertices", "whole triangles")
+    return points, ids.astype(np.int64).reshape(-1, 3)

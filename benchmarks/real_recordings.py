@@ -19,9 +19,12 @@ from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_run import run_import
 from tracker.capture.sequence import Sequence, load_sequence
 from tracker.evaluation import measure_depth_distances
+from tracker.observation import HAND, OTHER, observe
+from tracker.tracking.depth_range import depth_range
 from tracker.tracking.follow import track_frames
 from tracker.tracking.frame_view import render_overlay
 from tracker.tracking.options import TrackOptions
+from tracker.tracking.region import whole_image
 from tracker.tracking.start import start_tracking
 from tracker.tracking.track import Track, join_chunks
 
@@ -82,12 +85,36 @@ def draw(sequence: Sequence, found: Track, place: int) -> np.ndarray:
     return np.hstack([image, mixed])
 
 
+def outline(sequence: Sequence, found: Track, place: int) -> np.ndarray:
+    """The fitted hand under the outline of what was seen, BGR: shows the fit and nothing of the recording's images."""
+    index, camera_id = int(found.frame[place]), found.setup.camera_id
+    frame = sequence.frame(index, camera_id)
+    assert frame.depth is not None
+    camera = sequence.camera(camera_id)
+    region = whole_image(camera, *depth_range(frame))
+    seen = observe(frame, camera, region, found.setup.preprocessing)
+    scale = max(1, 640 // camera.width)
+    overlay = render_overlay(sequence, found.setup, found.pose[place], index, camera_id)
+    image = cv2.resize((overlay[:, :, 2::-1] * (overlay[:, :, 3:] > 0)).astype(np.uint8), None, fx=scale, fy=scale)
+    for label, colour in ((OTHER, (105, 200, 90)), (HAND, (255, 255, 255))):
+        mask = cv2.resize(((seen.labels & label) > 0).astype(np.uint8), None, fx=scale, fy=scale)
+        contours, _ = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+        cv2.drawContours(image, [c for c in contours if len(c) > 12 * scale], -1, colour, 1, cv2.LINE_AA)
+    text = f"frame {index}: {found.status[place]}"
+    cv2.putText(image, text, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (255, 255, 255), 1, cv2.LINE_AA)
+    rows, columns = np.nonzero(image.any(axis=2))
+    middle = int(np.median(columns[rows > 30]))
+    left = int(np.clip(middle - 200, 0, image.shape[1] - 400))
+    return image[:440, left : left + 400]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--only", nargs="+", default=list(RECORDINGS), choices=list(RECORDINGS))
     parser.add_argument("--annotations", type=Path, help="of uvr_sphere_green; it starts by itself otherwise")
     parser.add_argument("--pictures", type=Path, help="write four frames of each recording here")
+    parser.add_argument("--outlines", type=Path, help="write one picture a recording here, outlines in place of images")
     args = parser.parse_args()
     print("| recording | frames | ok | recovered | lost | median mm | worst | % within 10 mm | worst | median ms |")
     print("|---|---|---|---|---|---|---|---|---|---|")
@@ -99,6 +126,11 @@ def main() -> None:
             marked = args.annotations if name == "uvr_sphere_green" else None
             found = track(sequence, load_annotations(marked) if marked else None)
             print(measure(name, sequence, found), flush=True)
+            if args.outlines:
+                args.outlines.mkdir(parents=True, exist_ok=True)
+                places = np.linspace(0, len(found.frame) - 1, 6).astype(int)[1:5]
+                tiles = [outline(sequence, found, int(place)) for place in places]
+                cv2.imwrite(str(args.outlines / f"{name.replace('/', '_')}.png"), np.hstack(tiles))
             if args.pictures:
                 args.pictures.mkdir(parents=True, exist_ok=True)
                 for place in np.linspace(0, len(found.frame) - 1, 4).astype(int):

@@ -20,6 +20,10 @@ from tracker.tracking.objective import Objective
 Array = npt.NDArray[np.float64]
 
 
+FEW = 4
+"""With fewer frames than this the prior grows: pose and shape of one frame explain each other away."""
+
+
 @dataclass(frozen=True)
 class CalibrationOptions:
     """How a shape is fitted.
@@ -89,7 +93,7 @@ def calibrate_shape(
             A += A_frame
             b += b_frame
             count += count_frame
-        weight = options.prior * count / len(observations)
+        weight = options.prior * count / len(observations) * max(1.0, FEW / len(observations)) ** 2
         A[np.diag_indices_from(A)] += weight
         free = slice(0, options.modes)
         change = np.zeros_like(shape)
@@ -155,7 +159,7 @@ def propose_shapes(base: ArticulatedModel) -> list[Array]:
     assert base.shape is not None
     place = base.shape.names.index("size")
     shapes = []
-    for size in (-1.5, -0.75, 0.75, 1.5):
+    for size in (-1.0, 1.0):
         shape = np.zeros(len(base.shape.names))
         shape[place] = np.clip(size, base.shape.lower[place], base.shape.upper[place])
         shapes.append(shape)

@@ -59,7 +59,7 @@ class Quality:
     @property
     def is_lost(self) -> bool:
         """Whether no one should believe this pose."""
-        return self.score < 0.4 or self.inside < 0.6 or self.explained < 0.6 or self.depth_residual > 0.010
+        return self.score < 0.45 or self.inside < 0.6 or self.explained < 0.65 or self.depth_residual > 0.010
 
 
 def measure_quality(view: View, observation: Observation, model: int = 0) -> Quality:

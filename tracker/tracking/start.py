@@ -39,8 +39,11 @@ Progress = Callable[[str, float], None]
 MIN_MARKED = 6
 """With fewer marked joints a hand is looked for in the depth alone."""
 
-SIZE_GAIN = 0.01
-"""Another size is taken if it raises the score by this."""
+SIZE_GAIN = 0.02
+"""Another size is taken if it raises the merit by this."""
+
+WELL_EXPLAINED = 0.8
+"""A frame says something about the hand's shape when this share of the hand's pixels is explained."""
 
 CALIBRATION_FRAMES = 10
 """Frames of the first second that the shape is fitted to."""
@@ -92,20 +95,20 @@ def _begin(
     if base.shape is None or not setup.options.calibrate:
         _, pose = _place(sequence, setup, frames[0], marked)
         return base, np.zeros(base.num_dofs) if pose is None else pose
-    score, pose = _place(sequence, setup, frames[0], marked)
+    merit, pose = _place(sequence, setup, frames[0], marked)
     if pose is None:
         return base, np.zeros(base.num_dofs)
     shape = np.zeros(len(base.shape.names))
     for other in propose_shapes(base):
         sized = replace(setup, models=(with_shape(base, other),))
-        other_score, other_pose = _settle(sequence, sized, frames[0], pose)
-        if other_score > score + SIZE_GAIN:
-            shape, pose, score = other, other_pose, other_score
-    return _calibrate(sequence, setup, frames, shape, pose, score, tell)
+        other_merit, other_pose = _settle(sequence, sized, frames[0], pose)
+        if other_merit > merit + SIZE_GAIN:
+            shape, pose, merit = other, other_pose, other_merit
+    return _calibrate(sequence, setup, frames, shape, pose, merit, tell)
 
 
 def _settle(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> tuple[float, Array]:
-    """Score and pose of a hand of another size that starts at a pose."""
+    """Merit and pose of a hand of another size that starts at a pose."""
     frame, camera = setup.read(sequence, index)
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
@@ -113,24 +116,24 @@ def _settle(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> t
     seen = observe(frame, camera, region, setup.preprocessing)
     options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
     pose = fit_frame(setup.scene, seen, pose, pose, Objective(), options).pose
-    return measure_quality(draw(setup.scene.pose_at(pose), seen), seen).score, pose
+    return measure_quality(draw(setup.scene.pose_at(pose), seen), seen).merit, pose
 
 
 def _place(sequence: Sequence, setup: TrackSetup, index: int, marked: Annotation | None) -> tuple[float, Array | None]:
-    """Score and pose of one hand in one frame; no pose if nothing like a hand is there."""
+    """Merit and pose of one hand in one frame; no pose if nothing like a hand is there."""
     frame, camera = setup.read(sequence, index)
     near, far = depth_range(frame)
     if marked is not None and np.count_nonzero(marked.points[:, 2]) >= MIN_MARKED:
         points = undistort_points(marked.points, sequence.camera(setup.camera_id))
         return _place_marked(frame, camera, points, setup, (near, far))
     found = find_hand(frame, camera, setup.models[0], setup.preprocessing, near, far)
-    return (-1.0, None) if found is None else (found.quality.score, found.pose)
+    return (-1.0, None) if found is None else (found.quality.merit, found.pose)
 
 
 def _place_marked(
     frame: Frame, camera: Camera, points: Array, setup: TrackSetup, depths: tuple[float, float]
 ) -> tuple[float, Array]:
-    """Score and pose from marked joints (21, 3), fitted to the depth with the joints kept where they were marked."""
+    """Merit and pose from marked joints (21, 3), fitted to the depth with the joints kept where they were marked."""
     whole = observe(frame, camera, whole_image(camera, *depths), setup.preprocessing)
     pose = start_hand(setup.models[0], points, camera, whole)
     scene = setup.scene
@@ -141,11 +144,11 @@ def _place_marked(
     objective = Objective(terms={**Objective().terms, "joints": mark_joints(scene, 0, points, camera)})
     options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
     pose = fit_frame(scene, seen, pose, pose, objective, options).pose
-    return measure_quality(draw(scene.pose_at(pose), seen), seen).score, pose
+    return measure_quality(draw(scene.pose_at(pose), seen), seen).merit, pose
 
 
 def _calibrate(
-    sequence: Sequence, setup: TrackSetup, frames: range, shape: Array, pose: Array, score: float, tell: Progress
+    sequence: Sequence, setup: TrackSetup, frames: range, shape: Array, pose: Array, merit: float, tell: Progress
 ) -> tuple[ArticulatedModel, Array]:
     """Follow the hand through the first second, while it goes well, then fit its shape to some of those frames."""
     base = setup.models[0]
@@ -158,9 +161,10 @@ def _calibrate(
     poses: list[Array] = []
     for done, index in enumerate(first_second):
         state, result = follow_frame(sequence, sized, state, recover=False)
-        if result.status != "ok" or result.quality is None or result.quality.score < 0.9 * score:
+        if result.status != "ok" or result.quality is None or result.quality.merit < 0.9 * merit:
             break
-        seen = _look(sequence, sized, index, state.pose) if done % every == 0 else None
+        is_telling = done % every == 0 and result.quality.explained >= WELL_EXPLAINED
+        seen = _look(sequence, sized, index, state.pose) if is_telling else None
         if seen is not None:
             observations.append(seen)
             poses.append(state.pose)
@@ -170,7 +174,7 @@ def _calibrate(
     fitted = calibrate_shape(base, shape, observations, poses, progress=lambda share: tell("fitting the shape", share))
     named = zip(base.shape.names, fitted.shape, strict=True)
     log.info("shape: %s", ", ".join(f"{name} {value:+.2f}" for name, value in named))
-    return fitted.model, fitted.poses[0]
+    return fitted.model, _settle(sequence, replace(setup, models=(fitted.model,)), frames[0], pose)[1]
 
 
 def _look(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> Observation | None:

@@ -63,8 +63,8 @@ class Search:
     bent: int = 8
     fine: int = 4
     width: int = 160
-    nearness: float = 0.25
-    openness: float = 0.1
+    nearness: float = 0.5
+    openness: float = 0.2
 
 
 @dataclass(frozen=True)

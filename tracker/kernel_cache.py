@@ -13,6 +13,8 @@ import sys
 from pathlib import Path
 
 SHARED_KERNELS = (
+    "detection/channels.py",
+    "detection/levels.py",
     "geometry/se3.py",
     "geometry/triangle_tree.py",
     "geometry/triangles.py",

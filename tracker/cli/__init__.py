@@ -1,12 +1,12 @@
-"""The commands that need no server, one module each: `handloom track`, `evaluate`, `synthesize`, `bench`, `warm-up`."""
+"""The commands that need no server, one module each: `handloom track`, `evaluate`, `synthesize` and others."""
 
 from __future__ import annotations
 
 import argparse
 
-from tracker.cli import bench, evaluate, synthesize, track, warm_up
+from tracker.cli import bench, evaluate, synthesize, track, train_detector, warm_up
 
-COMMANDS = (track, evaluate, synthesize, bench, warm_up)
+COMMANDS = (track, evaluate, synthesize, train_detector, bench, warm_up)
 
 
 def add_commands(subparsers: argparse._SubParsersAction) -> None:

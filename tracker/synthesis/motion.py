@@ -54,7 +54,7 @@ def perform_motion(model: ArticulatedModel, motion: str, num_moments: int, fps: 
     assert model.hand is not None, "only hands perform"
     T_world_placed = _place(model, x)
     curls_at = MOTIONS[motion]
-    full = _find_closing(model)
+    full = find_closing(model)
     wrist = model.skeleton.joints_rest[0]
     poses = np.zeros((num_moments, model.num_dofs))
     for moment in range(num_moments):
@@ -109,7 +109,7 @@ def _sway(seconds: float, swing: float) -> Array:
     return T
 
 
-def _find_closing(model: ArticulatedModel) -> Array:
+def find_closing(model: ArticulatedModel) -> Array:
     """Joint angles (5, K), rad, that close each finger, thumb first.
 
     Nothing is assumed about axes and signs: of the joints at one bone the one is taken, and in that direction, whose
@@ -142,7 +142,7 @@ def _place(model: ArticulatedModel, x: float) -> Array:
     scene = Scene((model,))
     rest = scene.pose_at(scene.rest_pose()).landmarks(0)
     pose = scene.rest_pose()
-    pose[6:] = 0.4 * _find_closing(model)[1:].sum(axis=0)
+    pose[6:] = 0.4 * find_closing(model)[1:].sum(axis=0)
     closing = scene.pose_at(pose).landmarks(0)
     knuckle = rest[HAND_JOINTS.index("middle_mcp")]
     tips = [HAND_JOINTS.index(f"{finger}_tip") for finger in FINGERS[1:]]

@@ -1,0 +1,180 @@
+"""`handloom train-detector`: a Hough forest that finds fingertips."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tracker.cli.command import add_json, run_guarded
+from tracker.cli.progress import ProgressLine
+from tracker.errors import TrackerError
+
+if TYPE_CHECKING:
+    from tracker.detection.annotated_images import AnnotatedImage
+
+
+def add_command(subparsers: argparse._SubParsersAction) -> None:
+    parser = subparsers.add_parser(
+        "train-detector",
+        help="train a fingertip detector",
+        description="Train the Hough forest that finds fingertips ([T16] section 3.2.5) from annotated recordings, "
+        "recorded or rendered, and from images of random hands that are rendered for it.",
+    )
+    parser.add_argument("recordings", type=Path, nargs="*", metavar="RECORDING", help="folders with annotated depth")
+    parser.add_argument("--rendered", type=int, default=0, metavar="N", help="and N rendered images of random hands")
+    parser.add_argument("--test", type=Path, action="append", default=[], metavar="RECORDING", help="judge it on these")
+    parser.add_argument("--on", choices=("depth", "color"), default="depth", help="what the detector looks at")
+    parser.add_argument("--step", type=int, default=1, metavar="N", help="one of N annotated images of a recording")
+    parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
+    parser.add_argument("--trees", type=int, default=10)
+    parser.add_argument("--depth", type=int, default=25, help="of the deepest leaf")
+    parser.add_argument("--min-leaf", type=int, default=20, help="patches in the smallest leaf")
+    parser.add_argument("--tests", type=int, default=20_000, help="binary tests tried at a node; fewer train faster")
+    parser.add_argument("--patches", type=int, default=100_000, help="of each sort for a tree; fewer train faster")
+    parser.add_argument("--per-image", type=int, default=60, help="patches of each sort from an image")
+    parser.add_argument("--pixel-size", type=float, default=3.0, metavar="MM", help="width of a pixel of a patch")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="the detector, .npz")
+    parser.add_argument("--curve", type=Path, metavar="CSV", help="with --test: the precision-recall curve")
+    add_json(parser)
+    parser.set_defaults(run=run_guarded(train_detector, show))
+
+
+def train_detector(args: argparse.Namespace) -> dict[str, Any]:
+    import numpy as np
+
+    from tracker.detection.confidence import calibrate_confidence
+    from tracker.detection.forest_files import save_forest
+    from tracker.detection.sampling import PatchOptions, join_patches, sample_patches
+    from tracker.detection.training import ForestOptions, train_forest
+    from tracker.evaluation.detector_study import judge_detector
+
+    _check(args)
+    began = time.monotonic()
+    about = PatchOptions(kind=args.on, pixel_size=1e-3 * args.pixel_size, per_image=args.per_image)
+    rng = np.random.default_rng(args.seed)
+    # One image of ten is kept aside: its detections say what confidences mean.
+    parts, held_out, images = [], [], 0
+    for item in _training_images(args):
+        images += 1
+        if images % 10 == 0:
+            held_out.append(item)
+        else:
+            parts.append(sample_patches(item.image, item.tips, item.is_visible, about, rng))
+    if not parts:
+        raise TrackerError("Found no annotated image with depth at the marked joints; give other recordings.")
+    patches = join_patches(parts)
+    options = ForestOptions(
+        trees=args.trees,
+        depth=args.depth,
+        min_leaf=args.min_leaf,
+        tests=args.tests,
+        patches=args.patches,
+        seed=args.seed,
+        threads=args.threads,
+    )
+    line = ProgressLine(f"training on {len(patches)} patches")
+    forest = train_forest(patches, about, options, line.show)
+    if held_out:
+        curve = judge_detector(forest, held_out)
+        forest = calibrate_confidence(forest, curve.confidences, curve.precision)
+    args.out.parent.mkdir(parents=True, exist_ok=True)
+    save_forest(forest, args.out)
+    result = {
+        "out": str(args.out),
+        "on": args.on,
+        "images": images,
+        "patches": len(patches),
+        "nodes": len(forest.nodes),
+        "bytes": args.out.stat().st_size,
+        "seconds": round(time.monotonic() - began, 1),
+        "test": None,
+    }
+    if args.test:
+        found = judge_detector(forest, _annotated(args.test, args, 1))
+        if args.curve is not None:
+            _write_curve(args.curve, found)
+        precision, recall = found.at(3.0)
+        result["test"] = {
+            "images": found.num_images,
+            "fingertips": found.num_truths,
+            "auc": round(found.auc, 4),
+            "precision_at_3": round(precision, 4),
+            "recall_at_3": round(recall, 4),
+        }
+    return result
+
+
+def show(result: dict[str, Any]) -> str:
+    line = (
+        f"{result['out']}: learnt from {result['patches']} patches of {result['images']} images, "
+        f"{result['nodes']} nodes, {result['seconds']:.0f} s"
+    )
+    if result["test"] is not None:
+        test = result["test"]
+        line += (
+            f"\non {test['fingertips']} visible fingertips of {test['images']} test images: AUC {test['auc']:.3f}; "
+            f"at confidence 3.0 precision {test['precision_at_3']:.3f}, recall {test['recall_at_3']:.3f}"
+        )
+    return line
+
+
+def _check(args: argparse.Namespace) -> None:
+    if not args.recordings and args.rendered < 1:
+        raise TrackerError("Nothing to learn from: give recordings with annotations, --rendered N, or both.")
+    for name in ("step", "trees", "depth", "min_leaf", "tests", "patches", "per_image", "threads"):
+        if getattr(args, name) < 1:
+            raise TrackerError(f"--{name.replace('_', '-')} is {getattr(args, name)}; it must be at least 1.")
+    if args.rendered < 0 or args.seed < 0:
+        raise TrackerError("--rendered and --seed must be at least 0.")
+    if not 0.2 <= args.pixel_size <= 50.0:
+        raise TrackerError(f"--pixel-size is {args.pixel_size} mm; it must be from 0.2 to 50.")
+    if args.curve is not None and not args.test:
+        raise TrackerError("--curve needs --test RECORDING, the recordings that the curve is of.")
+
+
+def _training_images(args: argparse.Namespace) -> Iterator[AnnotatedImage]:
+    yield from _annotated(args.recordings, args, args.step)
+    if args.rendered > 0:
+        from tracker.synthesis.fingertip_images import render_fingertip_images
+
+        line = ProgressLine("rendering hands")
+        for number, item in enumerate(render_fingertip_images(args.rendered, args.seed)):
+            yield item
+            line.show((number + 1) / args.rendered)
+
+
+def _annotated(folders: list[Path], args: argparse.Namespace, step: int) -> Iterator[AnnotatedImage]:
+    from tracker.capture.annotations import load_annotations
+    from tracker.capture.sequence import load_sequence
+    from tracker.detection.annotated_images import annotated_images
+
+    for folder in folders:
+        sequence = load_sequence(folder)
+        path = sequence.annotations_path
+        if path is None or not path.exists():
+            raise TrackerError(f"{folder}: has no annotations; mark fingertips in some of its frames first.")
+        cameras = [camera for camera in sequence.cameras if camera.has_depth]
+        if not cameras:
+            raise TrackerError(f"{folder}: has no camera with depth, which gives patches their scale.")
+        if args.on == "color" and not any(camera.has_color for camera in cameras):
+            raise TrackerError(f"{folder}: has no camera with both colour and depth; needed for --on color.")
+        for item in annotated_images(sequence, load_annotations(path), step, not args.no_skin):
+            if args.on == "depth" or item.image.color is not None:
+                yield item
+
+
+def _write_curve(path: Path, curve: Any) -> None:
+    from tracker.capture.atomic_file import write_atomically
+
+    rows = ["confidence,precision,recall"]
+    rows += [
+        f"{confidence:.6g},{precision:.6g},{recall:.6g}"
+        for confidence, precision, recall in zip(curve.confidences, curve.precision, curve.recall, strict=True)
+    ]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_atomically(path, ("\n".join(rows) + "\n").encode())

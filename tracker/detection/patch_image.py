@@ -1,0 +1,41 @@
+"""An image in which fingertips are looked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.observation import HAND, Observation
+
+
+@dataclass(frozen=True)
+class PatchImage:
+    """Depth, and colour where the forest looks at colour, of the whole image or a part of it.
+
+    Attributes:
+        depth: (H, W) float32, m; 0 where nothing is known. It sets the scale of every patch.
+        mask: (H, W) bool, pixels on which a patch may be centred.
+        focal: Focal length, px.
+        color: (H, W, 3) uint8 RGB, or None.
+    """
+
+    depth: npt.NDArray[np.float32]
+    mask: npt.NDArray[np.bool_]
+    focal: float
+    color: npt.NDArray[np.uint8] | None = None
+
+    def __post_init__(self) -> None:
+        assert self.depth.ndim == 2 and self.mask.shape == self.depth.shape
+        assert self.color is None or self.color.shape == (*self.depth.shape, 3)
+
+    @classmethod
+    def of(cls, observation: Observation, color: npt.NDArray[np.uint8] | None = None) -> PatchImage:
+        """The hand's pixels of an observation; what colour tells to be something else is taken out of the depth.
+
+        Colour (H, W, 3) RGB must be sampled as the observation is.
+        """
+        mask = (observation.labels & HAND) > 0
+        depth = np.where(mask, observation.depth, np.float32(0.0))
+        return cls(depth, mask, float(observation.K[0, 0]), color)

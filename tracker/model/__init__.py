@@ -1,15 +1,46 @@
-"""Hands, objects and their files; how a pose moves them. Knows no cameras."""
+"""Hands, objects and their files; how a pose moves them. Knows no cameras.
 
-from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
-from tracker.model.decimation import decimate
-from tracker.model.default_hand import default_hand
-from tracker.model.files import load_model, save_model
-from tracker.model.joints import FINGERS, HAND_EDGES, HAND_JOINTS
-from tracker.model.mirroring import mirror, mirror_pose
-from tracker.model.scene import PosedScene, Scene
-from tracker.model.shape import with_shape
-from tracker.model.skeleton import Skeleton
-from tracker.model.t16_files import load_t16_model, load_t16_motion
+Names are loaded when they are first asked for: the list of joints must not cost the time that kernels take to load.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
+    from tracker.model.decimation import decimate
+    from tracker.model.default_hand import default_hand
+    from tracker.model.files import load_model, save_model
+    from tracker.model.joints import FINGERS, HAND_EDGES, HAND_JOINTS
+    from tracker.model.mirroring import mirror, mirror_pose
+    from tracker.model.scene import PosedScene, Scene
+    from tracker.model.shape import with_shape
+    from tracker.model.skeleton import Skeleton
+    from tracker.model.t16_files import load_t16_model, load_t16_motion
+
+_HOMES = {
+    "ArticulatedModel": "tracker.model.articulated",
+    "FINGERS": "tracker.model.joints",
+    "HAND_EDGES": "tracker.model.joints",
+    "HAND_JOINTS": "tracker.model.joints",
+    "HandParts": "tracker.model.articulated",
+    "MAX_WEIGHTS": "tracker.model.articulated",
+    "PosedScene": "tracker.model.scene",
+    "Scene": "tracker.model.scene",
+    "ShapeBasis": "tracker.model.articulated",
+    "Skeleton": "tracker.model.skeleton",
+    "decimate": "tracker.model.decimation",
+    "default_hand": "tracker.model.default_hand",
+    "load_model": "tracker.model.files",
+    "load_t16_model": "tracker.model.t16_files",
+    "load_t16_motion": "tracker.model.t16_files",
+    "mirror": "tracker.model.mirroring",
+    "mirror_pose": "tracker.model.mirroring",
+    "save_model": "tracker.model.files",
+    "with_shape": "tracker.model.shape",
+}
 
 __all__ = [
     "FINGERS",
@@ -32,3 +63,10 @@ __all__ = [
     "save_model",
     "with_shape",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'tracker.model' has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(_HOMES[name]), name)
+    return value

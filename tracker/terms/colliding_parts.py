@@ -10,14 +10,8 @@ import numpy.typing as npt
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from tracker.geometry.triangle_tree import (
-    Boxes,
-    Filter,
-    TriangleTree,
-    build_triangle_tree,
-    find_crossings_into,
-    fit_boxes,
-)
+from tracker.geometry.crossings import find_crossings_into
+from tracker.geometry.triangle_tree import Filter, FittedTree, TriangleTree, build_triangle_tree, fit_tree
 from tracker.model.scene import PosedScene, Scene
 
 Array = npt.NDArray[np.float64]
@@ -55,12 +49,12 @@ class Crossings:
 
     Attributes:
         parts: The scene's parts.
-        boxes: Of the parts' tree at this pose.
+        fitted: The parts' tree at this pose.
         pairs: (C, 2) triangles, each pair once, the set 𝒞 of [T16] §3.2.4.
     """
 
     parts: CollidingParts
-    boxes: Boxes
+    fitted: FittedTree
     pairs: Ints
 
 
@@ -74,13 +68,13 @@ def find_crossings(posed: PosedScene) -> Crossings:
 
 
 def _find_crossings(parts: CollidingParts, vertices: Array, faces: Ints) -> Crossings:
-    boxes = fit_boxes(parts.tree, vertices, faces)
+    fitted = fit_tree(parts.tree, parts.allowed, vertices, faces)
     pairs = np.empty((USUAL_PAIRS, 2), dtype=np.int32)
-    count = find_crossings_into(pairs, parts.tree, boxes, parts.allowed, vertices, faces)
+    count = find_crossings_into(pairs, fitted)
     if count > len(pairs):
         pairs = np.empty((count, 2), dtype=np.int32)
-        find_crossings_into(pairs, parts.tree, boxes, parts.allowed, vertices, faces)
-    return Crossings(parts, boxes, pairs[:count])
+        find_crossings_into(pairs, fitted)
+    return Crossings(parts, fitted, pairs[:count])
 
 
 def find_parts(scene: Scene) -> CollidingParts:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from tracker.geometry.triangle_tree import find_distance, find_exits
+from tracker.geometry.exits import count_windings, find_distance, find_exits
 from tracker.model.scene import PosedScene
 from tracker.terms.colliding_parts import Crossings, find_crossings
 
@@ -19,15 +19,12 @@ TRIES = 3
 """A region with so many vertices that are outside is outside."""
 
 
-@dataclass(frozen=True)
-class Swallowed:
+class Swallowed(NamedTuple):
     """Vertices inside another part.
 
-    Attributes:
-        ids: (N,) vertices.
-        receivers: (N,) the triangle through which each would leave against its own normal.
-        distances: (N, 2) to that triangle, and to where it would leave along its normal, m.
-        cosines: (N,) between the way back and the normal of the receiver.
+    ids (N,) vertices; receivers (N,) the triangle through which each would leave against its own normal; distances
+    (N, 2) to that triangle, and to where it would leave along its normal, m; cosines (N,) between the way back and the
+    normal of the receiver.
     """
 
     ids: Ints
@@ -49,23 +46,13 @@ def find_swallowed(posed: PosedScene, crossings: Crossings, on_crossing_triangle
         on_crossing_triangles: Whether vertices of crossing triangles are returned too.
     """
     count = len(posed.vertices)
-    ids, receivers = np.empty(count, dtype=np.int32), np.empty(count, dtype=np.int32)
-    distances, cosines = np.empty((count, 2)), np.empty(count)
-    faces = posed.scene.arrays.faces
-    found = _find_swallowed_into(
-        ids,
-        receivers,
-        distances,
-        cosines,
-        crossings.pairs,
-        crossings.parts,
-        crossings.boxes,
-        posed.vertices,
-        posed.normals,
-        faces,
-        on_crossing_triangles,
+    out = Swallowed(
+        np.empty(count, dtype=np.int32), np.empty(count, dtype=np.int32), np.empty((count, 2)), np.empty(count)
     )
-    return Swallowed(ids[:found], receivers[:found], distances[:found], cosines[:found])
+    found = _find_swallowed_into(
+        out, crossings.pairs, crossings.parts, crossings.fitted, posed.normals, on_crossing_triangles
+    )
+    return Swallowed(out.ids[:found], out.receivers[:found], out.distances[:found], out.cosines[:found])
 
 
 def measure_penetration(posed: PosedScene) -> float:
@@ -75,20 +62,17 @@ def measure_penetration(posed: PosedScene) -> float:
     """
     crossings = find_crossings(posed)
     inside = find_swallowed(posed, crossings, on_crossing_triangles=True)
-    faces = posed.scene.arrays.faces
-    return float(_measure(inside.ids, inside.receivers, crossings.parts, crossings.boxes, posed.vertices, faces))
+    return float(_measure(inside, crossings.parts, crossings.fitted))
 
 
 @njit(cache=True, nogil=True)
-def _find_swallowed_into(
-    ids, receivers, distances, cosines, pairs, parts, boxes, vertices, normals, faces, on_crossing_triangles
-):
-    found = 0
+def _find_swallowed_into(out, pairs, parts, fitted, normals, on_crossing_triangles):
+    found, borders = 0, 0
+    vertices, faces = fitted.vertices, fitted.faces
     is_seen = np.zeros(len(vertices), dtype=np.bool_)
     border = np.empty(len(vertices), dtype=np.int32)
     region = np.empty(len(vertices), dtype=np.int32)
-    model_boxes = _find_model_boxes(parts, boxes)
-    borders = 0
+    model_boxes = _find_model_boxes(parts, fitted)
     for pair in range(len(pairs)):
         for side in range(2):
             for corner in range(3):
@@ -99,20 +83,7 @@ def _find_swallowed_into(
                     borders += 1
     if on_crossing_triangles:
         for place in range(borders):
-            found += _look(
-                found,
-                ids,
-                receivers,
-                distances,
-                cosines,
-                parts,
-                boxes,
-                model_boxes,
-                vertices,
-                normals,
-                faces,
-                border[place],
-            )
+            found += _look(out, found, parts, fitted, model_boxes, normals, border[place])
     for place in range(borders + len(parts.seeds)):
         if place < borders:
             begin, end = parts.neighbour_starts[border[place]], parts.neighbour_starts[border[place] + 1]
@@ -127,25 +98,12 @@ def _find_swallowed_into(
             for member in range(count):
                 if member == TRIES and found == before:
                     break
-                found += _look(
-                    found,
-                    ids,
-                    receivers,
-                    distances,
-                    cosines,
-                    parts,
-                    boxes,
-                    model_boxes,
-                    vertices,
-                    normals,
-                    faces,
-                    region[member],
-                )
+                found += _look(out, found, parts, fitted, model_boxes, normals, region[member])
     return found
 
 
 @njit(cache=True, nogil=True)
-def _find_model_boxes(parts, boxes):
+def _find_model_boxes(parts, fitted):
     result = np.empty((len(parts.model_starts) - 1, 6))
     for model in range(len(result)):
         result[model, :3], result[model, 3:] = np.inf, -np.inf
@@ -153,8 +111,8 @@ def _find_model_boxes(parts, boxes):
             node = parts.tree.roots[group]
             if node >= 0:
                 for axis in range(3):
-                    result[model, axis] = min(result[model, axis], boxes.nodes[node, axis])
-                    result[model, 3 + axis] = max(result[model, 3 + axis], boxes.nodes[node, 3 + axis])
+                    result[model, axis] = min(result[model, axis], fitted.node_boxes[node, axis])
+                    result[model, 3 + axis] = max(result[model, 3 + axis], fitted.node_boxes[node, 3 + axis])
     return result
 
 
@@ -177,64 +135,37 @@ def _spread(region, is_seen, start, neighbour_starts, neighbours):
 
 
 @njit(cache=True, nogil=True)
-def _look(found, ids, receivers, distances, cosines, parts, boxes, model_boxes, vertices, normals, faces, v):
+def _look(out, found, parts, fitted, model_boxes, normals, v):
     """Write vertex v at place `found` if it is inside something; 1 if so, otherwise 0."""
-    point, direction = vertices[v], normals[v]
-    own = parts.vertex_groups[v]
+    point, direction = fitted.vertices[v], normals[v]
     deepest = 0.0
     if direction[0] == 0.0 and direction[1] == 0.0 and direction[2] == 0.0:
         return 0
     for model in range(len(model_boxes)):
-        box = model_boxes[model]
-        if (
-            point[0] < box[0]
-            or point[1] < box[1]
-            or point[2] < box[2]
-            or point[0] > box[3]
-            or point[1] > box[4]
-            or point[2] > box[5]
-        ):
+        is_near = True
+        for axis in range(3):
+            is_near &= model_boxes[model, axis] <= point[axis] <= model_boxes[model, 3 + axis]
+        if not is_near:
             continue
-        triangle, back, cosine, ahead = find_exits(
-            parts.tree,
-            boxes,
-            parts.allowed,
-            parts.vertices_may_meet[v],
-            own,
-            parts.model_starts[model],
-            parts.model_starts[model + 1],
-            vertices,
-            faces,
-            point,
-            direction,
-        )
-        if triangle >= 0 and back >= deepest:
+        start, stop = parts.model_starts[model], parts.model_starts[model + 1]
+        may_meet, own = parts.vertices_may_meet[v], parts.vertex_groups[v]
+        triangle, back, cosine, ahead = find_exits(fitted, may_meet, own, start, stop, point, direction)
+        if triangle >= 0 and back >= deepest and count_windings(fitted, start, stop, point, direction, v) > 0:
             deepest = back
-            ids[found], receivers[found], cosines[found] = v, triangle, cosine
-            distances[found, 0], distances[found, 1] = back, ahead
+            out.ids[found], out.receivers[found], out.cosines[found] = v, triangle, cosine
+            out.distances[found, 0], out.distances[found, 1] = back, ahead
     return 1 if deepest > 0.0 else 0
 
 
 @njit(cache=True, nogil=True)
-def _measure(ids, receivers, parts, boxes, vertices, faces):
+def _measure(inside, parts, fitted):
     deepest = 0.0
-    for place in range(len(ids)):
-        v = ids[place]
-        group = parts.tree.groups[receivers[place]]
+    for place in range(len(inside.ids)):
+        v = inside.ids[place]
         model = 0
-        while parts.model_starts[model + 1] <= group:
+        while parts.model_starts[model + 1] <= parts.tree.groups[inside.receivers[place]]:
             model += 1
-        depth = find_distance(
-            parts.tree,
-            boxes,
-            parts.allowed,
-            parts.vertices_may_meet[v],
-            parts.vertex_groups[v],
-            parts.model_starts[model],
-            parts.model_starts[model + 1],
-            vertices,
-            faces,
-            vertices[v],
-        )
-        deepest = max(deepest, depth)
+        start, stop = parts.model_starts[model], parts.model_starts[model + 1]
+        may_meet, own = parts.vertices_may_meet[v], parts.vertex_groups[v]
+        deepest = max(deepest, find_distance(fitted, may_meet, own, start, stop, fitted.vertices[v]))
     return deepest

@@ -95,3 +95,31 @@ def test_penetration_does_not_depend_on_where_the_scene_is():
     before = measure_penetration(scene.pose_at(pose))
     step = np.r_[0.4, -0.3, 0.6, 0, 0, 0, 0.4, -0.3, 0.6, 0, 0, 0]
     assert measure_penetration(scene.pose_at(scene.retract(pose, step))) == pytest.approx(before, abs=1e-9)
+
+
+def count_windings_exactly(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(N,) solid angle that triangles (F, 3, 3) span at points (N, 3), in full spheres."""
+    a, b, c = (corners[None, :, i] - points[:, None] for i in range(3))
+    la, lb, lc = (np.linalg.norm(x, axis=2) for x in (a, b, c))
+    volume = np.einsum("nfi,nfi->nf", a, np.cross(b, c))
+    dots = [np.einsum("nfi,nfi->nf", x, y) for x, y in ((a, b), (b, c), (c, a))]
+    return 2 * np.arctan2(volume, la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb).sum(axis=1) / (4 * np.pi)
+
+
+def test_in_any_pose_of_two_hands_what_is_called_inside_is_enclosed_by_skin(rng):
+    scene = Scene((default_hand("right"), default_hand("left")))
+    lower, upper, found = np.maximum(scene.lower, -0.5), np.minimum(scene.upper, 1.6), 0
+    for _ in range(10):
+        pose = rng.uniform(lower, upper)
+        pose[:6], pose[37:43] = 0.0, np.r_[rng.uniform(-0.02, 0.02, size=3), rng.normal(size=3)]
+        posed = scene.pose_at(pose)
+        inside = find_swallowed(posed, find_crossings(posed), on_crossing_triangles=True)
+        receivers = scene.face_models[inside.receivers]
+        for model in range(2):
+            ids = inside.ids[receivers == model]
+            corners = posed.vertices[scene.arrays.faces[scene.face_models == model]]
+            just_outside = posed.vertices[ids] + 1e-6 * posed.normals[ids]
+            windings = count_windings_exactly(just_outside, corners)
+            assert np.all(np.rint(windings) >= 1)
+            found += len(ids)
+    assert found > 300

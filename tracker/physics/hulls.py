@@ -13,7 +13,9 @@ from tracker.model.articulated import ArticulatedModel
 Array = npt.NDArray[np.float64]
 
 MAX_VERTICES = 160
-"""Of a hull; the extreme points in that many directions are kept of a rounder one (a ball loses 1 % of its radius)."""
+"""Of a hull; the extreme points in that many directions are kept of a rounder one.
+
+A ball loses up to 1 % of its radius by it; fewer directions leave facets that it rolls on."""
 
 MIN_HALF_THICKNESS = 0.0005
 """m; a flat part is given this much on either side, so that it has an inside."""

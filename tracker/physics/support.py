@@ -91,8 +91,8 @@ def find_support(world: PhysicsWorld, posed: PosedScene, options: SupportOptions
     Overlaps of hulls are resolved before anything is simulated (a hull is set back until it just touches), because
     they would throw the object. A candidate is set forward until it touches.
 
-    Differs from the paper: combinations are first sorted by a wrench test, and at most `most_simulations` of those that
-    pass are simulated; the search ends early at one that moves the object less than a third of `stable_below`.
+    Differs from the paper: combinations must pass a wrench test, and at most `most_simulations` of those that do are
+    simulated; the search ends early at one that moves the object less than a third of `stable_below`.
     """
     options = options or SupportOptions()
     world.place(posed, options.protocol, options.reach)
@@ -107,7 +107,7 @@ def find_support(world: PhysicsWorld, posed: PosedScene, options: SupportOptions
     ranked, passed = rank_combinations(world, gaps, [gap for gap, _ in movable], options)
     best: tuple[int, ...] = ()
     best_displacement, simulated = displacement, 0
-    for combination in ranked[: options.most_simulations]:
+    for combination in ranked[: min(passed, options.most_simulations)]:
         moved = settled | {movable[i][0].hull: -movable[i][0].distance * movable[i][0].normal for i in combination}
         simulated += 1
         trial = world.run(moved, give_up=min(FALLEN, best_displacement))
@@ -126,30 +126,36 @@ def rank_combinations(
 ) -> tuple[list[tuple[int, ...]], int]:
     """Combinations of two to `most_parts` of the movable gaps, the most promising first, and how many may hold.
 
-    Those that can carry the weight come first, those that move the fingers least before others; the rest follow by
-    how much they carry. What touches already helps in every combination.
+    Those that can carry the weight come first: the pair that moves the fingers least, then the three, then the four,
+    then the second pair, and so on, since three often hold what turns between two. The rest follow by how much they
+    carry. What touches already helps in every combination.
     """
     touching = [gap for gap in gaps if gap.distance <= 2.0 * options.protocol.skin]
     plane_points, plane_normals = world.find_plane_contacts()
     friction = options.protocol.contact_friction
     plane_friction = options.protocol.static_friction * options.protocol.friction
 
-    def wrenches(points: Array, normals: Array, mu: float) -> Array:
-        return build_wrenches(points, normals, mu, world.centroid, world.radius)
-
-    still = wrenches(plane_points, plane_normals, plane_friction)
-    by_hull = {gap.hull: wrenches(gap.point[None], -gap.normal[None], friction) for gap in [*touching, *movable]}
-    ranks = []
+    still = build_wrenches(plane_points, plane_normals, plane_friction, world.centroid, world.radius)
+    usable = list({gap.hull: gap for gap in [*touching, *movable]}.values())
+    points = np.array([gap.point for gap in usable]).reshape(-1, 3)
+    inward = -np.array([gap.normal for gap in usable]).reshape(-1, 3)
+    each = np.split(build_wrenches(points, inward, friction, world.centroid, world.radius), max(len(usable), 1), axis=1)
+    by_hull = {gap.hull: columns for gap, columns in zip(usable, each, strict=False)}
+    passing: list[tuple[int, int, tuple[int, ...]]] = []
+    failing: list[tuple[float, tuple[int, ...]]] = []
     for size in range(2, options.most_parts + 1):
+        held: list[tuple[float, tuple[int, ...]]] = []
         for combination in combinations(range(len(movable)), size):
             hulls = {gap.hull for gap in touching} | {movable[i].hull for i in combination}
-            columns = np.concatenate([still, *(by_hull[hull] for hull in sorted(hulls))], axis=1)
-            imbalance = find_imbalance(columns, world.down)
-            passes = imbalance <= options.carried
-            effort = sum(max(movable[i].distance, 0.0) for i in combination)
-            ranks.append((not passes, 0.0 if passes else imbalance, effort, combination))
-    ranks.sort()
-    return [rank[-1] for rank in ranks], sum(not rank[0] for rank in ranks)
+            wrenches = np.concatenate([still, *(by_hull[hull] for hull in sorted(hulls))], axis=1)
+            imbalance = find_imbalance(wrenches, world.down)
+            if imbalance <= options.carried:
+                held.append((sum(max(movable[i].distance, 0.0) for i in combination), combination))
+            else:
+                failing.append((imbalance, combination))
+        passing += [(place, size, combination) for place, (_, combination) in enumerate(sorted(held))]
+    ranked = [combination for *_, combination in sorted(passing)] + [combination for _, combination in sorted(failing)]
+    return ranked, len(passing)
 
 
 def find_part_bones(model: ArticulatedModel) -> dict[int, str]:

@@ -72,7 +72,6 @@ def _find_swallowed_into(out, pairs, parts, fitted, normals, on_crossing_triangl
     is_seen = np.zeros(len(vertices), dtype=np.bool_)
     border = np.empty(len(vertices), dtype=np.int32)
     region = np.empty(len(vertices), dtype=np.int32)
-    model_boxes = _find_model_boxes(parts, fitted)
     for pair in range(len(pairs)):
         for side in range(2):
             for corner in range(3):
@@ -83,7 +82,7 @@ def _find_swallowed_into(out, pairs, parts, fitted, normals, on_crossing_triangl
                     borders += 1
     if on_crossing_triangles:
         for place in range(borders):
-            found += _look(out, found, parts, fitted, model_boxes, normals, border[place])
+            found += _look(out, found, parts, fitted, normals, border[place])
     for place in range(borders + len(parts.seeds)):
         if place < borders:
             begin, end = parts.neighbour_starts[border[place]], parts.neighbour_starts[border[place] + 1]
@@ -98,22 +97,8 @@ def _find_swallowed_into(out, pairs, parts, fitted, normals, on_crossing_triangl
             for member in range(count):
                 if member == TRIES and found == before:
                     break
-                found += _look(out, found, parts, fitted, model_boxes, normals, region[member])
+                found += _look(out, found, parts, fitted, normals, region[member])
     return found
-
-
-@njit(cache=True, nogil=True)
-def _find_model_boxes(parts, fitted):
-    result = np.empty((len(parts.model_starts) - 1, 6))
-    for model in range(len(result)):
-        result[model, :3], result[model, 3:] = np.inf, -np.inf
-        for group in range(parts.model_starts[model], parts.model_starts[model + 1]):
-            node = parts.tree.roots[group]
-            if node >= 0:
-                for axis in range(3):
-                    result[model, axis] = min(result[model, axis], fitted.node_boxes[node, axis])
-                    result[model, 3 + axis] = max(result[model, 3 + axis], fitted.node_boxes[node, 3 + axis])
-    return result
 
 
 @njit(cache=True, nogil=True)
@@ -135,26 +120,37 @@ def _spread(region, is_seen, start, neighbour_starts, neighbours):
 
 
 @njit(cache=True, nogil=True)
-def _look(out, found, parts, fitted, model_boxes, normals, v):
+def _look(out, found, parts, fitted, normals, v):
     """Write vertex v at place `found` if it is inside something; 1 if so, otherwise 0."""
     point, direction = fitted.vertices[v], normals[v]
     deepest = 0.0
     if direction[0] == 0.0 and direction[1] == 0.0 and direction[2] == 0.0:
         return 0
-    for model in range(len(model_boxes)):
-        is_near = True
-        for axis in range(3):
-            is_near &= model_boxes[model, axis] <= point[axis] <= model_boxes[model, 3 + axis]
-        if not is_near:
-            continue
+    may_meet, own = parts.vertices_may_meet[v], parts.vertex_groups[v]
+    for model in range(len(parts.model_starts) - 1):
         start, stop = parts.model_starts[model], parts.model_starts[model + 1]
-        may_meet, own = parts.vertices_may_meet[v], parts.vertex_groups[v]
+        if not _is_near(fitted, may_meet, start, stop, point):
+            continue
         triangle, back, cosine, ahead = find_exits(fitted, may_meet, own, start, stop, point, direction)
         if triangle >= 0 and back >= deepest and count_windings(fitted, start, stop, point, direction, v) > 0:
             deepest = back
             out.ids[found], out.receivers[found], out.cosines[found] = v, triangle, cosine
             out.distances[found, 0], out.distances[found, 1] = back, ahead
     return 1 if deepest > 0.0 else 0
+
+
+@njit(cache=True, nogil=True)
+def _is_near(fitted, may_meet, start, stop, point):
+    """Whether a point is in the box of any group that it may meet: the flesh of a body is in its limbs' boxes."""
+    roots, boxes = fitted.tree.roots, fitted.node_boxes
+    x, y, z = point[0], point[1], point[2]
+    for group in range(start, stop):
+        node = roots[group]
+        if node >= 0 and may_meet[group]:
+            low = (boxes[node, 0] <= x) & (boxes[node, 1] <= y) & (boxes[node, 2] <= z)
+            if low & (boxes[node, 3] >= x) & (boxes[node, 4] >= y) & (boxes[node, 5] >= z):
+                return True
+    return False
 
 
 @njit(cache=True, nogil=True)

@@ -6,7 +6,8 @@ from pathlib import Path
 from tracker import TrackOptions, join_chunks, load_annotations, start_tracking, track_frames
 from tracker.capture.truth import load_truth
 from tracker.evaluation import evaluate_against_truth
-from tracker.model import default_hand, save_model
+from tracker.model import save_model
+from tracker.model.default_hand import default_hand
 from tracker.synthesis.motion import perform
 from tracker.synthesis.recording import RecordingOptions, write_recording
 

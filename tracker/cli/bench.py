@@ -43,7 +43,7 @@ def bench(args: argparse.Namespace) -> dict[str, Any]:
                 f"--sequence {args.sequence}: has {len(performance.actors)} models; needed a single hand."
             )
     else:
-        from tracker.model import default_hand
+        from tracker.model.default_hand import default_hand
 
         performance = perform({"right": default_hand("right")}, "open-close", args.frames)
     return {"one_hand": measure(performance, args.frames, args.iterations)}

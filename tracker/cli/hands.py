@@ -18,7 +18,8 @@ def load_hands(given: Sequence[tuple[str, Path | None]], hands: tuple[str, ...])
     Raises:
         TrackerError: A file is given for a hand that is not among them, or holds none of that side.
     """
-    from tracker.model import default_hand, load_model
+    from tracker.model import load_model
+    from tracker.model.default_hand import default_hand
 
     files = dict(given)
     for side in files:

@@ -1,6 +1,7 @@
 """Hands, objects and their files; how a pose moves them. Knows no cameras.
 
-Names are loaded when they are first asked for: the list of joints must not cost the time that kernels take to load.
+Names are loaded when they are first asked for: the list of joints must not cost the time that kernels take to load. The
+default hand is `tracker.model.default_hand.default_hand`: its module has its name, so it cannot be offered here.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
     from tracker.model.decimation import decimate
-    from tracker.model.default_hand import default_hand
     from tracker.model.files import load_model, save_model
     from tracker.model.joints import FINGERS, HAND_EDGES, HAND_JOINTS
     from tracker.model.mirroring import mirror, mirror_pose
@@ -32,7 +32,6 @@ _HOMES = {
     "ShapeBasis": "tracker.model.articulated",
     "Skeleton": "tracker.model.skeleton",
     "decimate": "tracker.model.decimation",
-    "default_hand": "tracker.model.default_hand",
     "load_model": "tracker.model.files",
     "load_t16_model": "tracker.model.t16_files",
     "load_t16_motion": "tracker.model.t16_files",
@@ -54,7 +53,6 @@ __all__ = [
     "ShapeBasis",
     "Skeleton",
     "decimate",
-    "default_hand",
     "load_model",
     "load_t16_model",
     "load_t16_motion",

@@ -21,6 +21,7 @@ from tracker.tracking.depth_range import depth_range
 from tracker.tracking.finger_search import search_fingers
 from tracker.tracking.frame_fit import Fit, FitOptions, draw, fit_frame
 from tracker.tracking.frame_result import FrameResult
+from tracker.tracking.leave_out import leave_out
 from tracker.tracking.objective import Objective
 from tracker.tracking.quality import Quality, measure_quality
 from tracker.tracking.region import region_around
@@ -66,9 +67,16 @@ WIDE = {
 
 @dataclass(frozen=True)
 class _Attempt:
+    """A fitted pose and how well it explains each hand of the scene."""
+
     pose: Array
-    quality: Quality
+    qualities: dict[int, Quality]
     fit: Fit
+
+    @property
+    def quality(self) -> Quality:
+        """Of the hand that is worst explained."""
+        return min(self.qualities.values(), key=lambda quality: quality.score)
 
 
 def track_frames(
@@ -108,11 +116,11 @@ def follow_frame(
     attempt, rest, stages = _follow(frame, camera, setup, state)
     status = "ok"
     if attempt is None or attempt.quality.is_lost:
-        found = _find_again(frame, camera, setup) if recover else None
+        found = _find_again(frame, camera, setup, state, attempt) if recover else None
         attempt, status = (found, "recovered") if found else (attempt, "lost")
     elif recover and rest[1] == 0 and _is_doubtful(attempt.quality, state):
         searched_at = perf_counter()
-        found = _find_again(frame, camera, setup)
+        found = _find_again(frame, camera, setup, state, attempt)
         is_better = found is not None and found.quality.merit > attempt.quality.merit + SCORE_GAIN
         attempt, status = (found, "recovered") if found and is_better else (attempt, "ok")
         longer = 0 if is_better else min(max(FIRST_IMAGE_REST, 2 * rest[2]), LAST_IMAGE_REST)
@@ -210,8 +218,7 @@ def _attempt(
     fit = fit_frame(setup.scene, seen, start, previous, objective, options)
     view = draw(setup.scene.pose_at(fit.pose), seen)
     hands = [index for index, model in enumerate(setup.models) if model.hand]
-    worst = min((measure_quality(view, seen, index) for index in hands), key=lambda quality: quality.score)
-    return _Attempt(fit.pose, worst, fit)
+    return _Attempt(fit.pose, {index: measure_quality(view, seen, index) for index in hands}, fit)
 
 
 def _look(frame: Frame, camera: Camera, setup: TrackSetup, pose: Array) -> Observation | None:
@@ -222,18 +229,26 @@ def _look(frame: Frame, camera: Camera, setup: TrackSetup, pose: Array) -> Obser
     return seen if seen.hand_count >= MIN_PIXELS else None
 
 
-def _find_again(frame: Frame, camera: Camera, setup: TrackSetup) -> _Attempt | None:
-    """Look for every hand in the whole image."""
+def _find_again(
+    frame: Frame, camera: Camera, setup: TrackSetup, state: TrackState, attempt: _Attempt | None
+) -> _Attempt | None:
+    """Look for every hand that is lost, or failing that for the worst, in what the rest of the scene leaves over."""
     near, far = depth_range(frame)
-    poses = []
-    for model in setup.models:
-        found = find_hand(frame, camera, model, setup.preprocessing, near, far)
+    pose = (state.pose if attempt is None else attempt.pose).copy()
+    hands = [index for index, model in enumerate(setup.models) if model.hand]
+    qualities = {} if attempt is None else attempt.qualities
+    wanted = [index for index in hands if index not in qualities or qualities[index].is_lost]
+    kept = [index for index in range(len(setup.models)) if index not in wanted]
+    for index in wanted or [min(hands, key=lambda hand: qualities[hand].score)]:
+        others = [other for other in kept if other != index]
+        rest = leave_out(frame, camera, setup.scene, pose, others)
+        found = find_hand(rest, camera, setup.models[index], setup.preprocessing, near, far)
         if found is None or found.quality.is_lost:
             return None
-        poses.append(found.pose)
-    pose = np.concatenate(poses)
+        pose[setup.scene.pose_slices[index]] = found.pose
+        kept.append(index)
     seen = _look(frame, camera, setup, pose)
     if seen is None:
         return None
-    attempt = _attempt(setup, seen, pose, pose, Objective(), FitOptions(iterations=setup.options.iterations))
-    return None if attempt.quality.is_lost else attempt
+    again = _attempt(setup, seen, pose, pose, Objective(), FitOptions(iterations=setup.options.iterations))
+    return None if again.quality.is_lost else again

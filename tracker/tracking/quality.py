@@ -103,6 +103,8 @@ def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forwar
             f = face[row, column]
             is_hand = labels[row, column] & HAND != 0
             is_drawn = f >= 0 and is_model[f]
+            if f >= 0 and not is_drawn and abs(depth[row, column] - 1.0 / inverse_depth[row, column]) < ALIKE:
+                continue  # another model explains this pixel
             z = 1.0 / inverse_depth[row, column] if is_drawn else 0.0
             hidden = labels[row, column] != 0 and depth[row, column] < z - ALIKE
             difference = abs(depth[row, column] - z)

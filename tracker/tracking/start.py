@@ -16,12 +16,15 @@ from tracker.capture.sequence import Sequence
 from tracker.errors import TrackingError
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.default_hand import default_hand
+from tracker.model.files import load_model
+from tracker.model.scene import Scene
 from tracker.model.shape import with_shape
 from tracker.observation import Observation, observe
 from tracker.tracking.calibration import calibrate_shape, propose_shapes
 from tracker.tracking.depth_range import depth_range
 from tracker.tracking.follow import follow_frame
 from tracker.tracking.frame_fit import FitOptions, draw, fit_frame
+from tracker.tracking.leave_out import leave_out
 from tracker.tracking.objective import Objective
 from tracker.tracking.options import TrackOptions
 from tracker.tracking.quality import measure_quality
@@ -29,6 +32,7 @@ from tracker.tracking.region import region_around, whole_image
 from tracker.tracking.setup import TrackSetup, choose_camera
 from tracker.tracking.start_annotated import mark_joints, start_hand, undistort_points
 from tracker.tracking.start_automatic import find_hand
+from tracker.tracking.start_object import place_object
 from tracker.tracking.state import TrackState
 
 log = logging.getLogger(__name__)
@@ -61,7 +65,7 @@ def start_tracking(
     Args:
         sequence: The recording.
         options: What the user chose.
-        models: `right` and `left` hands to use in place of the default ones.
+        models: Hands, `right` and `left`, to use in place of the default ones, and objects in place of the recording's.
         annotations: Only those of the first frame are looked at.
         progress: Told the stage and the share of it that is done.
 
@@ -76,26 +80,40 @@ def start_tracking(
         raise TrackingError(f"{sequence.name}: names no hands; set `hands` to right, left or both.")
     given = models or {}
     hands = {name: given.get(name) or default_hand(name) for name in names}
-    placed: list[tuple[ArticulatedModel, Array]] = []
-    for name in names:
+    marked = {name: annotations.find(frames[0], camera_id, name) if annotations else None for name in names}
+    placed: dict[str, tuple[ArticulatedModel, Array]] = {}
+    for name in sorted(names, key=lambda hand: marked[hand] is None):  # those that somebody marked come first
         tell(f"placing the {name} hand", 0.0)
-        marked = annotations.find(frames[0], camera_id, name) if annotations else None
         setup = TrackSetup((name,), (hands[name],), camera_id, options)
-        placed.append(_begin(sequence, setup, frames, marked, tell))
-    setup = TrackSetup(names, tuple(model for model, _ in placed), camera_id, options)
-    pose = np.concatenate([pose for _, pose in placed])
-    return setup, TrackState(frames[0], pose, pose, is_lost=not np.any(pose))
+        placed[name] = _begin(sequence, setup, frames, marked[name], list(placed.values()), tell)
+    for item in sequence.objects:
+        tell(f"placing {item.name}", 0.0)
+        model = given.get(item.name) or load_model(sequence.object_path(item.name))
+        placed[item.name] = model, place_object(model, item)
+    order = (*names, *(item.name for item in sequence.objects))
+    setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options)
+    pose = np.concatenate([placed[name][1] for name in order])
+    is_lost = any(not np.any(placed[name][1]) for name in names)
+    return setup, TrackState(frames[0], pose, pose, is_lost=is_lost)
 
 
 def _begin(
-    sequence: Sequence, setup: TrackSetup, frames: range, marked: Annotation | None, tell: Progress
+    sequence: Sequence,
+    setup: TrackSetup,
+    frames: range,
+    marked: Annotation | None,
+    others: list[tuple[ArticulatedModel, Array]],
+    tell: Progress,
 ) -> tuple[ArticulatedModel, Array]:
-    """One hand with its shape fitted, and its pose in the first frame: zeros if nothing like a hand is there."""
+    """One hand with its shape fitted, and its pose in the first frame: zeros if nothing like a hand is there.
+
+    `others` are hands that were placed before, with their poses; what they explain is not looked at.
+    """
     base = setup.models[0]
     if base.shape is None or not setup.options.calibrate:
-        _, pose = _place(sequence, setup, frames[0], marked)
+        _, pose = _place(sequence, setup, frames[0], marked, others)
         return base, np.zeros(base.num_dofs) if pose is None else pose
-    merit, pose = _place(sequence, setup, frames[0], marked)
+    merit, pose = _place(sequence, setup, frames[0], marked, others)
     if pose is None:
         return base, np.zeros(base.num_dofs)
     shape = np.zeros(len(base.shape.names))
@@ -119,13 +137,21 @@ def _settle(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> t
     return measure_quality(draw(setup.scene.pose_at(pose), seen), seen).merit, pose
 
 
-def _place(sequence: Sequence, setup: TrackSetup, index: int, marked: Annotation | None) -> tuple[float, Array | None]:
+def _place(
+    sequence: Sequence,
+    setup: TrackSetup,
+    index: int,
+    marked: Annotation | None,
+    others: list[tuple[ArticulatedModel, Array]],
+) -> tuple[float, Array | None]:
     """Merit and pose of one hand in one frame; no pose if nothing like a hand is there."""
     frame, camera = setup.read(sequence, index)
     near, far = depth_range(frame)
     if marked is not None and np.count_nonzero(marked.points[:, 2]) >= MIN_MARKED:
         points = undistort_points(marked.points, sequence.camera(setup.camera_id))
         return _place_marked(frame, camera, points, setup, (near, far))
+    for other, pose in others:
+        frame = leave_out(frame, camera, Scene((other,)), pose, [0])
     found = find_hand(frame, camera, setup.models[0], setup.preprocessing, near, far)
     return (-1.0, None) if found is None else (found.quality.merit, found.pose)
 

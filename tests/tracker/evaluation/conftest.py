@@ -12,7 +12,8 @@ import pytest
 from tracker.capture.annotations import Annotations, load_annotations
 from tracker.capture.sequence import Sequence
 from tracker.capture.truth import Truth, load_truth
-from tracker.model import ArticulatedModel, default_hand, save_model
+from tracker.model import ArticulatedModel, save_model
+from tracker.model.default_hand import default_hand
 from tracker.synthesis.motion import perform, perform_motion
 from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.tracking.chunk import TrackChunk

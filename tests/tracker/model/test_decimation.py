@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tracker.errors import TrackerError
-from tracker.model import MAX_WEIGHTS, ArticulatedModel, Scene, decimate, default_hand, load_t16_model, with_shape
+from tracker.model import MAX_WEIGHTS, ArticulatedModel, Scene, decimate, load_t16_model, with_shape
 from tracker.model.decimation import (
     closest_on_triangles,
     compute_volume,
@@ -17,6 +17,7 @@ from tracker.model.decimation import (
     limit_weights,
     simplify,
 )
+from tracker.model.default_hand import default_hand
 
 
 @pytest.fixture(scope="module")

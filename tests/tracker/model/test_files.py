@@ -11,7 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tracker.errors import ModelFileError
-from tracker.model import default_hand, load_model, load_t16_model, load_t16_motion
+from tracker.model import load_model, load_t16_model, load_t16_motion
+from tracker.model.default_hand import default_hand
 
 BOX = """OFF
 8 6 0

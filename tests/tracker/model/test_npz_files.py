@@ -14,8 +14,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tracker.errors import ModelFileError
-from tracker.model import ArticulatedModel, Skeleton, default_hand, load_model, save_model
-from tracker.model.default_hand import DATA
+from tracker.model import ArticulatedModel, Skeleton, load_model, save_model
+from tracker.model.default_hand import DATA, default_hand
 
 GIVEN = DATA.read_bytes()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tracker.model import default_hand
+from tracker.model.default_hand import default_hand
 from tracker.model.joints import HAND_JOINTS
 from tracker.synthesis.motion import DISTANCE, MOTIONS, perform
 from tracker.synthesis.performance import render_moment

@@ -7,8 +7,8 @@ from typing import Any
 
 from tracker.errors import TrackingError
 
-TERMS = ("LO",)
-"""Sets of terms that can be asked for, in the paper's letters."""
+TERMS = ("LO", "LO+C", "LO+S", "LO+SC", "LO+P", "LO+CP", "LO+SP", "LO+SCP")
+"""Sets of terms that can be asked for, in the paper's letters: C collision, S salient points, P physics."""
 
 
 def _option(default: Any, help_text: str, **metadata: Any) -> Any:
@@ -23,7 +23,9 @@ class TrackOptions:
         TrackingError: A value makes no sense; the message says which and what is allowed.
     """
 
-    terms: str = _option("LO", "Terms of the objective: LO fits depth in both directions.", choices=TERMS)
+    terms: str = _option(
+        "LO", "Terms: LO fits depth in both directions, C collision, S fingertips, P physics.", choices=TERMS
+    )
     iterations: int = _option(10, "Gauss-Newton iterations on every frame.")
     first_iterations: int = _option(50, "Iterations on the first frame.")
     first_frame: int = _option(0, "First frame to track.")
@@ -51,6 +53,11 @@ class TrackOptions:
                 raise TrackingError(f"{name} is {value!r}; needed a number from {low} to {high}.")
         if 0 <= self.last_frame < self.first_frame:
             raise TrackingError(f"last_frame {self.last_frame} comes before first_frame {self.first_frame}.")
+
+    @property
+    def term_letters(self) -> str:
+        """The letters behind LO."""
+        return self.terms.partition("+")[2]
 
     def to_json(self) -> dict[str, Any]:
         """Plain values by name."""

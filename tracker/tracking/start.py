@@ -34,6 +34,7 @@ from tracker.tracking.start_annotated import mark_joints, start_hand, undistort_
 from tracker.tracking.start_automatic import find_hand
 from tracker.tracking.start_object import place_object
 from tracker.tracking.state import TrackState
+from tracker.tracking.tools import Tools
 
 log = logging.getLogger(__name__)
 
@@ -183,10 +184,11 @@ def _calibrate(
     first_second = frames[: max(1, min(len(frames), round(sequence.fps)))]
     every = max(1, len(first_second) // CALIBRATION_FRAMES)
     state = TrackState(frames[0], pose, pose)
+    tools = Tools(Objective(), None, None)
     observations: list[Observation] = []
     poses: list[Array] = []
     for done, index in enumerate(first_second):
-        state, result = follow_frame(sequence, sized, state, recover=False)
+        state, result = follow_frame(sequence, sized, tools, state, recover=False)
         if result.status != "ok" or result.quality is None or result.quality.merit < 0.9 * merit:
             break
         is_telling = done % every == 0 and result.quality.explained >= WELL_EXPLAINED

@@ -1,0 +1,66 @@
+"""What the terms of a run need besides the frame: the fingertip detector and the physics world."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.detection import Forest, default_detector, find_fingertips
+from tracker.observation import Observation
+from tracker.physics import PhysicsWorld, find_down, find_support
+from tracker.terms.collision import Collision
+from tracker.terms.physics import Physics
+from tracker.terms.salient import Salient
+from tracker.tracking.objective import Objective
+from tracker.tracking.setup import TrackSetup
+
+
+@dataclass(frozen=True)
+class Tools:
+    """Heavy helpers of a run, made once.
+
+    Attributes:
+        objective: Terms that need nothing but the frame.
+        detector: Finds fingertips, or None where the run has no salient points.
+        world: Simulates, or None where the run has no physics or no object.
+    """
+
+    objective: Objective
+    detector: Forest | None
+    world: PhysicsWorld | None
+
+    def for_frame(self, seen: Observation) -> Objective:
+        """The objective of one frame: with its detections, [T16] §3.2.5."""
+        if self.detector is None:
+            return self.objective
+        detections = find_fingertips(self.detector, seen)
+        return replace(self.objective, terms={**self.objective.terms, "salient": Salient(detections)})
+
+    def with_support(self, objective: Objective, setup: TrackSetup, pose: npt.NDArray[np.float64]) -> Objective | None:
+        """The objective with contacts that keep the object from falling, or None if it does not fall, [T16] §3.2.6."""
+        if self.world is None:
+            return None
+        support = find_support(self.world, setup.scene.pose_at(pose))
+        if support.is_stable or not support.contacts:
+            return None
+        return replace(objective, terms={**objective.terms, "physics": Physics(support.contacts)})
+
+
+@contextmanager
+def make_tools(setup: TrackSetup, T_world_camera: npt.NDArray[np.float64]) -> Iterator[Tools]:
+    """The helpers that the run's terms ask for, closed at the end."""
+    letters = setup.options.term_letters
+    terms = dict(Objective().terms)
+    if "C" in letters:
+        terms["collision"] = Collision()
+    has_object = any(not model.hand for model in setup.models)
+    detector = default_detector() if "S" in letters else None
+    if "P" not in letters or not has_object:
+        yield Tools(Objective(terms=terms), detector, None)
+        return
+    with PhysicsWorld(setup.scene, down=find_down(T_world_camera)) as world:
+        yield Tools(Objective(terms=terms), detector, world)

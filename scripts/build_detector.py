@@ -26,10 +26,10 @@ SEED = 20160
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=DATA)
-    parser.add_argument("--images", type=int, default=3000, help="to learn from")
+    parser.add_argument("--images", type=int, default=4000, help="to learn from")
     parser.add_argument("--held-out", type=int, default=300, help="to calibrate confidences with")
     parser.add_argument("--patches", type=int, default=60_000, help="of each sort, for each tree")
-    parser.add_argument("--tests", type=int, default=8_000, help="at each node")
+    parser.add_argument("--tests", type=int, default=6_000, help="at each node")
     parser.add_argument("--threads", type=int, default=2)
     args = parser.parse_args()
     began = time.monotonic()

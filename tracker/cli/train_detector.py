@@ -131,8 +131,8 @@ def _check(args: argparse.Namespace) -> None:
             raise TrackerError(f"--{name.replace('_', '-')} is {getattr(args, name)}; it must be at least 1.")
     if args.rendered < 0 or args.seed < 0:
         raise TrackerError("--rendered and --seed must be at least 0.")
-    if not 0.2 <= args.pixel_size <= 50.0:
-        raise TrackerError(f"--pixel-size is {args.pixel_size} mm; it must be from 0.2 to 50.")
+    if not 0.5 <= args.pixel_size <= 20.0:
+        raise TrackerError(f"--pixel-size is {args.pixel_size} mm; it must be from 0.5 to 20.")
     if args.curve is not None and not args.test:
         raise TrackerError("--curve needs --test RECORDING, the recordings that the curve is of.")
 

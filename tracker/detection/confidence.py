@@ -17,7 +17,7 @@ def calibrate_confidence(
     forest: Forest,
     confidences: npt.NDArray[np.float64],
     precision: npt.NDArray[np.float64],
-    wanted: float = 0.9,
+    wanted: float = 0.8,
 ) -> Forest:
     """The forest with confidences scaled so that of the detections above `C_THR` at least `wanted` are right.
 

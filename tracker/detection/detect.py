@@ -36,7 +36,7 @@ class DetectOptions:
 
     min_confidence: float = 3.0
     max_overlap: float = 0.5
-    stride: int = 1
+    stride: int = 2
     scales: tuple[float, ...] = (1.0,)
     cell: float = 0.002
     blur: float = 0.0025

@@ -50,7 +50,7 @@ def load_forest(path: Path) -> Forest:
     if kind not in ("depth", "color"):
         raise ModelFileError(path, f"the kind {kind[:60]!r}", "'depth' or 'color'")
     sizes = fields.floats("sizes", (3,), 1e6)
-    if not (1e-4 <= sizes[0] <= 0.1 and 1e-3 <= sizes[1] <= 1.0 and sizes[2] > 0.0):
+    if not (5e-4 <= sizes[0] <= 0.02 and 1e-3 <= sizes[1] <= 1.0 and sizes[2] > 0.0):
         raise ModelFileError(path, f"sizes {sizes.tolist()}", "a pixel, a box, m, and a scale of confidences")
     nodes = fields.integers("nodes", (-1, 5), -(2**15), 2**15)
     node_starts = _starts(fields, "node_starts", len(nodes))

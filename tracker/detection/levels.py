@@ -24,6 +24,9 @@ LEVEL_RATIO = 1.25
 DEPTH_STEP = 0.002
 """Depth between two grey levels, m."""
 
+MIN_SPACING = 0.5
+"""Where a level's pixel is narrower than so many px of the image, a fingertip is too small to be found."""
+
 NOTHING = 255
 """Grey level where there is no depth: farther than everything."""
 
@@ -58,7 +61,7 @@ class Level:
 
 
 def build_levels(image: PatchImage, kind: str, pixel_size: float, stride: int = 1, scale: float = 1.0) -> list[Level]:
-    """Levels that together cover the mask, nearest first.
+    """Levels that together cover the mask, nearest first; what is too far away for a fingertip to show is left out.
 
     Args:
         image: Where to look.
@@ -81,6 +84,8 @@ def build_levels(image: PatchImage, kind: str, pixel_size: float, stride: int = 
         upper = near * ratio ** (number + 1) if number < count - 1 else np.inf
         depth = float(near * ratio ** (number + 0.5))
         spacing = scale * pixel_size * image.focal / depth
+        if spacing < MIN_SPACING:
+            break
         levels.append(_build_level(image, kind, depth, spacing, float(lower), float(upper), stride))
     return levels
 

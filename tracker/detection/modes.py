@@ -11,8 +11,8 @@ ROUNDS = 10
 def find_modes(offsets: npt.NDArray[np.float32], count: int) -> npt.NDArray[np.float32]:
     """Groups of offsets (N, 3), the largest first: (count, 4) their means and their share; zeros for none left.
 
-    Grouped by column and row, px of a patch; the depth goes along. k-means from starts that are far from each other, the first of them at the mean. Always the same for the same
-    offsets.
+    Grouped by column and row, px of a patch; the depth goes along. k-means from starts that are far from each other,
+    the first of them at the mean. Always the same for the same offsets.
     """
     modes = np.zeros((count, 4), dtype=np.float32)
     if len(offsets) == 0:

@@ -12,7 +12,7 @@ from tracker.detection.forest import Forest
 from tracker.detection.suppression import compute_overlaps
 from tracker.evaluation.detections import JudgedImage, PrecisionRecall, compute_precision_recall, judge_boxes
 
-ANY_CONFIDENCE = DetectOptions(min_confidence=0.05)
+ANY_CONFIDENCE = DetectOptions(min_confidence=0.05, stride=1)
 """A curve needs the detections that nobody would use, too."""
 
 

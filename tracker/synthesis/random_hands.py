@@ -19,12 +19,15 @@ from tracker.model.shape import with_shape
 from tracker.model.skeleton import Skeleton
 from tracker.synthesis.actor import Actor
 from tracker.synthesis.motion import FPS, find_closing
-from tracker.synthesis.performance import Performance, render_moment
+from tracker.synthesis.performance import Moment, Performance, render_moment
 from tracker.synthesis.sensor import StructuredLight
 from tracker.synthesis.shading import OBJECT_COLORS, SKIN, compute_cosines, shade
 from tracker.synthesis.visibility import ABSENT, VISIBLE, find_visibility
 
 Array = npt.NDArray[np.float64]
+
+OWN_DEPTH = 0.020
+"""A surface at most so far before or behind a joint can be the joint's own, m."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class RandomHands:
     nearest: float = 0.35
     farthest: float = 0.95
     two_hands: float = 0.35
-    thing: float = 0.4
+    thing: float = 0.5
     any_side: float = 0.4
     shape_std: float = 1.0
     joint_std: float = 0.15
@@ -91,8 +94,25 @@ def render_random_image(how: RandomHands, rng: np.random.Generator) -> HandImage
         is_hand=(actor >= 0) & (actor < len(performance.hands)),
         camera=performance.camera,
         tips=moment.pixels[kept],
-        is_visible=visibility[kept] == VISIBLE,
+        is_visible=(visibility[kept] == VISIBLE) & _shows_own_hand(performance, moment, actor)[kept],
     )
+
+
+def _shows_own_hand(performance: Performance, moment: Moment, actor: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+    """(J,) whether the image shows a joint's own hand next to it: bodies placed by chance pass through each other.
+
+    actor (H, W) is whose surface a pixel shows.
+    """
+    owners = [number for number, one in enumerate(performance.actors) for _ in one.joint_names]
+    depths = se3.transform(performance.camera.T_camera_world, moment.joints)[:, 2]
+    result = np.zeros(len(owners), dtype=np.bool_)
+    for index, (owner, depth) in enumerate(zip(owners, depths, strict=True)):
+        if depth <= 0.0:
+            continue
+        column, row = (int(value) for value in np.rint(np.clip(moment.pixels[index], -99.0, 99_999.0)))
+        window = (slice(max(0, row - 2), max(0, row + 3)), slice(max(0, column - 2), max(0, column + 3)))
+        result[index] = bool(np.any((actor[window] == owner) & (np.abs(moment.depth[window] - depth) < OWN_DEPTH)))
+    return result
 
 
 def _arrange(how: RandomHands, rng: np.random.Generator) -> Performance:

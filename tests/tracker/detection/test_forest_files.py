@@ -1,5 +1,6 @@
 """Detector files come back to the last bit; what is no detector is refused."""
 
+import contextlib
 import io
 import zipfile
 from dataclasses import fields
@@ -9,8 +10,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.tracker.detection.toys import PATCHES, SMALL, disc_patches
+from tests.tracker.detection.toys import PATCHES, SMALL, disc_image, disc_patches
 from tracker.detection.default_detector import DATA, default_detector
+from tracker.detection.detect import DetectOptions, find_in_image
 from tracker.detection.forest_files import load_forest, save_forest
 from tracker.detection.training import train_forest
 from tracker.errors import ModelFileError
@@ -123,10 +125,10 @@ def test_garbled_bytes_give_a_detector_or_a_clear_error(saved, tmp_path, data):
     del content[data.draw(st.sampled_from([len(content), len(content) // 2, 10])) :]
     path = tmp_path / "garbled.npz"
     path.write_bytes(bytes(content))
-    try:
-        load_forest(path)
-    except ModelFileError as error:
-        assert str(path) in str(error)
+    with contextlib.suppress(ModelFileError):
+        # What is still a detector can be used: no walk leaves the forest.
+        forest = load_forest(path)
+        find_in_image(forest, disc_image(np.random.default_rng(0))[0], DetectOptions(min_confidence=0.0))
 
 
 def test_a_member_that_claims_more_than_it_holds_is_refused(saved, tmp_path):

@@ -45,8 +45,10 @@ def test_the_same_disc_twice_as_far_is_found_with_the_same_confidence(forest, rn
         replace(image, depth=(image.depth + np.float32(0.5)), focal=FOCAL * 2.0),
         DetectOptions(min_confidence=0.0),
     )
-    np.testing.assert_allclose(far.centers[:3], near.centers[:3], atol=3.0)
-    np.testing.assert_allclose(far.confidences[:3], near.confidences[:3], rtol=0.35)
+    distances = np.linalg.norm(far.centers[:3, None] - near.centers[None, :3], axis=2)
+    assert distances.min(axis=1).max() < 1.0
+    nearest = distances.argmin(axis=1)
+    np.testing.assert_allclose(far.confidences[:3], near.confidences[nearest], rtol=0.35)
 
 
 def test_boxes_have_their_size_in_metres(forest, rng):
@@ -86,7 +88,7 @@ def test_probabilities_and_offsets_of_leaves_are_those_of_their_patches(patches,
 
 
 def test_patches_walk_the_same_way_in_training_and_detection(forest, rng):
-    image, centers = disc_image(rng)
+    image, _ = disc_image(rng)
     level = build_levels(image, "depth", forest.pixel_size)[0]
     found = find_leaves(forest, level)
     for n in range(0, len(level.centers), 97):

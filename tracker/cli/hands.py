@@ -1,4 +1,4 @@
-"""Which model stands for which hand."""
+"""Which model stands for which hand or object."""
 
 from __future__ import annotations
 
@@ -34,4 +34,20 @@ def load_hands(given: Sequence[tuple[str, Path | None]], hands: tuple[str, ...])
             raise TrackerError(
                 f"{path}: is {'no hand' if found is None else f'a {found.side} hand'}; needed a {side} hand."
             )
+    return models
+
+
+def load_objects(given: Sequence[tuple[str, Path]], objects: tuple[str, ...]) -> dict[str, ArticulatedModel]:
+    """A model for each object that a file is given for.
+
+    Raises:
+        TrackerError: The recording names no such object.
+    """
+    from tracker.model import load_model
+
+    models = {}
+    for name, path in given:
+        if name not in objects:
+            raise TrackerError(f"--object {name}: the recording names {list(objects) or 'no objects'}.")
+        models[name] = load_model(path)
     return models

@@ -7,8 +7,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from tracker.cli.command import add_json, choose_frames, parse_hand, parse_range, run_guarded
-from tracker.cli.hands import load_hands
+from tracker.cli.command import add_json, choose_frames, parse_hand, parse_named_file, parse_range, run_guarded
+from tracker.cli.hands import load_hands, load_objects
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError
 
@@ -33,7 +33,15 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--annotations", type=Path, metavar="FILE", help="instead of the recording's own; 'none' for no start"
     )
-    parser.add_argument("--terms", metavar="LO", help="terms of the objective")
+    parser.add_argument(
+        "--object",
+        type=parse_named_file,
+        action="append",
+        default=[],
+        metavar="NAME=FILE",
+        help="model of an object that the recording names, in place of the recording's own",
+    )
+    parser.add_argument("--terms", metavar="LO+SC", help="LO with any of S, C, P behind a plus (LO)")
     parser.add_argument("--iterations", type=int, metavar="N", help="Gauss-Newton iterations a frame (10)")
     parser.add_argument("--first-iterations", type=int, metavar="N", help="iterations on the first frame (50)")
     parser.add_argument(
@@ -83,7 +91,10 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
     setup, state = start_tracking(
         sequence,
         options,
-        load_hands(args.hand, sequence.hands),
+        {
+            **load_hands(args.hand, sequence.hands),
+            **load_objects(args.object, tuple(item.name for item in sequence.objects)),
+        },
         annotations,
         lambda stage, share: line.show(0.0, stage),
     )

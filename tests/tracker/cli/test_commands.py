@@ -102,3 +102,19 @@ def test_a_truth_file_that_is_none_is_refused(tracked, tmp_path, capsys):
     path.write_bytes(b"not a zip file")
     assert main(["evaluate", str(tracked), "--truth", str(path)]) == 2
     assert "not a truth file" in capsys.readouterr().err
+
+
+def test_a_hand_is_calibrated_and_the_model_can_be_tracked_with(recording, tmp_path, capsys):
+    model = tmp_path / "mine.npz"
+    assert main(["calibrate", str(recording), "--out", str(model), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"out": str(model), "hand": "right"}
+    out = tmp_path / "track"
+    options = ["--no-calibration", "--frames", "0:3", "--terms", "LO+C"]
+    assert main(["track", str(recording), "--hand", f"right={model}", *options, "--out", str(out)]) == 0
+    assert json.loads((out / "summary.json").read_text())["lost"] == 0
+
+
+def test_an_object_that_the_recording_does_not_name_is_refused(recording, tmp_path, capsys):
+    arguments = ["track", str(recording), "--object", "ball=ball.ply", "--out", str(tmp_path / "track")]
+    assert main(arguments) == 2
+    assert "names no objects" in capsys.readouterr().err

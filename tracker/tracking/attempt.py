@@ -52,8 +52,10 @@ class Attempt:
         return min(self.qualities.values(), key=lambda quality: quality.score)
 
 
-def try_again(setup: TrackSetup, seen: Observation, start: Array, objective: Objective, options: FitOptions) -> Attempt:
-    """A search of single fingers, a fit with longer reach, and the usual fit from there."""
+def try_again(
+    setup: TrackSetup, seen: Observation, start: Array, objective: Objective, guided: Objective, options: FitOptions
+) -> Attempt:
+    """A search of single fingers, a fit with longer reach and `guided` by fingertips, and the usual fit from there."""
     scene, pose = setup.scene, start
     thin = seen.thin(max(1, round((seen.hand_count / SCORED_PIXELS) ** 0.5)))
     for index, (model, where) in enumerate(zip(setup.models, scene.pose_slices, strict=True)):
@@ -63,7 +65,7 @@ def try_again(setup: TrackSetup, seen: Observation, start: Array, objective: Obj
                 return measure_quality(draw(scene.pose_at(trial), thin), thin, index).score
 
             pose = search_fingers(pose, where.start, model, score)
-    wide = replace(objective, terms={**objective.terms, **WIDE})
+    wide = replace(guided, terms={**guided.terms, **WIDE})
     far = FitOptions(iterations=options.iterations, damping=1e-2, max_turn=0.25, max_shift=0.02)
     pose = fit_frame(scene, seen, pose, pose, wide, far).pose
     return attempt_fit(setup, seen, pose, pose, objective, options)
@@ -107,5 +109,5 @@ def find_again(
     seen = look(frame, camera, setup, pose)
     if seen is None:
         return None
-    again = attempt_fit(setup, seen, pose, pose, tools.for_frame(seen), FitOptions(iterations=setup.options.iterations))
+    again = attempt_fit(setup, seen, pose, pose, tools.objective, FitOptions(iterations=setup.options.iterations))
     return None if again.quality.is_lost else again

@@ -151,18 +151,16 @@ def _follow(
     is_first = state.next_frame == setup.options.first_frame
     iterations = setup.options.first_iterations if is_first else setup.options.iterations
     options = FitOptions(iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm)
-    started = perf_counter()
-    objective = tools.for_frame(seen)
-    if tools.detector is not None:
-        stages["detecting"] = perf_counter() - started
+    objective = tools.objective
     best = attempt_fit(setup, seen, predicted, state.pose, objective, options)
     stages |= best.fit.stages
     is_falling = best.quality.is_lost or best.quality.score < state.score - SCORE_DROP
     if is_falling or (best.quality.explained < 1.0 - UNEXPLAINED and rest[0] == 0):
         started = perf_counter()
         before = best.quality.score
+        guided = tools.with_fingertips(seen)
         for start in (state.pose, best.pose) if is_falling else (best.pose,):
-            other = try_again(setup, seen, start, objective, options)
+            other = try_again(setup, seen, start, objective, guided, options)
             if other.quality.score > best.quality.score:
                 best = other
         rest = (0 if best.quality.score > before + SCORE_GAIN else FINGER_REST, *rest[1:])

@@ -13,9 +13,9 @@ from tracker.model.joints import HAND_EDGES
 from tracker.observation import observe
 from tracker.rendering import render_view
 from tracker.tracking.frame_fit import find_residuals
-from tracker.tracking.objective import Objective
 from tracker.tracking.region import region_around
 from tracker.tracking.setup import TrackSetup
+from tracker.tracking.tools import make_tools
 
 Array = npt.NDArray[np.float64]
 
@@ -87,7 +87,9 @@ def describe_frame(sequence: Sequence, setup: TrackSetup, pose: Array, index: in
     correspondences: dict[str, npt.NDArray[np.float32]] = {}
     if region is not None:
         seen = observe(frame, camera, region, setup.preprocessing)
-        found = find_residuals(posed, seen, Objective())
+        with make_tools(setup, camera.T_world_camera) as tools:
+            objective = tools.with_fingertips(seen)
+            found = find_residuals(posed, seen, tools.with_support(objective, setup, posed.pose) or objective)
         correspondences = {name: residual.segments(posed).astype(np.float32) for name, residual in found.items()}
     models = []
     for place, (name, model) in enumerate(zip(setup.names, setup.models, strict=True)):

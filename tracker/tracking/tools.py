@@ -33,8 +33,13 @@ class Tools:
     detector: Forest | None
     world: PhysicsWorld | None
 
-    def for_frame(self, seen: Observation) -> Objective:
-        """The objective of one frame: with its detections, [T16] §3.2.5."""
+    def with_fingertips(self, seen: Observation) -> Objective:
+        """The objective with the frame's fingertip detections, [T16] §3.2.5.
+
+        Differs from the paper, which has them in every frame: they are asked for where a fit went badly, which is what
+        they are for. A hand that is followed well gains nothing from them and loses time, and where an object hides
+        fingertips a false detection pulls (docs/objective.md).
+        """
         if self.detector is None:
             return self.objective
         detections = find_fingertips(self.detector, seen)

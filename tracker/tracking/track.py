@@ -86,27 +86,28 @@ class Track:
             "threads": self.setup.options.threads,
         }
 
+    def arrays(self) -> dict[str, np.ndarray]:
+        """The content of `track.npz`."""
+        return {
+            "frame": self.frame,
+            "joint_names": np.array(self.joint_names, dtype=np.str_),
+            "joints_3d": self.joints_3d,
+            "joints_2d": self.joints_2d,
+            "camera_ids": np.array(self.camera_ids, dtype=np.str_),
+            "object_names": np.array(self.setup.object_names, dtype=np.str_),
+            "T_world_object": self.T_world_object,
+            "pose": self.pose,
+            "status": self.status,
+            "seconds": self.seconds,
+        }
+
     def save(self, folder: Path) -> None:
         """Write `track.npz`, `summary.json`, `setup.json` and the models."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         self.setup.save(folder)
         self.chunk.save(folder / "frames.npz")
-        save_arrays(
-            folder / "track.npz",
-            {
-                "frame": self.frame,
-                "joint_names": np.array(self.joint_names, dtype=np.str_),
-                "joints_3d": self.joints_3d,
-                "joints_2d": self.joints_2d,
-                "camera_ids": np.array(self.camera_ids, dtype=np.str_),
-                "object_names": np.array(self.setup.object_names, dtype=np.str_),
-                "T_world_object": self.T_world_object,
-                "pose": self.pose,
-                "status": self.status,
-                "seconds": self.seconds,
-            },
-        )
+        save_arrays(folder / "track.npz", self.arrays())
         temporary = folder / ".summary.json.part"
         temporary.write_text(json.dumps(self.summary(), indent=1))
         temporary.replace(folder / "summary.json")

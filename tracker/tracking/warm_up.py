@@ -8,12 +8,18 @@ import numpy as np
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
+from tracker.detection import default_detector, find_fingertips
 from tracker.geometry import se3
 from tracker.kernel_cache import remove_old_caches
 from tracker.model.default_hand import default_hand
 from tracker.model.scene import Scene
-from tracker.observation import Preprocessing
+from tracker.observation import Preprocessing, observe
 from tracker.rendering import render_depth
+from tracker.terms.collision import Collision
+from tracker.terms.salient import Salient
+from tracker.tracking.frame_fit import FitOptions, fit_frame
+from tracker.tracking.objective import Objective
+from tracker.tracking.region import region_around
 from tracker.tracking.start_automatic import Search, find_hand
 
 
@@ -32,6 +38,17 @@ def warm_up(progress: Callable[[str, float], None] | None = None) -> None:
     color = np.full((120, 160, 3), 120, dtype=np.uint8)
     color[drawn.face >= 0] = (200, 140, 115)
     frame = Frame(0, camera.id, color, drawn.depth.astype(np.float32))
+    region = region_around(se3.transform(T, vertices), camera)
+    assert region is not None, "the drawn hand is in sight"
+    seen = observe(frame, camera, region, Preprocessing(objects=True))
+    terms = {
+        **Objective().terms,
+        "collision": Collision(),
+        "salient": Salient(find_fingertips(default_detector(), seen)),
+    }
+    start = scene.rest_pose()
+    start[:6] = se3.log(T)
+    fit_frame(scene, seen, start, start, Objective(terms=terms), FitOptions(iterations=2))
     find_hand(frame, camera, model, Preprocessing(), 0.1, 1.0, Search(candidates=1, turns=4, rough=1, bent=1, fine=1))
     remove_old_caches()
     tell("kernels are compiled", 1.0)

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         TrackingError,
     )
     from tracker.evaluation.evaluation import Evaluation, evaluate_track
+    from tracker.export.export import EXPORT_KINDS, export_track
     from tracker.model.articulated import ArticulatedModel
     from tracker.model.default_hand import default_hand
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
@@ -52,6 +53,7 @@ _HOMES = {
     "ArchiveLimits": "tracker.capture.archive",
     "ArticulatedModel": "tracker.model.articulated",
     "Camera": "tracker.capture.camera",
+    "EXPORT_KINDS": "tracker.export.export",
     "Evaluation": "tracker.evaluation.evaluation",
     "Frame": "tracker.capture.frame",
     "FrameError": "tracker.errors",
@@ -78,6 +80,7 @@ _HOMES = {
     "default_hand": "tracker.model.default_hand",
     "describe_frame": "tracker.tracking.frame_view",
     "evaluate_track": "tracker.evaluation.evaluation",
+    "export_track": "tracker.export.export",
     "extract_archive": "tracker.capture.archive",
     "find_path_fault": "tracker.capture.relative_path",
     "join_chunks": "tracker.tracking.track",
@@ -94,6 +97,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "EXPORT_KINDS",
     "HAND_EDGES",
     "HAND_JOINTS",
     "IMPORT_FORMATS",
@@ -126,6 +130,7 @@ __all__ = [
     "default_hand",
     "describe_frame",
     "evaluate_track",
+    "export_track",
     "extract_archive",
     "find_path_fault",
     "join_chunks",

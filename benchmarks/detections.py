@@ -69,7 +69,7 @@ def train(recordings: dict[str, Sequence], kind: str, threads: int) -> Forest:
     parts, held_out = [], []
     for name in TRAINED_ON:
         for number, item in enumerate(images(recordings[name], True)):
-            if number % 10 == 9:
+            if number >= 0.9 * recordings[name].frame_count:  # frames next to those learnt from would tell little
                 held_out.append(item)
             else:
                 parts.append(sample_patches(item.image, item.tips, item.is_visible, about, rng))
@@ -130,7 +130,7 @@ def write(rows: list[str], curves: dict[str, PrecisionRecall]) -> None:
     write_atomically(page, (before + "<!-- table -->\n" + "\n".join(rows) + "\n<!-- end -->\n" + after).encode())
     done, data = cv2.imencode(".png", draw(curves))
     assert done
-    write_atomically(DOCS / "detection.png", data.tobytes())
+    write_atomically(DOCS / "pictures" / "detection.png", data.tobytes())
     lines = ["detector,confidence,precision,recall"]
     for name, curve in curves.items():
         for n in range(0, len(curve.confidences), max(1, len(curve.confidences) // 100)):

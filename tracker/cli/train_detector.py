@@ -13,7 +13,12 @@ from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError
 
 if TYPE_CHECKING:
+    from tracker.capture.annotations import Annotations
+    from tracker.capture.sequence import Sequence
     from tracker.detection.annotated_images import AnnotatedImage
+
+MAX_HELD_OUT = 300
+"""Images that are kept aside, at most; more would not say more."""
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
@@ -57,14 +62,13 @@ def train_detector(args: argparse.Namespace) -> dict[str, Any]:
     began = time.monotonic()
     about = PatchOptions(kind=args.on, pixel_size=1e-3 * args.pixel_size, per_image=args.per_image)
     rng = np.random.default_rng(args.seed)
-    # One image of ten is kept aside: its detections say what confidences mean.
     parts, held_out, images = [], [], 0
-    for item in _training_images(args):
+    for item, is_kept_aside in _training_images(args):
         images += 1
-        if images % 10 == 0:
-            held_out.append(item)
-        else:
+        if not is_kept_aside:
             parts.append(sample_patches(item.image, item.tips, item.is_visible, about, rng))
+        elif len(held_out) < MAX_HELD_OUT:
+            held_out.append(item)
     if not parts:
         raise TrackerError("Found no annotated image with depth at the marked joints; give other recordings.")
     patches = join_patches(parts)
@@ -137,35 +141,51 @@ def _check(args: argparse.Namespace) -> None:
         raise TrackerError("--curve needs --test RECORDING, the recordings that the curve is of.")
 
 
-def _training_images(args: argparse.Namespace) -> Iterator[AnnotatedImage]:
-    yield from _annotated(args.recordings, args, args.step)
+def _training_images(args: argparse.Namespace) -> Iterator[tuple[AnnotatedImage, bool]]:
+    """Images, and whether each is kept aside to say what confidences mean.
+
+    Of a recording that is the end: of frames next to those that were learnt from a detector knows too much.
+    """
+    from tracker.detection.annotated_images import count_images
+
+    for folder in args.recordings:
+        sequence, annotations = _load(folder, args)
+        count = count_images(sequence, annotations, args.step)
+        for number, item in enumerate(_annotated([folder], args, args.step)):
+            yield item, number >= 0.9 * count
     if args.rendered > 0:
         from tracker.synthesis.fingertip_images import render_fingertip_images
 
         line = ProgressLine("rendering hands")
         for number, item in enumerate(render_fingertip_images(args.rendered, args.seed)):
-            yield item
+            yield item, number % 10 == 9
             line.show((number + 1) / args.rendered)
 
 
 def _annotated(folders: list[Path], args: argparse.Namespace, step: int) -> Iterator[AnnotatedImage]:
-    from tracker.capture.annotations import load_annotations
-    from tracker.capture.sequence import load_sequence
     from tracker.detection.annotated_images import annotated_images
 
     for folder in folders:
-        sequence = load_sequence(folder)
-        path = sequence.annotations_path
-        if path is None or not path.exists():
-            raise TrackerError(f"{folder}: has no annotations; mark fingertips in some of its frames first.")
-        cameras = [camera for camera in sequence.cameras if camera.has_depth]
-        if not cameras:
-            raise TrackerError(f"{folder}: has no camera with depth, which gives patches their scale.")
-        if args.on == "color" and not any(camera.has_color for camera in cameras):
-            raise TrackerError(f"{folder}: has no camera with both colour and depth; needed for --on color.")
-        for item in annotated_images(sequence, load_annotations(path), step, not args.no_skin):
+        for item in annotated_images(*_load(folder, args), step, not args.no_skin):
             if args.on == "depth" or item.image.color is not None:
                 yield item
+
+
+def _load(folder: Path, args: argparse.Namespace) -> tuple[Sequence, Annotations]:
+    """A recording and its annotations, if fingertips can be learnt from them."""
+    from tracker.capture.annotations import load_annotations
+    from tracker.capture.sequence import load_sequence
+
+    sequence = load_sequence(folder)
+    path = sequence.annotations_path
+    if path is None or not path.exists():
+        raise TrackerError(f"{folder}: has no annotations; mark fingertips in some of its frames first.")
+    cameras = [camera for camera in sequence.cameras if camera.has_depth]
+    if not cameras:
+        raise TrackerError(f"{folder}: has no camera with depth, which gives patches their scale.")
+    if args.on == "color" and not any(camera.has_color for camera in cameras):
+        raise TrackerError(f"{folder}: has no camera with both colour and depth; needed for --on color.")
+    return sequence, load_annotations(path)
 
 
 def _write_curve(path: Path, curve: Any) -> None:

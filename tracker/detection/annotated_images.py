@@ -13,7 +13,7 @@ from tracker.capture.frame import Frame
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.capture.sequence import Sequence
 from tracker.detection.patch_image import PatchImage
-from tracker.observation import Observation, Preprocessing, Region, observe
+from tracker.observation import Preprocessing, Region, observe
 
 Array = npt.NDArray[np.float64]
 
@@ -33,14 +33,14 @@ class AnnotatedImage:
 
     Attributes:
         name: For people: recording and frame.
-        observation: Of that part.
+        region: Where that part lies in the image.
         image: What a forest looks at in it.
         tips: (T, 2) column and row of the marked fingertips in that part, px.
         is_visible: (T,) seen, not occluded.
     """
 
     name: str
-    observation: Observation
+    region: Region
     image: PatchImage
     tips: Array
     is_visible: npt.NDArray[np.bool_]
@@ -72,6 +72,16 @@ def annotated_images(
                 yield found
 
 
+def count_images(sequence: Sequence, annotations: Annotations, step: int = 1) -> int:
+    """How many images `annotated_images` takes at most."""
+    count = 0
+    for camera in sequence.cameras:
+        frames = {item.frame for item in annotations.items if item.camera == camera.id}
+        if camera.has_depth:
+            count += -(-len([frame for frame in frames if frame < sequence.frame_count]) // step)
+    return count
+
+
 def _cut_out(
     name: str, frame: Frame, camera: RecordedCamera, hands: list[Annotation], use_skin: bool
 ) -> AnnotatedImage | None:
@@ -88,7 +98,7 @@ def _cut_out(
     tips = tips[tips[:, 2] != ABSENT]
     return AnnotatedImage(
         name,
-        observation,
+        region,
         PatchImage.of(observation, color),
         tips[:, :2] - np.array([region.column, region.row]),
         tips[:, 2] == VISIBLE,

@@ -49,5 +49,5 @@ def _cut_out(rendered: HandImage, number: int, hand_only: bool) -> AnnotatedImag
     color = np.ascontiguousarray(rendered.color[inside])
     image = PatchImage.of(observation, color)
     return AnnotatedImage(
-        f"render {number}", observation, image, rendered.tips - np.array([left, top]), rendered.is_visible
+        f"render {number}", region, image, rendered.tips - np.array([left, top]), rendered.is_visible
     )

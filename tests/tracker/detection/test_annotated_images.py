@@ -6,7 +6,7 @@ import pytest
 from tracker.capture.annotations import Annotation, Annotations, load_annotations
 from tracker.capture.sequence import load_sequence
 from tracker.cli.__main__ import main
-from tracker.detection.annotated_images import TIPS, annotated_images
+from tracker.detection.annotated_images import TIPS, annotated_images, count_images
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def test_fingertips_of_both_hands_are_where_they_were_marked(recording, annotati
     assert len(items) == 6
     for number, item in enumerate(items):
         marked = np.concatenate([a.points[list(TIPS)] for a in annotations.at(number)])
-        region = item.observation.region
+        region = item.region
         np.testing.assert_allclose(item.tips + np.array([region.column, region.row]), marked[:, :2])
         np.testing.assert_array_equal(item.is_visible, marked[:, 2] == 2)
         assert item.image.depth.shape == item.image.color.shape[:2] == (region.height, region.width)
@@ -39,6 +39,12 @@ def test_the_wall_behind_is_left_out_and_colour_leaves_hands_only(recording, ann
         assert known.max() < 0.9
         share = item.image.mask.mean()
         assert 0.1 < share < 0.7
+
+
+def test_as_many_are_taken_as_were_counted(recording, annotations):
+    for step in (1, 4, 100):
+        taken = list(annotated_images(recording, annotations, step))
+        assert len(taken) == count_images(recording, annotations, step)
 
 
 def test_one_of_so_many_is_taken(recording, annotations):

@@ -64,5 +64,5 @@ def test_images_to_learn_from_hold_hand_pixels_in_a_narrow_frame():
         assert (item.image.depth[item.image.mask] > 0).all()
         assert item.image.color is not None
         assert item.image.color.shape[:2] == item.image.depth.shape
-        assert item.observation.depth.shape == item.image.depth.shape
+        assert (item.region.height, item.region.width) == item.image.depth.shape
         assert len(item.tips) == len(item.is_visible)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.tracker.grips import PINCH, cube, gripped
-from tracker.model import default_hand
+from tracker.model.default_hand import default_hand
 from tracker.physics import Contact, PhysicsWorld, SupportOptions, find_part_bones, find_support
 from tracker.physics.support import rank_combinations
 

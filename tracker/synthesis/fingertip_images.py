@@ -48,6 +48,4 @@ def _cut_out(rendered: HandImage, number: int, hand_only: bool) -> AnnotatedImag
     inside = (slice(top, top + region.height), slice(left, left + region.width))
     color = np.ascontiguousarray(rendered.color[inside])
     image = PatchImage.of(observation, color)
-    return AnnotatedImage(
-        f"render {number}", region, image, rendered.tips - np.array([left, top]), rendered.is_visible
-    )
+    return AnnotatedImage(f"render {number}", region, image, rendered.tips - np.array([left, top]), rendered.is_visible)

@@ -16,6 +16,9 @@ from tracker.terms.residual import MILLIMETRES, FrameContext
 REACH = 4.0
 """A field ends so many circumradii from its triangle; two crossing triangles of about one size are within three."""
 
+WIDEST = 3.0
+"""A cone stops widening at so many circumradii."""
+
 
 @dataclass(frozen=True)
 class Collision:
@@ -35,16 +38,17 @@ class Collision:
       vertex's row sees that share; where the cosine is negative the vertex is on the far side and would go deeper.
     - The fields at a vertex add up (Fig. 6), but the sum moves it no farther than the strongest of them. Each vertex
       counts once, however many triangles it meets, so the weight does not depend on how fine the mesh is.
-    - Beyond the apex (h ≥ σ) there is no field, before Φ changes its sign there. A field ends at REACH circumradii: a
-      cone in millimetres is 80 degrees wide, and the corner of a large triangle far away has no business in it.
-      Triangles without area have no field.
+    - Beyond the apex (h ≥ σ) there is no field, before Φ changes its sign there. Triangles without area have none.
+    - A cone widens to WIDEST circumradii only and ends at REACH of them. In millimetres it opens by 80 degrees, so that
+      vertices far to the side, behind the triangle's plane but outside the body, would be pushed hardest of all.
     - Vertices that are wholly inside, whose triangles cross nothing, are found too and have as receiver the triangle
       through which they would leave backwards (Φ = 0), if that is the shorter way out.
     - Fields and normals are held fixed when the correspondences are used.
     """
 
-    weight: float = 10.0
-    """γ_c (§4.1.3), of each intruding vertex."""
+    weight: float = 1.0
+    """γ_c, of each intruding vertex. The paper's 10 (§4.1.3) belongs to sums over pairs, which grow with the mesh; here
+    it would fight depth images in which flesh gives way, 5 mm where a pipe presses into the ball of a thumb."""
 
     sigma_mm: float = 0.5
     """σ, half the height of the transition and the cone's apex above its triangle, mm (§3.2.4)."""
@@ -116,7 +120,7 @@ def measure_cone_depth(h, lateral, radius, sigma):
     """
     if h >= sigma:
         return 0.0
-    phi = lateral / (radius - radius / sigma * h)
+    phi = lateral / (radius * min(1.0 - h / sigma, WIDEST))
     if phi >= 1.0:
         return 0.0
     if h <= -sigma:

@@ -10,7 +10,7 @@ from tracker.model.default_hand import default_hand
 from tracker.model.scene import Scene
 from tracker.solver.damped_step import compute_damped_step
 from tracker.terms.colliding_parts import find_crossings
-from tracker.terms.collision import REACH, Collision, compute_repulsion, measure_cone_depth
+from tracker.terms.collision import REACH, WIDEST, Collision, compute_repulsion, measure_cone_depth
 from tracker.terms.normal_equations import NormalEquations
 from tracker.terms.penetration import find_swallowed, measure_penetration
 
@@ -51,7 +51,7 @@ def push_apart(scene: Scene, pose: np.ndarray, most: int) -> tuple[np.ndarray, i
 
 
 def field_of(triangle: np.ndarray, vertex: np.ndarray, sigma: float) -> float:
-    """√Ψ, mm, by [T16] Eq. 9-11 word for word: triangle (3, 3) and vertex (3,) in mm."""
+    """√Ψ, mm, by [T16] Eq. 9-11, ended where the term ends it: triangle (3, 3) and vertex (3,) in mm."""
     a, b, c = triangle
     normal = np.cross(b - a, c - a)
     normal /= np.linalg.norm(normal)
@@ -61,7 +61,7 @@ def field_of(triangle: np.ndarray, vertex: np.ndarray, sigma: float) -> float:
     h = normal @ (vertex - center)
     if h >= sigma:
         return 0.0
-    phi = np.linalg.norm(vertex - center - h * normal) / (-radius / sigma * h + radius)
+    phi = np.linalg.norm(vertex - center - h * normal) / min(-radius / sigma * h + radius, WIDEST * radius)
     if phi >= 1 or np.linalg.norm(vertex - center) > REACH * radius:
         return 0.0
     if h <= -sigma:

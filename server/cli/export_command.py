@@ -19,8 +19,10 @@ if TYPE_CHECKING:
 
     from server.sequences.models import SequenceRow
     from server.storage import Storage
+    from server.tracks.models import TrackRow
 
-FORMATS = ("annotations", "recording", "track")
+TRACK_FILES = ("npz", "csv", "glb", "mano")
+FORMATS = ("annotations", "recording", "track", *TRACK_FILES)
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
@@ -28,7 +30,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "export",
         help="copy something out of the studio",
         description="Copy a recording's annotations (annotations.json), the recording (a folder, with its annotations) "
-        "or its newest track (a folder) out of the studio.",
+        "or its newest track out of the studio: the folder that tracking wrote (track), its arrays (npz), a table of "
+        "joints (csv), an animation (glb: glTF) or MANO-style parameters (mano: npz).",
     )
     parser.add_argument("name", metavar="NAME", help="name or id of a recording; for a track also the track's id")
     parser.add_argument("--format", choices=FORMATS, required=True)
@@ -46,6 +49,8 @@ def run(args: argparse.Namespace) -> int:
     with open_studio() as studio, studio.database.reading() as session:
         if args.format == "track":
             result = _export_track(session, studio.storage, args.name, out)
+        elif args.format in TRACK_FILES:
+            result = _export_track_file(session, studio.storage, args.name, args.format, out)
         else:
             sequence = find_recording(session, args.name)
             export = _export_annotations if args.format == "annotations" else _export_recording
@@ -101,20 +106,36 @@ def _export_recording(session: Session, storage: Storage, sequence: SequenceRow,
 
 
 def _export_track(session: Session, storage: Storage, name: str, out: Path) -> dict[str, Any]:
+    track = _find_track(session, name)
+    folder = storage.folder("tracks", track.id)
+    _appear(out, lambda path: shutil.copytree(folder, path, ignore=shutil.ignore_patterns("overlays", "exports")))
+    return {"track": str(track.id), "frames": track.frame_count}
+
+
+def _export_track_file(session: Session, storage: Storage, name: str, kind: str, out: Path) -> dict[str, Any]:
+    from tracker import export_track, load_sequence, load_track
+
+    track = _find_track(session, name)
+    sequence = load_sequence(storage.folder("sequences", track.sequence_id))
+    found = load_track(storage.folder("tracks", track.id))
+    _appear(out, lambda path: export_track(found, sequence, kind, path))
+    return {"track": str(track.id), "frames": track.frame_count}
+
+
+def _find_track(session: Session, name: str) -> TrackRow:
+    """The track of this id, or the newest one of the recording of this id or name."""
     from server.tracks.models import TrackRow
     from server.tracks.service import list_tracks
 
     id_ = _read_id(name)
     track = session.get(TrackRow, id_) if id_ is not None else None
-    if track is None or track.deleted_at is not None:
-        sequence = find_recording(session, name)
-        tracks, _ = list_tracks(session, sequence.id, None, 1)
-        if not tracks:
-            raise CommandError(f"The recording {sequence.name!r} has no track yet; start a tracking job first.")
-        track = tracks[0]
-    folder = storage.folder("tracks", track.id)
-    _appear(out, lambda path: shutil.copytree(folder, path, ignore=shutil.ignore_patterns("overlays")))
-    return {"track": str(track.id), "frames": track.frame_count}
+    if track is not None and track.deleted_at is None:
+        return track
+    sequence = find_recording(session, name)
+    tracks, _ = list_tracks(session, sequence.id, None, 1)
+    if not tracks:
+        raise CommandError(f"The recording {sequence.name!r} has no track yet; start a tracking job first.")
+    return tracks[0]
 
 
 def _appear(out: Path, save: Callable[[Path], Any]) -> None:

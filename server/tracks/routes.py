@@ -14,6 +14,7 @@ from server.database.paging import Cursor, Limit, Page
 from server.errors import NotFoundError, error_responses
 from server.storage import StorageDep
 from server.tracks import service
+from server.tracks.exports import MEDIA_TYPES, find_export
 from server.tracks.overlay import Overlays
 from server.tracks.schemas import TrackFrames, TrackJoints, TrackOut
 
@@ -117,3 +118,20 @@ def download_track_file(
         raise NotFoundError(f"The file {name} of this track is gone from the data folder.")
     media_type = "application/json" if name.endswith(".json") else "application/octet-stream"
     return FileResponse(path, media_type=media_type, filename=f"{track.name.replace(' ', '_')}-{name}")
+
+
+@router.get(
+    "/tracks/{track_id}/export/{kind}",
+    response_class=FileResponse,
+    responses={200: {"content": {kind: {} for kind in sorted(set(MEDIA_TYPES.values()))}}} | error_responses(404),
+)
+def export_track(
+    track_id: uuid.UUID, kind: Literal["npz", "csv", "glb", "mano"], database: DatabaseDep, storage: StorageDep
+) -> FileResponse:
+    """The track for other programs: npz, CSV of its joints, glTF animation (GLB) or MANO-style parameters (npz)."""
+    with database.reading() as session:
+        track = service.get_track(session, track_id)
+    folder = storage.folder("tracks", track_id)
+    path = find_export(folder, storage.folder("sequences", track.sequence_id), kind)
+    name = path.name.partition("-")[2]
+    return FileResponse(path, media_type=MEDIA_TYPES[kind], filename=f"{track.name.replace(' ', '_')}-{name}")

@@ -185,6 +185,13 @@ def test_the_studio_does_jobs_and_outlives_its_worker_and_itself(tmp_path: Path,
     exported = handloom(data, "export", second["track_id"] or sequence_id, "--format", "track", "--out", str(out))
     assert exported.returncode == 0, exported.stderr
     assert (out / "track.npz").is_file()
+    for kind, start in (("npz", b"PK"), ("csv", b"frame,status,joint,x,y,z,"), ("glb", b"glTF"), ("mano", b"PK")):
+        file = tmp_path / f"track.{kind}"
+        exported = handloom(data, "export", sequence_id, "--format", kind, "--out", str(file), "--json")
+        assert exported.returncode == 0, exported.stderr
+        assert json.loads(exported.stdout)["frames"] == 45
+        assert file.read_bytes().startswith(start)
+    assert not [entry for entry in tmp_path.iterdir() if entry.name.startswith(".")]
 
 
 def test_the_demo_makes_its_sample_once_and_tracks_it(tmp_path: Path) -> None:

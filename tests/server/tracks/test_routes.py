@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from tests.server.conftest import Tracked
+from tests.server.conftest import Studio, Tracked
+from tracker import EXPORT_KINDS
 
 API = "/api/v1"
 
@@ -68,6 +69,37 @@ def test_the_overlay_covers_the_joints_and_is_drawn_once(client: TestClient, add
     assert client.get(f"{address}/cameras/cam0/frames/5/overlay.png").content == answer.content
     assert client.get(f"{address}/cameras/cam0/frames/12/overlay.png").status_code == 404
     assert client.get(f"{address}/cameras/cam1/frames/5/overlay.png").status_code == 404
+
+
+def test_a_track_is_exported_for_other_programs(client: TestClient, studio: Studio, tracked: Tracked) -> None:
+    address = f"{API}/tracks/{tracked.track_id}"
+    answers = {kind: client.get(f"{address}/export/{kind}") for kind in EXPORT_KINDS}
+    assert {answer.status_code for answer in answers.values()} == {200}
+    for kind, answer in answers.items():
+        assert answer.headers["content-disposition"] == f'attachment; filename="Track_1-{EXPORT_KINDS[kind]}"'
+    assert answers["npz"].content == client.get(f"{address}/files/track.npz").content
+    assert answers["csv"].headers["content-type"] == "text/csv; charset=utf-8"
+    assert len(answers["csv"].text.splitlines()) == 1 + 12 * 21
+    assert answers["glb"].headers["content-type"] == "model/gltf-binary"
+    assert answers["glb"].content[:4] == b"glTF"
+    with np.load(io.BytesIO(answers["mano"].content), allow_pickle=False) as arrays:
+        assert arrays["right_hand_pose"].shape == (12, 45)
+    assert client.get(f"{address}/export/glb").content == answers["glb"].content
+    kept = studio.app.state.storage.folder("tracks", tracked.track_id) / "exports"
+    assert sorted(path.name for path in kept.iterdir()) == sorted(f"1-{name}" for name in EXPORT_KINDS.values())
+
+
+def test_what_cannot_be_exported_is_refused_with_the_reason(
+    client: TestClient, studio: Studio, tracked: Tracked, address: str
+) -> None:
+    assert client.get(f"{API}/tracks/{uuid.uuid4()}/export/csv").status_code == 404
+    assert client.get(f"{address}/export/fbx").status_code == 422
+    folder = studio.app.state.storage.folder("tracks", tracked.track_id)
+    (folder / "track.npz").write_bytes(b"damaged")
+    refused = client.get(f"{address}/export/glb")
+    assert refused.status_code == 422
+    assert "no readable npz file" in refused.json()["detail"]
+    assert str(studio.settings.data_dir) not in refused.text
 
 
 def test_a_deleted_track_is_gone_until_it_is_restored(client: TestClient, tracked: Tracked, address: str) -> None:

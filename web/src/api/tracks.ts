@@ -53,6 +53,16 @@ export const overlayUrl = (track: string, camera: string, frame: number): string
 
 export const trackFileUrl = (track: string, name: string): string => `${API}/tracks/${track}/files/${name}`;
 
+/** What a track can be exported as. */
+export const EXPORTS = [
+  { kind: "npz", label: "Arrays (npz)", isOfHands: false },
+  { kind: "csv", label: "Table of joints (CSV)", isOfHands: false },
+  { kind: "glb", label: "Animation (glTF)", isOfHands: false },
+  { kind: "mano", label: "MANO-style parameters (npz)", isOfHands: true },
+] as const;
+
+export const exportUrl = (track: string, kind: (typeof EXPORTS)[number]["kind"]): string => `${API}/tracks/${track}/export/${kind}`;
+
 export function useDeleteTrack() {
   const client = useQueryClient();
   return useMutation({

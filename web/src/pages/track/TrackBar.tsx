@@ -15,7 +15,7 @@ import {
   IconTrash,
 } from "@tabler/icons-react";
 import { Link, useNavigate } from "react-router";
-import { trackFileUrl, useDeleteTrack, useRestoreTrack } from "../../api/tracks";
+import { EXPORTS, exportUrl, trackFileUrl, useDeleteTrack, useRestoreTrack } from "../../api/tracks";
 import type { Recording, Track } from "../../api/types";
 import classes from "./TrackReview.module.css";
 
@@ -124,12 +124,16 @@ export function TrackBar(props: TrackBarProps) {
             </ActionIcon>
           </Menu.Target>
           <Menu.Dropdown>
-            <Menu.Item component="a" href={trackFileUrl(track.id, "track.npz")} leftSection={<IconDownload size={16} aria-hidden />}>
-              Download track.npz
-            </Menu.Item>
+            <Menu.Label>Download</Menu.Label>
+            {EXPORTS.filter((one) => !one.isOfHands || track.hands.length > 0).map(({ kind, label }) => (
+              <Menu.Item key={kind} component="a" href={exportUrl(track.id, kind)} leftSection={<IconDownload size={16} aria-hidden />}>
+                {label}
+              </Menu.Item>
+            ))}
             <Menu.Item component="a" href={trackFileUrl(track.id, "summary.json")} leftSection={<IconDownload size={16} aria-hidden />}>
-              Download summary.json
+              Summary (JSON)
             </Menu.Item>
+            <Menu.Divider />
             {track.job_id && (
               <Menu.Item component={Link} to={`/jobs/${track.job_id}`}>
                 To the job

@@ -38,9 +38,9 @@ class SwarmOptions:
     social: float = 1.3
     reset_every: int = 3
     reset_share: float = 0.5
-    spread_shift: float = 0.010
-    spread_turn: float = 0.1
-    spread_angle: float = 0.1
+    spread_shift: float = 0.015
+    spread_turn: float = 0.15
+    spread_angle: float = 0.2
     reach_shift: float = 0.080
     reach_turn: float = 0.8
     side: int = 64

@@ -19,6 +19,7 @@ from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.frame_result import FrameResult
 from tracker.tracking.quality import Quality
 from tracker.tracking.setup import TrackSetup
+from tracker.tracking.start_annotated import with_marks
 from tracker.tracking.state import TrackState
 from tracker.tracking.tools import Tools, make_tools
 
@@ -152,6 +153,8 @@ def _follow(
     iterations = setup.options.first_iterations if is_first else setup.options.iterations
     options = FitOptions(iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm)
     objective = tools.objective
+    if is_first:
+        objective = with_marks(objective, setup.scene, setup.names, setup.marks, camera)
     best = attempt_fit(setup, seen, predicted, state.pose, objective, options)
     stages |= best.fit.stages
     is_falling = best.quality.is_lost or best.quality.score < state.score - SCORE_DROP

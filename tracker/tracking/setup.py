@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
@@ -28,12 +31,14 @@ class TrackSetup:
         models: As they are tracked, calibrated.
         camera_id: The depth camera.
         options: What the user chose.
+        marks: Name of a hand to its joints (21, 3) as marked in the first frame, px of an ideal lens and v.
     """
 
     names: tuple[str, ...]
     models: tuple[ArticulatedModel, ...]
     camera_id: str
     options: TrackOptions
+    marks: dict[str, npt.NDArray[np.float64]] = field(default_factory=dict)
 
     @cached_property
     def scene(self) -> Scene:
@@ -73,6 +78,7 @@ class TrackSetup:
             "names": list(self.names),
             "camera": self.camera_id,
             "options": self.options.to_json(),
+            "marks": {name: points.tolist() for name, points in self.marks.items()},
         }
         temporary = folder / ".setup.json.part"
         temporary.write_text(json.dumps(document, indent=1))
@@ -86,10 +92,11 @@ class TrackSetup:
             document = json.loads((folder / "setup.json").read_text())
             names = tuple(str(name) for name in document["names"])
             camera, options = str(document["camera"]), TrackOptions.from_json(document["options"])
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            marks = {str(n): np.array(p, dtype=np.float64).reshape(21, 3) for n, p in document["marks"].items()}
+        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
             raise TrackingError(f"{folder}: needed setup.json as a tracking run writes it ({error}).") from error
         models = tuple(load_npz_model(folder / "models" / f"{name}.npz") for name in names)
-        return cls(names, models, camera, options)
+        return cls(names, models, camera, options, marks)
 
 
 def choose_camera(sequence: Sequence, options: TrackOptions) -> str:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from tracker.capture.annotations import Annotation, Annotations
+from tracker.capture.annotations import Annotations
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
@@ -30,7 +30,7 @@ from tracker.tracking.options import TrackOptions
 from tracker.tracking.quality import measure_quality
 from tracker.tracking.region import region_around, whole_image
 from tracker.tracking.setup import TrackSetup, choose_camera
-from tracker.tracking.start_annotated import mark_joints, start_hand, undistort_points
+from tracker.tracking.start_annotated import start_hand, undistort_points, with_marks
 from tracker.tracking.start_automatic import find_hand
 from tracker.tracking.start_object import place_object
 from tracker.tracking.state import TrackState
@@ -81,28 +81,38 @@ def start_tracking(
         raise TrackingError(f"{sequence.name}: names no hands; set `hands` to right, left or both.")
     given = models or {}
     hands = {name: given.get(name) or default_hand(name) for name in names}
-    marked = {name: annotations.find(frames[0], camera_id, name) if annotations else None for name in names}
+    marks = _find_marks(sequence, annotations, frames[0], camera_id)
     placed: dict[str, tuple[ArticulatedModel, Array]] = {}
-    for name in sorted(names, key=lambda hand: marked[hand] is None):  # those that somebody marked come first
+    for name in sorted(names, key=lambda hand: hand not in marks):  # those that somebody marked come first
         tell(f"placing the {name} hand", 0.0)
-        setup = TrackSetup((name,), (hands[name],), camera_id, options)
-        placed[name] = _begin(sequence, setup, frames, marked[name], list(placed.values()), tell)
+        own = {name: marks[name]} if name in marks else {}
+        setup = TrackSetup((name,), (hands[name],), camera_id, options, own)
+        placed[name] = _begin(sequence, setup, frames, list(placed.values()), tell)
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
         model = given.get(item.name) or load_model(sequence.object_path(item.name))
         placed[item.name] = model, place_object(model, item)
     order = (*names, *(item.name for item in sequence.objects))
-    setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options)
+    setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks)
     pose = np.concatenate([placed[name][1] for name in order])
     is_lost = any(not np.any(placed[name][1]) for name in names)
     return setup, TrackState(frames[0], pose, pose, is_lost=is_lost)
+
+
+def _find_marks(sequence: Sequence, annotations: Annotations | None, index: int, camera_id: str) -> dict[str, Array]:
+    """Joints (21, 3) of each hand that is marked well enough in a frame, in px of an ideal lens."""
+    marks = {}
+    for name in sequence.hands:
+        marked = annotations.find(index, camera_id, name) if annotations else None
+        if marked is not None and np.count_nonzero(marked.points[:, 2]) >= MIN_MARKED:
+            marks[name] = undistort_points(marked.points, sequence.camera(camera_id))
+    return marks
 
 
 def _begin(
     sequence: Sequence,
     setup: TrackSetup,
     frames: range,
-    marked: Annotation | None,
     others: list[tuple[ArticulatedModel, Array]],
     tell: Progress,
 ) -> tuple[ArticulatedModel, Array]:
@@ -112,9 +122,9 @@ def _begin(
     """
     base = setup.models[0]
     if base.shape is None or not setup.options.calibrate:
-        _, pose = _place(sequence, setup, frames[0], marked, others)
+        _, pose = _place(sequence, setup, frames[0], others)
         return base, np.zeros(base.num_dofs) if pose is None else pose
-    merit, pose = _place(sequence, setup, frames[0], marked, others)
+    merit, pose = _place(sequence, setup, frames[0], others)
     if pose is None:
         return base, np.zeros(base.num_dofs)
     shape = np.zeros(len(base.shape.names))
@@ -134,7 +144,8 @@ def _settle(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> t
         return -1.0, pose
     seen = observe(frame, camera, region, setup.preprocessing)
     options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
-    pose = fit_frame(setup.scene, seen, pose, pose, Objective(), options).pose
+    objective = with_marks(Objective(), setup.scene, setup.names, setup.marks, camera)
+    pose = fit_frame(setup.scene, seen, pose, pose, objective, options).pose
     return measure_quality(draw(setup.scene.pose_at(pose), seen), seen).merit, pose
 
 
@@ -142,33 +153,29 @@ def _place(
     sequence: Sequence,
     setup: TrackSetup,
     index: int,
-    marked: Annotation | None,
     others: list[tuple[ArticulatedModel, Array]],
 ) -> tuple[float, Array | None]:
     """Merit and pose of one hand in one frame; no pose if nothing like a hand is there."""
     frame, camera = setup.read(sequence, index)
     near, far = depth_range(frame)
-    if marked is not None and np.count_nonzero(marked.points[:, 2]) >= MIN_MARKED:
-        points = undistort_points(marked.points, sequence.camera(setup.camera_id))
-        return _place_marked(frame, camera, points, setup, (near, far))
+    if setup.marks:
+        return _place_marked(frame, camera, setup, (near, far))
     for other, pose in others:
         frame = leave_out(frame, camera, Scene((other,)), pose, [0])
     found = find_hand(frame, camera, setup.models[0], setup.preprocessing, near, far)
     return (-1.0, None) if found is None else (found.quality.merit, found.pose)
 
 
-def _place_marked(
-    frame: Frame, camera: Camera, points: Array, setup: TrackSetup, depths: tuple[float, float]
-) -> tuple[float, Array]:
+def _place_marked(frame: Frame, camera: Camera, setup: TrackSetup, depths: tuple[float, float]) -> tuple[float, Array]:
     """Merit and pose from marked joints (21, 3), fitted to the depth with the joints kept where they were marked."""
     whole = observe(frame, camera, whole_image(camera, *depths), setup.preprocessing)
-    pose = start_hand(setup.models[0], points, camera, whole)
+    pose = start_hand(setup.models[0], setup.marks[setup.names[0]], camera, whole)
     scene = setup.scene
     region = region_around(scene.pose_at(pose).vertices, camera)
     if region is None:
         return -1.0, pose
     seen = observe(frame, camera, region, setup.preprocessing)
-    objective = Objective(terms={**Objective().terms, "joints": mark_joints(scene, 0, points, camera)})
+    objective = with_marks(Objective(), scene, setup.names, setup.marks, camera)
     options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
     pose = fit_frame(scene, seen, pose, pose, objective, options).pose
     return measure_quality(draw(scene.pose_at(pose), seen), seen).merit, pose

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -64,6 +64,15 @@ def mark_joints(scene: Scene, model: int, points: Array, camera: Camera) -> Mark
     origin = camera.T_world_camera[:3, 3]
     ids = np.arange(scene.landmark_slices[model].start, scene.landmark_slices[model].stop, dtype=np.int32)[marked]
     return MarkedJoints(ids, rays, np.cross(np.broadcast_to(origin, rays.shape), rays))
+
+
+def with_marks(objective: Objective, scene: Scene, names: tuple[str, ...], marks: dict, camera: Camera) -> Objective:
+    """The objective of the first frame: hands keep the joints (21, 3) that somebody marked, by name, where they are."""
+    terms = dict(objective.terms)
+    for model, name in enumerate(names):
+        if name in marks:
+            terms[f"marks_{name}"] = mark_joints(scene, model, marks[name], camera)
+    return replace(objective, terms=terms)
 
 
 def undistort_points(points: Array, camera: Camera) -> Array:

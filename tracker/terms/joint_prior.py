@@ -18,7 +18,7 @@ class AnatomicalLimits:
     exp(p/2 (l − θ)) and exp(p/2 (θ − u)), which is Eq. 17 exactly.
 
     Differs from the paper: beyond `linear_from` the residual goes on as its tangent, so that a start far outside its
-    limits cannot overflow; and γ_a is larger: on twins the paper's weight let hidden fingers bend backwards.
+    limits cannot overflow.
     """
 
     weight: float = 0.0015

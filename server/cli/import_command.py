@@ -39,7 +39,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "when it can be.",
     )
     parser.add_argument("path", type=Path, metavar="PATH", help="a folder or file")
-    parser.add_argument("--format", metavar="F", help="handloom, rgbd, tum or videos")
+    parser.add_argument("--format", metavar="F", help="recording_folder, rgbd_folder, tum_rgbd or synced_videos")
     for name, help_text in NUMBERS.items():
         parser.add_argument(f"--{name}", type=float, metavar="N", help=help_text)
     for name, help_text in TEXTS.items():

@@ -205,3 +205,11 @@ def test_the_demo_makes_its_sample_once_and_tracks_it(tmp_path: Path) -> None:
             result = httpx.get(f"{address}/{API}/tracks/{job['track_id']}/evaluation", timeout=60).json()
             assert result["evaluated"] == 4
             assert result["joint_error_px"]["mean"] < 4.0
+
+
+def test_the_help_of_import_names_the_formats_there_are() -> None:
+    from tracker import IMPORT_FORMATS
+
+    command = [sys.executable, "-m", "server.cli", "import", "--help"]
+    shown = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert [name for name in IMPORT_FORMATS if name not in shown] == []

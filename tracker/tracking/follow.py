@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from time import perf_counter
 
 import cv2
@@ -17,6 +16,7 @@ from tracker.tracking.attempt import Attempt, attempt_fit, find_again, look, try
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.frame_result import FrameResult
+from tracker.tracking.hold import hold_object
 from tracker.tracking.quality import Quality
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.start_annotated import with_marks
@@ -45,9 +45,6 @@ FIRST_IMAGE_REST, LAST_IMAGE_REST = 15, 120
 
 SCORE_MEMORY = 0.9
 """Share of the running score kept from frame to frame."""
-
-HOLDING = 5
-"""Iterations with contacts, after the others."""
 
 
 def track_frames(
@@ -168,10 +165,8 @@ def _follow(
                 best = other
         rest = (0 if best.quality.score > before + SCORE_GAIN else FINGER_REST, *rest[1:])
         stages["second try"] = perf_counter() - started
-    if tools.world is not None and not best.quality.is_lost:
+    if tools.world is not None:
         started = perf_counter()
-        held = tools.with_support(objective, setup, best.pose)
-        if held is not None:
-            best = attempt_fit(setup, seen, best.pose, state.pose, held, replace(options, iterations=HOLDING))
+        best = hold_object(setup, tools, seen, objective, state, best, options)
         stages["physics"] = perf_counter() - started
     return best, rest, stages

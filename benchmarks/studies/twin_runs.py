@@ -89,6 +89,7 @@ def measure(twin: Twin, track: Track, penetration: bool = False) -> dict[str, An
     hands = 1e3 * error.hand_mean
     found = {
         "frames": len(error.frame),
+        "hands": len(error.hands),
         "px": float(np.nanmean(px)),
         "px_std": float(np.nanstd(px)),
         "px_max": float(np.nanmax(px)),
@@ -105,7 +106,7 @@ def measure(twin: Twin, track: Track, penetration: bool = False) -> dict[str, An
     }
     if penetration:
         depths = [1e3 * measure_penetration(track.setup.scene.pose_at(pose)) for pose in track.pose]
-        found["deepest_mm"] = max(depths)
+        found |= {"deepest_mm": max(depths), "mean_deepest_mm": float(np.mean(depths))}
     return found
 
 
@@ -139,7 +140,7 @@ def _measure_objects(twin: Twin, track: Track) -> dict[str, dict[str, float]]:
 
 @dataclass(frozen=True)
 class Run:
-    """What to run: a sequence, how fast, with which terms and hand."""
+    """What to run: a sequence, how fast, with which terms and hand, by the tracker as it comes."""
 
     sequence: str
     step: int = 1
@@ -148,10 +149,19 @@ class Run:
     iterations: int = 10
     own_hand: bool = False
     seed: int = 0
+    stop_below_mm: float = 0.0
+    threads: int = 1
+    penetration: bool = False
 
     def __call__(self, data: Path, cache: Path, penetration: bool = False) -> dict[str, Any]:
         """Render, track, measure."""
         twin = render_twin(data, cache, self.sequence, self.frames, self.step, self.seed)
-        options = TrackOptions(terms=self.terms, iterations=self.iterations, calibrate=self.own_hand)
+        options = TrackOptions(
+            terms=self.terms,
+            iterations=self.iterations,
+            calibrate=self.own_hand,
+            stop_below_mm=self.stop_below_mm,
+            threads=self.threads,
+        )
         track = run_twin(twin, *start_twin(twin, options, self.own_hand))
-        return {**asdict(self), **measure(twin, track, penetration)}
+        return {**asdict(self), **measure(twin, track, penetration or self.penetration)}

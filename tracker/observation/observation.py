@@ -19,6 +19,10 @@ from tracker.observation.skin import compute_skin_ratio
 HAND, OTHER = 1, 2
 """Bits of a pixel's label: may be hand, may be something else. Without colour a pixel is both."""
 
+SHADOW = 15
+"""A pattern camera sees no depth beside a nearer surface, so many px wide: 75 mm between projector and camera, 525 px
+of focal length, a step of 10 cm at half a metre make 13."""
+
 
 @dataclass(frozen=True)
 class Region:
@@ -71,7 +75,8 @@ class Observation:
         normals: (H, W, 3) float32 world, unit, towards the camera; 0 where there is none.
         depth: (H, W) float32 smoothed depth, m; 0 where there is no value in the region's depth range.
         labels: (H, W) uint8 bits HAND and OTHER; 0 where there is no depth.
-        nearest_pixel: (2, H, W, 2) int16 row and column of the nearest pixel that may be hand, and may be other.
+        nearest_pixel: (2, H, W, 2) int16 row and column of the nearest pixel that may be hand, and may be other; pixels
+            in the depth shadow of a hand that have the colour of skin may be hand.
         nearest_edge: (2, H, W, 2) int16 the same for depth discontinuities of hand and other; -1 if there is none.
     """
 
@@ -135,12 +140,14 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, st
     K[1, 2] -= region.row
     K[:2] /= stride
     color = None if frame.color is None or not how.use_skin else frame.color[rows, columns]
-    labels = _label(inside, color, how.skin_threshold)
+    labels, is_skin = _label(inside, color, how.skin_threshold)
     points = np.zeros((*depth.shape, 3), dtype=np.float32)
     normals = np.zeros_like(points)
     compute_points_and_normals_into(points, normals, depth, K, camera.T_world_camera)
-    nearest = [_nearest_of(labels, HAND, depth, how.edge_jump)]
-    nearest.append(_nearest_of(labels, OTHER, depth, how.edge_jump) if how.objects else _nowhere(labels))
+    nearest = [_nearest_of(labels, HAND, depth, how.edge_jump, (raw == 0) & is_skin)]
+    nearest.append(
+        _nearest_of(labels, OTHER, depth, how.edge_jump, np.zeros_like(is_skin)) if how.objects else _nowhere(labels)
+    )
     return Observation(
         region,
         K,
@@ -168,24 +175,40 @@ def undistort(frame: Frame, camera: Camera) -> tuple[Frame, Camera]:
 
 def _label(
     inside: npt.NDArray[np.bool_], color: npt.NDArray[np.uint8] | None, threshold: float
-) -> npt.NDArray[np.uint8]:
-    """Hand and other pixels by colour; the log ratio is averaged with its neighbours, for palms are pale in spots."""
+) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.bool_]]:
+    """Labels by colour, and which pixels look like skin, depth or not.
+
+    For labels the log ratio is averaged with its neighbours', for palms are pale in spots.
+    """
     if color is None:
-        return np.where(inside, np.uint8(HAND | OTHER), np.uint8(0))
+        return np.where(inside, np.uint8(HAND | OTHER), np.uint8(0)), np.zeros_like(inside)
     weight = inside.astype(np.float32)
-    log_ratio = np.clip(np.log(np.maximum(compute_skin_ratio(color), 1e-9)), -4.0, 2.0) * weight
+    anywhere = np.clip(np.log(np.maximum(compute_skin_ratio(color), 1e-9)), -4.0, 2.0)
+    log_ratio = anywhere * weight
     mean = cv2.blur(log_ratio, (9, 9)) / np.maximum(cv2.blur(weight, (9, 9)), 1e-3)
     is_hand = 0.5 * (mean + log_ratio) > threshold
-    return np.where(inside, np.where(is_hand, np.uint8(HAND), np.uint8(OTHER)), np.uint8(0))
+    labels = np.where(inside, np.where(is_hand, np.uint8(HAND), np.uint8(OTHER)), np.uint8(0))
+    return labels, anywhere > threshold
 
 
 def _nearest_of(
-    labels: npt.NDArray[np.uint8], bit: int, depth: npt.NDArray[np.float32], jump: float
+    labels: npt.NDArray[np.uint8],
+    bit: int,
+    depth: npt.NDArray[np.float32],
+    jump: float,
+    is_alike: npt.NDArray[np.bool_],
 ) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.int16]]:
-    """Nearest pixel and nearest discontinuity of one label; small holes between its pixels count as its own."""
+    """Nearest pixel and nearest discontinuity of one label.
+
+    Small holes between its pixels count as its own, and so do alike pixels without depth beside them: free space is
+    only what was seen to be free.
+    """
     mask = ((labels & bit) > 0).astype(np.uint8)
     edges = np.zeros_like(mask)
     find_depth_edges_into(edges, depth, mask, jump)
+    if is_alike.any():
+        beside = cv2.dilate(mask, np.ones((2 * SHADOW + 1, 2 * SHADOW + 1), np.uint8)) > 0
+        mask[beside & is_alike] = 1
     closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
     return _nearest(closed.astype(np.uint8)), _nearest(edges)
 

@@ -16,7 +16,7 @@ from server.storage import StorageDep
 from server.tracks import service
 from server.tracks.exports import MEDIA_TYPES, find_export
 from server.tracks.overlay import Overlays
-from server.tracks.schemas import TrackFrames, TrackJoints, TrackOut
+from server.tracks.schemas import FrameEnergy, TrackFrames, TrackJoints, TrackOut
 
 router = APIRouter(tags=["tracks"], responses=error_responses())
 
@@ -69,6 +69,13 @@ def get_track_frames(track_id: uuid.UUID, session: SessionDep, storage: StorageD
     """Status, timing and quality of every frame, as columns."""
     service.get_track(session, track_id)
     return TrackFrames.model_validate(service.read_columns(storage.folder("tracks", track_id)))
+
+
+@router.get("/tracks/{track_id}/frames/{frame}/energy", responses=error_responses(404))
+def get_frame_energy(track_id: uuid.UUID, frame: int, session: SessionDep, storage: StorageDep) -> FrameEnergy:
+    """Energy of one frame's fit by term and iteration."""
+    service.get_track(session, track_id)
+    return FrameEnergy.model_validate(service.read_energy(storage.folder("tracks", track_id), frame))
 
 
 @router.get("/tracks/{track_id}/joints", responses=error_responses(404))

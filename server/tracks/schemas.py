@@ -36,7 +36,9 @@ class TrackFrames(BaseModel):
     depth_residual_mm: list[float | None]
     silhouette_iou: list[float | None]
     iterations: list[int]
-    costs: dict[str, list[float | None]] = Field(description="Of each term at the last iteration, mm².")
+    costs: dict[str, list[float | None]] = Field(
+        description="Of each term at the last iteration, mm²; null where it had no part."
+    )
     stages: dict[str, list[float | None]] = Field(description="Of each stage of the work, s.")
 
 
@@ -47,4 +49,15 @@ class TrackJoints(BaseModel):
     frames: list[int]
     points: list[list[list[float | None]]] = Field(
         description="Per frame and joint [x, y], px; null behind the camera."
+    )
+
+
+class FrameEnergy(BaseModel):
+    """The energy of one frame's fit, iteration by iteration."""
+
+    frame: int
+    is_recorded: bool = Field(description="False for tracks made before iterations were recorded.")
+    iterations: int = Field(description="Of the fit that was kept; 0 where nothing was fitted.")
+    costs: dict[str, list[float | None]] = Field(
+        description="Of each term at the beginning of every iteration, mm²; null where it had no part."
     )

@@ -102,6 +102,9 @@ def read_columns(folder: Path) -> dict[str, Any]:
     chunk = TrackChunk.load(folder / "frames.npz")
     with np.load(folder / "track.npz", allow_pickle=False) as arrays:
         status = arrays["status"].tolist()
+    costs = chunk.costs
+    if chunk.iteration_costs.shape[1]:
+        costs = np.where(np.isfinite(chunk.iteration_costs).any(axis=1), costs, np.nan)
     return {
         "frame": chunk.frame.tolist(),
         "status": status,
@@ -109,8 +112,31 @@ def read_columns(folder: Path) -> dict[str, Any]:
         "depth_residual_mm": _as_list(chunk.depth_residual_mm),
         "silhouette_iou": _as_list(chunk.silhouette_iou),
         "iterations": chunk.iterations.tolist(),
-        "costs": {str(name): _as_list(chunk.costs[:, place]) for place, name in enumerate(chunk.cost_names)},
+        "costs": {str(name): _as_list(costs[:, place]) for place, name in enumerate(chunk.cost_names)},
         "stages": {str(name): _as_list(chunk.stages[:, place]) for place, name in enumerate(chunk.stage_names)},
+    }
+
+
+def read_energy(folder: Path, frame: int) -> dict[str, Any]:
+    """Energy of one frame by term and iteration; terms that had no part in it are left out."""
+    from tracker import TrackChunk
+
+    chunk = TrackChunk.load(folder / "frames.npz")
+    rows = np.flatnonzero(chunk.frame == frame)
+    if len(rows) == 0:
+        raise NotFoundError(f"The track has no frame {frame}; it has {chunk.frame[0]} to {chunk.frame[-1]}.")
+    table = chunk.iteration_costs
+    costs = table[rows[0]] if table.shape[1] else np.zeros((0, len(chunk.cost_names)), dtype=np.float32)
+    done = int(np.isfinite(costs).any(axis=1).sum())
+    return {
+        "frame": frame,
+        "is_recorded": table.shape[1] > 0,
+        "iterations": done,
+        "costs": {
+            str(name): _as_list(costs[:done, place])
+            for place, name in enumerate(chunk.cost_names)
+            if np.isfinite(costs[:, place]).any()
+        },
     }
 
 

@@ -34,8 +34,8 @@ def save_arrays(path: Path, arrays: dict[str, np.ndarray]) -> None:
         temporary.unlink(missing_ok=True)
 
 
-def load_arrays(path: Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """Read the named arrays of an npz file; no pickles.
+def load_arrays(path: Path, names: tuple[str, ...], optional: tuple[str, ...] = ()) -> dict[str, np.ndarray]:
+    """Read the named arrays of an npz file, and those of the optional ones that it has; no pickles.
 
     Raises:
         TrackingError: The file is missing, damaged or lacks an array.
@@ -45,6 +45,6 @@ def load_arrays(path: Path, names: tuple[str, ...]) -> dict[str, np.ndarray]:
             missing = [name for name in names if name not in archive]
             if missing:
                 raise TrackingError(f"{path}: has no {', '.join(missing)}; needed {', '.join(names)}.")
-            return {name: archive[name] for name in names}
+            return {name: archive[name] for name in (*names, *(name for name in optional if name in archive))}
     except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError) as error:
         raise TrackingError(f"{path}: is no readable npz file ({error}).") from error

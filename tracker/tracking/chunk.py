@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence as Several
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +32,8 @@ class TrackChunk:
         costs: (T, N) cost of each term at the last iteration, mm².
         stage_names: (S,) names of stages.
         stages: (T, S) seconds.
+        iteration_costs: (T, I, N) float32, cost of each term at every iteration of the fit that was kept, mm²; NaN
+            after a frame's last iteration and where a term had no part. I is 0 in tracks made before it was recorded.
     """
 
     frame: npt.NDArray[np.int64]
@@ -46,12 +48,13 @@ class TrackChunk:
     costs: Array
     stage_names: npt.NDArray[np.str_]
     stages: Array
+    iteration_costs: npt.NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0, 0), dtype=np.float32))
 
     @classmethod
     def of(cls, results: Several[FrameResult]) -> TrackChunk:
         """Columns from at least one result."""
         assert results, "a chunk has at least one frame"
-        cost_names = _names([result.costs[-1] if result.costs else {} for result in results])
+        cost_names = _names([costs for result in results for costs in result.costs])
         stage_names = _names([result.stages for result in results])
         qualities = [result.quality for result in results]
         nan = float("nan")
@@ -68,6 +71,7 @@ class TrackChunk:
             costs=_table([result.costs[-1] if result.costs else {} for result in results], cost_names),
             stage_names=np.array(stage_names, dtype=np.str_),
             stages=_table([result.stages for result in results], stage_names),
+            iteration_costs=_tabulate_iterations([result.costs for result in results], cost_names),
         )
 
     @classmethod
@@ -83,6 +87,7 @@ class TrackChunk:
             costs=np.concatenate([_widen(chunk.costs, chunk.cost_names, cost_names) for chunk in chunks]),
             stage_names=np.array(stage_names, dtype=np.str_),
             stages=np.concatenate([_widen(chunk.stages, chunk.stage_names, stage_names) for chunk in chunks]),
+            iteration_costs=_join_iterations(chunks, cost_names),
         )
 
     def save(self, path: Path) -> None:
@@ -91,8 +96,11 @@ class TrackChunk:
 
     @classmethod
     def load(cls, path: Path) -> TrackChunk:
-        """Read what `save` wrote."""
-        return cls(**load_arrays(path, tuple(f.name for f in fields(cls))))
+        """Read what `save` wrote, or what it wrote before the costs of iterations were recorded."""
+        needed = tuple(f.name for f in fields(cls) if f.name != "iteration_costs")
+        arrays = load_arrays(path, needed, optional=("iteration_costs",))
+        nothing = np.zeros((len(arrays["frame"]), 0, len(arrays["cost_names"])), dtype=np.float32)
+        return cls(**{"iteration_costs": nothing, **arrays})
 
 
 def _names(rows: Several[dict[str, float]]) -> list[str]:
@@ -108,3 +116,27 @@ def _widen(table: Array, have: npt.NDArray[np.str_], want: list[str]) -> Array:
     for column, name in enumerate(have):
         wide[:, want.index(str(name))] = table[:, column]
     return wide
+
+
+def _tabulate_iterations(frames: Several[tuple[dict[str, float], ...]], names: list[str]) -> npt.NDArray[np.float32]:
+    """(T, I, N) costs of each frame's iterations, NaN where there are none."""
+    most = max(1, *(len(costs) for costs in frames))
+    table = np.full((len(frames), most, len(names)), np.nan, dtype=np.float32)
+    for row, costs in enumerate(frames):
+        for iteration, values in enumerate(costs):
+            for column, name in enumerate(names):
+                table[row, iteration, column] = values.get(name, np.nan)
+    return table
+
+
+def _join_iterations(chunks: Several[TrackChunk], names: list[str]) -> npt.NDArray[np.float32]:
+    most = max(chunk.iteration_costs.shape[1] for chunk in chunks)
+    joined = np.full((sum(len(chunk.frame) for chunk in chunks), most, len(names)), np.nan, dtype=np.float32)
+    row = 0
+    for chunk in chunks:
+        columns = [names.index(str(name)) for name in chunk.cost_names]
+        iterations = chunk.iteration_costs.shape[1]
+        if iterations:
+            joined[row : row + len(chunk.frame), :iterations, columns] = chunk.iteration_costs
+        row += len(chunk.frame)
+    return joined

@@ -41,4 +41,5 @@ def hold_object(
     held = tools.with_support(objective, setup, fitted.pose)
     if held is None:
         return fitted
-    return attempt_fit(setup, seen, fitted.pose, state.pose, held, replace(options, iterations=HOLDING))
+    again = attempt_fit(setup, seen, fitted.pose, state.pose, held, replace(options, iterations=HOLDING))
+    return replace(again, fit=replace(again.fit, costs=fitted.fit.costs + again.fit.costs))

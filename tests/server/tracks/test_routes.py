@@ -41,6 +41,34 @@ def test_columns_have_a_value_for_every_frame(client: TestClient, address: str) 
     assert all(len(column) == 12 for column in (*columns["costs"].values(), *columns["stages"].values()))
 
 
+def test_the_energy_of_a_frame_is_told_by_term_and_iteration(client: TestClient, address: str) -> None:
+    columns = client.get(f"{address}/frames").json()
+    for frame in (0, 5):
+        energy = client.get(f"{address}/frames/{frame}/energy").json()
+        assert (energy["frame"], energy["is_recorded"]) == (frame, True)
+        assert energy["iterations"] == columns["iterations"][frame]
+        had_part = {term for term, costs in columns["costs"].items() if costs[frame] is not None}
+        assert energy["costs"].keys() == had_part
+        for term, costs in energy["costs"].items():
+            assert len(costs) == energy["iterations"]
+            assert np.isclose(costs[-1], columns["costs"][term][frame], rtol=1e-6), "the last is what the frames have"
+    assert sum(costs[0] for costs in energy["costs"].values()) > sum(costs[-1] for costs in energy["costs"].values())
+    assert columns["costs"]["marks_right"][5] is None, "marks are of the first frame only"
+    assert client.get(f"{address}/frames/12/energy").status_code == 404
+
+
+def test_a_track_from_before_iterations_were_recorded_says_so(
+    client: TestClient, studio: Studio, tracked: Tracked, address: str
+) -> None:
+    path = studio.app.state.storage.folder("tracks", tracked.track_id) / "frames.npz"
+    with np.load(path) as arrays:
+        old = {name: arrays[name] for name in arrays.files if name != "iteration_costs"}
+    np.savez(path, **old)
+    energy = client.get(f"{address}/frames/5/energy").json()
+    assert energy == {"frame": 5, "is_recorded": False, "iterations": 0, "costs": {}}
+    assert client.get(f"{address}/frames").json()["iterations"][5] == 10
+
+
 def test_joints_lie_where_the_downloaded_track_has_them(client: TestClient, address: str) -> None:
     answer = client.get(f"{address}/files/track.npz")
     assert "attachment" in answer.headers["content-disposition"]

@@ -32,7 +32,7 @@ from tracker.tracking.region import region_around, whole_image
 from tracker.tracking.setup import TrackSetup, choose_camera
 from tracker.tracking.start_annotated import start_hand, undistort_points, with_marks
 from tracker.tracking.start_automatic import find_hand
-from tracker.tracking.start_object import place_object
+from tracker.tracking.start_object import start_object
 from tracker.tracking.state import TrackState
 from tracker.tracking.tools import Tools
 
@@ -91,7 +91,9 @@ def start_tracking(
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
         model = given.get(item.name) or load_model(sequence.object_path(item.name))
-        placed[item.name] = model, place_object(model, item)
+        frame, camera = setup.read(sequence, frames[0])
+        others = [(other, pose) for other, pose in placed.values() if np.any(pose)]
+        placed[item.name] = model, start_object(model, item, frame, camera, setup.preprocessing, others)
     order = (*names, *(item.name for item in sequence.objects))
     setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks)
     pose = np.concatenate([placed[name][1] for name in order])

@@ -1,0 +1,44 @@
+"""A frame without the forearms of its hands: sleeves and cuffs are no skin, but no object either."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.geometry import se3
+from tracker.model.joints import HAND_JOINTS
+
+Array = npt.NDArray[np.float64]
+
+RADIUS = 0.055
+"""Of a forearm in its sleeve, at the wrist, m."""
+
+OPENING = 0.7
+"""Metres that it may be aside a metre behind the wrist: a wrist bends."""
+
+LENGTH = 0.40
+"""m."""
+
+
+def leave_out_forearms(frame: Frame, camera: Camera, hands: list[Array]) -> Frame:
+    """The frame with no depth behind the wrists of hands, given by their joints (21, 3) world, m: in a cone about the
+    direction from the middle knuckle to the wrist."""
+    if frame.depth is None or not hands:
+        return frame
+    rows, columns = np.nonzero(frame.depth)
+    z = frame.depth[rows, columns].astype(np.float64)
+    x, y = (columns - camera.K[0, 2]) / camera.K[0, 0] * z, (rows - camera.K[1, 2]) / camera.K[1, 1] * z
+    points = se3.transform(camera.T_world_camera, np.stack([x, y, z], axis=1))
+    depth = frame.depth.copy()
+    for joints in hands:
+        wrist, knuckle = joints[HAND_JOINTS.index("wrist")], joints[HAND_JOINTS.index("middle_mcp")]
+        backwards = (wrist - knuckle) / max(float(np.linalg.norm(wrist - knuckle)), 1e-9)
+        behind = (points - wrist) @ backwards
+        aside = np.linalg.norm(points - wrist - behind[:, None] * backwards, axis=1)
+        is_arm = (behind > 0.0) & (behind < LENGTH) & (aside < RADIUS + OPENING * behind)
+        depth[rows[is_arm], columns[is_arm]] = 0.0
+    return replace(frame, depth=depth)

@@ -77,12 +77,12 @@ def show(rows: list[Row]) -> list[Block]:
             tuple(cells),
         ),
         Picture(
-            "table_02", drawn, "Each side has its own scale: pixels of twins and of recordings are not comparable."
+            "table_02", drawn, "Each side has its own scale: pixels of twins and of recordings cannot be compared."
         ),
         Text(
             f"Point-to-plane stands at {five:.2f} px after 5 iterations, {ten:.2f} after 10 and {thirty:.2f} after 30; "
-            f"point-to-point at {points:.2f} after 30. T16 finds point-to-point slower and in the end 3 % better: there "
-            "normals of real depth are wrong in places, and a model that does not fit gains from points."
+            f"point-to-point at {points:.2f} after 30. T16 finds point-to-point slower and in the end 3 % better, and "
+            "gives as reason that normals of real depth are wrong in places; a twin's normals are better."
         ),
     ]
 

@@ -8,7 +8,7 @@ import json
 import time
 import traceback
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
@@ -106,10 +106,17 @@ class Results:
         """
         kept = load_kept(trial, self.folder)
         if kept is None:
-            raise NotMeasured(f"{trial} was not run.")
+            raise NotMeasured(f"{describe_trial(trial)} was not run.")
         if kept.error:
-            raise NotMeasured(f"{trial} failed: {kept.error}")
+            raise NotMeasured(f"{describe_trial(trial)} failed: {kept.error}")
         return kept.result
+
+
+def describe_trial(trial: Trial) -> str:
+    """Its kind and the values that are not the usual ones."""
+    usual = {f.name: f.default for f in fields(trial)}  # type: ignore[arg-type]
+    named = {name: value for name, value in asdict(trial).items() if value != usual[name]}  # type: ignore[call-overload]
+    return f"{type(trial).__name__}({', '.join(f'{name}={value!r}' for name, value in named.items())})"
 
 
 def is_due(trial: Trial, folder: Path, keep: bool) -> bool:
@@ -127,7 +134,7 @@ def run_trials(trials: list[Trial], data: Path, twins: Path, folder: Path, proce
     done = 0
 
     def tell(trial: Trial, kept: Kept) -> None:
-        print(f"[{done}/{len(due)}] {kept.seconds:6.1f} s  {trial}  {kept.error}", flush=True)
+        print(f"[{done}/{len(due)}] {kept.seconds:6.1f} s  {describe_trial(trial)}  {kept.error}", flush=True)
 
     if processes > 1 and len(shared) > 1:
         with ProcessPoolExecutor(processes) as pool:

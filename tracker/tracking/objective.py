@@ -31,10 +31,10 @@ class Objective:
 
     terms: dict[str, Term] = field(
         default_factory=lambda: {
-            "model_to_data": ModelToData(),
+            "model_to_data": ModelToData(weight=0.1),
             "data_to_surface": DataToSurface(),
-            "data_to_model": DataToModel(),
-            "silhouette": Silhouette(),
+            "data_to_model": DataToModel(weight=0.02),
+            "silhouette": Silhouette(weight=0.03),
         }
     )
     anatomy: AnatomicalLimits = field(default_factory=AnatomicalLimits)

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from tracker.tracking.frame_result import FrameResult
     from tracker.tracking.frame_view import FrameView, ModelView, describe_frame, render_overlay
     from tracker.tracking.options import TrackOptions
+    from tracker.tracking.presets import PRESETS, USUAL_PRESET, TrackPreset
     from tracker.tracking.setup import TrackSetup
     from tracker.tracking.start import start_tracking
     from tracker.tracking.state import TrackState
@@ -66,15 +67,18 @@ _HOMES = {
     "ImportRefusedError": "tracker.errors",
     "ImportReport": "tracker.capture.import_report",
     "ModelView": "tracker.tracking.frame_view",
+    "PRESETS": "tracker.tracking.presets",
     "Sequence": "tracker.capture.sequence",
     "SequenceError": "tracker.errors",
     "Track": "tracker.tracking.track",
     "TrackChunk": "tracker.tracking.chunk",
     "TrackOptions": "tracker.tracking.options",
+    "TrackPreset": "tracker.tracking.presets",
     "TrackSetup": "tracker.tracking.setup",
     "TrackState": "tracker.tracking.state",
     "TrackerError": "tracker.errors",
     "TrackingError": "tracker.errors",
+    "USUAL_PRESET": "tracker.tracking.presets",
     "add_commands": "tracker.cli",
     "check_import": "tracker.capture.import_check",
     "default_hand": "tracker.model.default_hand",
@@ -101,6 +105,8 @@ __all__ = [
     "HAND_EDGES",
     "HAND_JOINTS",
     "IMPORT_FORMATS",
+    "PRESETS",
+    "USUAL_PRESET",
     "Annotation",
     "AnnotationError",
     "Annotations",
@@ -121,6 +127,7 @@ __all__ = [
     "Track",
     "TrackChunk",
     "TrackOptions",
+    "TrackPreset",
     "TrackSetup",
     "TrackState",
     "TrackerError",

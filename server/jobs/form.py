@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Literal
 
-from server.jobs.schemas import JobForm, JobFormField
+from server.jobs.schemas import JobForm, JobFormField, JobPreset
 
 TYPE_NAMES: dict[type, Literal["integer", "number", "boolean", "text"]] = {
     int: "integer",
@@ -16,8 +16,8 @@ TYPE_NAMES: dict[type, Literal["integer", "number", "boolean", "text"]] = {
 
 
 def track_form() -> JobForm:
-    """One field for each option."""
-    from tracker import TrackOptions
+    """One field for each option, and the presets."""
+    from tracker import PRESETS, USUAL_PRESET, TrackOptions
 
     defaults = TrackOptions().to_json()
     return JobForm(
@@ -25,11 +25,19 @@ def track_form() -> JobForm:
         fields=[
             JobFormField(
                 name=option.name,
+                label=option.metadata["label"],
                 type=TYPE_NAMES[type(defaults[option.name])],
                 default=defaults[option.name],
                 help=option.metadata["help"],
                 choices=option.metadata.get("choices"),
+                choice_labels=option.metadata.get("choice_labels"),
+                low=option.metadata.get("low"),
+                high=option.metadata.get("high"),
+                unit=option.metadata.get("unit"),
+                is_advanced=option.metadata.get("is_advanced", False),
             )
             for option in dataclasses.fields(TrackOptions)
         ],
+        presets=[JobPreset.model_validate(preset) for preset in PRESETS],
+        usual_preset=USUAL_PRESET,
     )

@@ -46,7 +46,7 @@ def list_jobs(
 
 @router.get("/jobs/form")
 def get_job_form() -> JobForm:
-    """Options of a tracking job."""
+    """Options of a tracking job, and presets: options that go together."""
     return track_form()
 
 

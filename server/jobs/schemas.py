@@ -65,10 +65,29 @@ class JobFormField(BaseModel):
     """One option of the tracker."""
 
     name: str
+    label: str
     type: Literal["integer", "number", "boolean", "text"]
     default: int | float | bool | str
     help: str
     choices: list[str] | None = Field(description="The only values there are; null when any will do.")
+    choice_labels: list[str] | None = Field(description="The choices for people, in the same order.")
+    low: float | None = Field(description="Smallest number allowed.")
+    high: float | None = Field(description="Largest number allowed.")
+    unit: str | None = Field(description="Of a number.")
+    is_advanced: bool = Field(description="Few people ever set it.")
+
+
+class JobPreset(BaseModel):
+    """Values of some options that go together."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    name: str
+    label: str
+    help: str = Field(description="One sentence.")
+    one_hand_ms: float = Field(description="Measured median time of a frame with one hand, ms.")
+    two_hands_and_object_ms: float = Field(description="The same with two hands and an object, ms.")
+    values: dict[str, int | float | bool | str] = Field(description="As in `params`.")
 
 
 class JobForm(BaseModel):
@@ -76,6 +95,8 @@ class JobForm(BaseModel):
 
     kind: str
     fields: list[JobFormField]
+    presets: list[JobPreset] = Field(description="From the quickest to the most thorough.")
+    usual_preset: str = Field(description="Name of the one that forms begin with; jobs without params take defaults.")
 
 
 class WorkerOut(BaseModel):

@@ -11,6 +11,7 @@ from tracker.cli.command import add_json, choose_frames, parse_hand, parse_named
 from tracker.cli.hands import load_hands, load_objects
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError
+from tracker.tracking.presets import PRESETS, find_preset
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
@@ -41,6 +42,14 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         metavar="NAME=FILE",
         help="model of an object that the recording names, in place of the recording's own",
     )
+    parser.add_argument(
+        "--preset",
+        choices=tuple(preset.name for preset in PRESETS),
+        help="options that go together; what is given besides wins: "
+        + ", ".join(
+            f"{preset.name} ({preset.values['terms']}, {preset.values['iterations']} iterations)" for preset in PRESETS
+        ),
+    )
     parser.add_argument("--terms", metavar="LO+SC", help="LO with any of S, C, P behind a plus (LO)")
     parser.add_argument("--iterations", type=int, metavar="N", help="Gauss-Newton iterations a frame (10)")
     parser.add_argument("--first-iterations", type=int, metavar="N", help="iterations on the first frame (50)")
@@ -51,6 +60,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--no-calibration", action="store_true", help="keep the models' size and shape as they are")
     parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
     parser.add_argument("--no-recovery", action="store_true", help="do not look for a lost hand")
+    parser.add_argument(
+        "--stop-below", type=float, metavar="MM", help="stop iterating when the mean joint moves less than this (never)"
+    )
     parser.add_argument("--threads", type=int, metavar="N", help="threads of the image preparation (1)")
     add_json(parser)
     parser.set_defaults(run=run_guarded(track, show))
@@ -76,9 +88,11 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         "calibrate": not args.no_calibration,
         "use_skin": not args.no_skin,
         "recover": not args.no_recovery,
+        "stop_below_mm": args.stop_below,
         "threads": args.threads,
     }
-    options = TrackOptions.from_json({name: value for name, value in given.items() if value is not None})
+    preset = find_preset(args.preset).values if args.preset else {}
+    options = TrackOptions.from_json(preset | {name: value for name, value in given.items() if value is not None})
     annotations = None
     if args.annotations is None:
         path = sequence.annotations_path

@@ -11,7 +11,30 @@ TERMS = ("LO", "LO+C", "LO+S", "LO+SC", "LO+P", "LO+CP", "LO+SP", "LO+SCP")
 """Sets of terms that can be asked for, in the paper's letters: C collision, S salient points, P physics."""
 
 
+TERM_LABELS = {
+    "LO": "depth",
+    "LO+C": "depth, collision",
+    "LO+S": "depth, fingertips",
+    "LO+SC": "depth, fingertips, collision",
+    "LO+P": "depth, physics",
+    "LO+CP": "depth, collision, physics",
+    "LO+SP": "depth, fingertips, physics",
+    "LO+SCP": "depth, fingertips, collision, physics",
+}
+"""What the sets are made of, for people."""
+
+LAST_FRAME = 10_000_000
+
+
 def _option(default: Any, help_text: str, **metadata: Any) -> Any:
+    """A field with what forms and commands need to know.
+
+    Args:
+        default: Its value if nobody says otherwise.
+        help_text: One line for people.
+        metadata: `label`; `choices` and their `choice_labels`; `low` and `high` bound of a number; its `unit`;
+            `is_advanced` for what few people ever set.
+    """
     return field(default=default, metadata={"help": help_text, **metadata})
 
 
@@ -24,33 +47,53 @@ class TrackOptions:
     """
 
     terms: str = _option(
-        "LO", "Terms: LO fits depth in both directions, C collision, S fingertips, P physics.", choices=TERMS
+        "LO",
+        "What the fit looks at. LO is depth in both directions, C collision, S fingertips, P physics.",
+        label="Terms",
+        choices=TERMS,
+        choice_labels=tuple(TERM_LABELS[name] for name in TERMS),
     )
-    iterations: int = _option(10, "Gauss-Newton iterations on every frame.")
-    first_iterations: int = _option(50, "Iterations on the first frame.")
-    first_frame: int = _option(0, "First frame to track.")
-    last_frame: int = _option(-1, "Last frame to track; -1 is the recording's last.")
-    calibrate: bool = _option(True, "Fit the hand's size and shape to the first second.")
-    use_skin: bool = _option(True, "Tell hand from other things by skin colour, where there is colour.")
-    recover: bool = _option(True, "Look for a lost hand in the whole image.")
-    stop_below_mm: float = _option(0.0, "Stop iterating when the mean joint moves less than this, mm; 0 never does.")
-    camera: str = _option("", "Depth camera to track in; empty takes the first that has depth.")
-    threads: int = _option(1, "Threads of the image preparation.")
+    iterations: int = _option(10, "Gauss-Newton iterations on every frame.", label="Iterations", low=1, high=200)
+    first_iterations: int = _option(
+        50,
+        "Iterations on the first frame, which starts farther off.",
+        label="Iterations on the first frame",
+        low=1,
+        high=500,
+        is_advanced=True,
+    )
+    first_frame: int = _option(0, "First frame to track.", label="First frame", low=0, high=LAST_FRAME)
+    last_frame: int = _option(
+        -1, "Last frame to track; -1 is the recording's last.", label="Last frame", low=-1, high=LAST_FRAME
+    )
+    calibrate: bool = _option(True, "Fit the hand's size and shape to the first second.", label="Fit the hand's shape")
+    use_skin: bool = _option(
+        True, "Tell hand from other things by skin colour, where there is colour.", label="Use skin colour"
+    )
+    recover: bool = _option(True, "Look for a lost hand in the whole image.", label="Recover a lost hand")
+    stop_below_mm: float = _option(
+        0.0,
+        "Stop iterating when the mean joint moves less than this; 0 never does.",
+        label="Stop below",
+        low=0.0,
+        high=100.0,
+        unit="mm",
+        is_advanced=True,
+    )
+    camera: str = _option(
+        "", "Depth camera to track in; empty takes the first that has depth.", label="Camera", is_advanced=True
+    )
+    threads: int = _option(1, "Threads of the image preparation.", label="Threads", low=1, high=64, is_advanced=True)
 
     def __post_init__(self) -> None:
         if self.terms not in TERMS:
             raise TrackingError(f"terms is {self.terms!r}; needed one of {', '.join(TERMS)}.")
-        for name, low, high in (
-            ("iterations", 1, 200),
-            ("first_iterations", 1, 500),
-            ("first_frame", 0, 10_000_000),
-            ("last_frame", -1, 10_000_000),
-            ("stop_below_mm", 0.0, 100.0),
-            ("threads", 1, 64),
-        ):
-            value = getattr(self, name)
+        for option in fields(self):
+            if "low" not in option.metadata:
+                continue
+            value, low, high = getattr(self, option.name), option.metadata["low"], option.metadata["high"]
             if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-                raise TrackingError(f"{name} is {value!r}; needed a number from {low} to {high}.")
+                raise TrackingError(f"{option.name} is {value!r}; needed a number from {low} to {high}.")
         if 0 <= self.last_frame < self.first_frame:
             raise TrackingError(f"last_frame {self.last_frame} comes before first_frame {self.first_frame}.")
 

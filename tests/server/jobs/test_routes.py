@@ -112,6 +112,22 @@ def test_the_form_lists_every_option_with_type_default_and_help(client: TestClie
     assert fields["calibrate"]["type"] == "boolean"
     assert fields["stop_below_mm"]["type"] == "number"
     assert all(field["help"].endswith(".") for field in fields.values())
+    assert (fields["threads"]["low"], fields["threads"]["high"], fields["threads"]["is_advanced"]) == (1, 64, True)
+    assert len(fields["terms"]["choices"]) == len(fields["terms"]["choice_labels"])
+
+
+def test_a_job_takes_the_values_of_every_preset_that_the_form_offers(client: TestClient, add_recording) -> None:
+    form = client.get(f"{API}/jobs/form").json()
+    names = [preset["name"] for preset in form["presets"]]
+    assert form["usual_preset"] in names
+    costs = [preset["two_hands_and_object_ms"] for preset in form["presets"]]
+    assert costs == sorted(costs), "from the quickest to the most thorough"
+    sequence_id = add_recording()["id"]
+    for preset in form["presets"]:
+        body = {"kind": "track", "sequence_id": sequence_id, "params": preset["values"]}
+        job = client.post(f"{API}/jobs", json=body)
+        assert job.status_code == 201, job.text
+        assert preset["values"].items() <= job.json()["params"].items()
 
 
 def test_workers_are_listed_with_what_they_do(client: TestClient, studio: Studio, job: dict) -> None:

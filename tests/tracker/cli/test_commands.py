@@ -66,6 +66,18 @@ def test_a_part_of_a_recording_is_tracked_from_its_own_first_frame(recording, tm
         assert list(track["frame"]) == [5, 6, 7, 8]
 
 
+def test_a_preset_stands_for_its_options_and_what_is_given_besides_wins(recording, tmp_path):
+    hand = f"right={recording / 'models' / 'right.npz'}"
+    arguments = ["track", str(recording), "--hand", hand, "--frames", "0:2", "--no-calibration"]
+    for name, given, wanted in (
+        ("plain", ["--preset", "fast"], ("LO", 5)),
+        ("other", ["--preset", "balanced", "--iterations", "7"], ("LO+SC", 7)),
+    ):
+        assert main([*arguments, *given, "--out", str(tmp_path / name)]) == 0
+        options = json.loads((tmp_path / name / "setup.json").read_text())["options"]
+        assert (options["terms"], options["iterations"]) == wanted
+
+
 def test_bench_prints_the_time_of_a_frame_and_its_floor(capsys):
     assert main(["bench", "tracking", "--frames", "10", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["one_hand"]

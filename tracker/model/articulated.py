@@ -20,6 +20,8 @@ class HandParts:
         joint_vertices: (21,) for each of HAND_JOINTS the vertex it is, -1 where a bone is meant.
         fingertips: thumb..little, the vertex ids of each fingertip, [T16] Fig. 2 d-f.
         finger_parts: name such as "index_distal" to vertex ids, [T16] Fig. 10.
+        joint_offsets: (21, 3) from each of those bones' joints or vertices to where annotators of the recording put the
+            joint, model frame at rest, m. They move with the bone and turn nothing.
     """
 
     side: str
@@ -27,6 +29,10 @@ class HandParts:
     joint_vertices: npt.NDArray[np.int64]
     fingertips: tuple[npt.NDArray[np.int64], ...]
     finger_parts: dict[str, npt.NDArray[np.int64]]
+    joint_offsets: Array = field(default_factory=lambda: np.zeros((21, 3)))
+
+    def __post_init__(self) -> None:
+        assert self.joint_offsets.shape == (21, 3)
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,9 @@ def mirror(model: ArticulatedModel) -> ArticulatedModel:
         vertices=model.vertices * MIRROR,
         faces=np.ascontiguousarray(model.faces[:, ::-1]),
         skeleton=replace(skeleton, Ts_model_bone=Ts, dof_axes=-skeleton.dof_axes * MIRROR),
-        hand=None if hand is None else replace(hand, side=OTHER_SIDE[hand.side]),
+        hand=None
+        if hand is None
+        else replace(hand, side=OTHER_SIDE[hand.side], joint_offsets=hand.joint_offsets * MIRROR + 0.0),
         shape=None if shape is None else replace(shape, vertices=shape.vertices * MIRROR, joints=shape.joints * MIRROR),
         provenance={**model.provenance, "mirrored": "no" if model.provenance.get("mirrored") == "yes" else "yes"},
     )

@@ -52,6 +52,8 @@ def save_npz_model(model: ArticulatedModel, path: Path) -> None:
             "hand_set_sizes": np.array([len(ids) for ids in sets]),
             "hand_set_vertices": np.concatenate([np.zeros(0, dtype=np.int64), *sets]),
         }
+        if np.any(hand.joint_offsets):
+            arrays["hand_joint_offsets"] = hand.joint_offsets
     if model.shape is not None:
         arrays |= {
             "shape_names": np.array(model.shape.names),
@@ -157,7 +159,9 @@ def _read_hand(fields: NpzFields, num_vertices: int, num_bones: int) -> HandPart
     ids = fields.integers("hand_set_vertices", (int(sizes.sum()),), 0, num_vertices)
     sets = np.split(ids, np.cumsum(sizes)[:-1])
     parts = dict(zip(names, sets[len(FINGERS) :], strict=True))
-    return HandParts(side, joint_bones, joint_vertices, tuple(sets[: len(FINGERS)]), parts)
+    has_offsets = "hand_joint_offsets" in fields
+    offsets = fields.floats("hand_joint_offsets", (count, 3), MAX_COORDINATE) if has_offsets else np.zeros((count, 3))
+    return HandParts(side, joint_bones, joint_vertices, tuple(sets[: len(FINGERS)]), parts, offsets)
 
 
 def _read_shape(fields: NpzFields, num_vertices: int, num_bones: int) -> ShapeBasis:

@@ -222,7 +222,7 @@ def _landmarks(model: ArticulatedModel, first_bone: int, first_vertex: int) -> t
     at_bone = hand.joint_bones >= 0
     rest = np.where(at_bone[:, None], joints[hand.joint_bones], model.vertices[hand.joint_vertices])
     return (
-        rest,
+        rest + hand.joint_offsets,
         np.where(at_bone, hand.joint_bones + first_bone, 0),
         np.where(at_bone, -1, hand.joint_vertices + first_vertex),
     )

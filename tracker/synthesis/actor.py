@@ -62,7 +62,10 @@ class Actor:
         hand = self.model.hand
         if hand is None:
             return bones
-        return np.where((hand.joint_bones >= 0)[:, None], bones[hand.joint_bones], vertices[hand.joint_vertices])
+        joints = np.where((hand.joint_bones >= 0)[:, None], bones[hand.joint_bones], vertices[hand.joint_vertices])
+        blended = (self.model.skinning_weights[hand.joint_vertices] @ M.reshape(-1, 12)).reshape(-1, 3, 4)
+        turns = np.where((hand.joint_bones >= 0)[:, None, None], M[hand.joint_bones][:, :, :3], blended[:, :, :3])
+        return joints + np.einsum("jik,jk->ji", turns, hand.joint_offsets)
 
     def T_world_model(self, moment: int) -> Array:
         """(4, 4) the root's motion: coordinates of the model's file to world, m."""

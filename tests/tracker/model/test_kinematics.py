@@ -1,9 +1,13 @@
 """A scene moves as [T16] Eq. 1-4 say, and its Jacobian is exact."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from tests.tracker.toys import tube
 from tracker.geometry import se3
+from tracker.model.default_hand import default_hand
 from tracker.model.kinematics import vertex_jacobian
 from tracker.model.scene import Scene
 
@@ -74,3 +78,21 @@ def test_normals_of_a_closed_tube_point_outward(rng):
     nearest_axis[:, 0] = np.clip(nearest_axis[:, 0], 0.0, 0.09)
     assert np.all(np.einsum("vi,vi->v", normals, vertices - nearest_axis) > 0)
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0)
+
+
+def test_a_joint_marked_elsewhere_rides_on_its_bone_and_leaves_everything_else_alone(rng):
+    hand = default_hand("right")
+    assert hand.hand is not None
+    offsets = np.zeros((21, 3))
+    offsets[[0, 6, 8]] = rng.normal(scale=0.01, size=(3, 3))
+    marked = replace(hand, hand=replace(hand.hand, joint_offsets=offsets))
+    pose = rng.uniform(-0.4, 0.4, hand.num_dofs)
+    plain, moved = Scene((hand,)).pose_at(pose), Scene((marked,)).pose_at(pose)
+    count = len(hand.vertices)
+    np.testing.assert_array_equal(moved.vertices[:count], plain.vertices[:count])
+    apart = moved.landmarks(0) - plain.landmarks(0)
+    for joint in (0, 6):  # at a bone's joint: turned exactly as the bone is
+        turn = plain.Ms[hand.hand.joint_bones[joint]][:, :3]
+        np.testing.assert_allclose(apart[joint], turn @ offsets[joint], atol=1e-12)
+    assert np.linalg.norm(apart[8]) == pytest.approx(np.linalg.norm(offsets[8]), rel=0.05)
+    assert not apart[[index for index in range(21) if index not in (0, 6, 8)]].any()

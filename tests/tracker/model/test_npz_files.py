@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 import zipfile
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from tracker.errors import ModelFileError
 from tracker.model import ArticulatedModel, Skeleton, load_model, save_model
 from tracker.model.default_hand import DATA, default_hand
+from tracker.model.mirroring import mirror
 
 GIVEN = DATA.read_bytes()
 
@@ -176,3 +177,13 @@ def test_the_committed_hand_says_where_it_comes_from() -> None:
     with np.load(DATA) as file:
         provenance = json.loads(str(file["provenance"][0]))
     assert provenance["licence"] == "CC0 1.0" and "MakeHuman" in provenance["source"]
+
+
+def test_joints_marked_elsewhere_are_kept(tmp_path: Path):
+    hand = default_hand("left")
+    assert hand.hand is not None
+    offsets = np.random.default_rng(3).normal(scale=0.01, size=(21, 3))
+    marked = replace(hand, hand=replace(hand.hand, joint_offsets=offsets))
+    save_model(marked, tmp_path / "hand.npz")
+    assert_same(load_model(tmp_path / "hand.npz"), marked)
+    assert_same(mirror(mirror(marked)).hand, marked.hand)

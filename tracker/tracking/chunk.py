@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from tracker.tracking.arrays_file import load_arrays, save_arrays
 from tracker.tracking.frame_result import STATUSES, FrameResult
+from tracker.tracking.watch_objects import OBJECT_STATUSES
 
 Array = npt.NDArray[np.float64]
 
@@ -34,6 +35,8 @@ class TrackChunk:
         stages: (T, S) seconds.
         iteration_costs: (T, I, N) float32, cost of each term at every iteration of the fit that was kept, mm²; NaN
             after a frame's last iteration and where a term had no part. I is 0 in tracks made before it was recorded.
+        object_status: (T, O) index into OBJECT_STATUSES. O is 0 in tracks made before it was recorded.
+        object_score: (T, O) how well each object's pose explains what is in sight of it, 0 to 1.
     """
 
     frame: npt.NDArray[np.int64]
@@ -49,6 +52,8 @@ class TrackChunk:
     stage_names: npt.NDArray[np.str_]
     stages: Array
     iteration_costs: npt.NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0, 0), dtype=np.float32))
+    object_status: npt.NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), dtype=np.int8))
+    object_score: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     @classmethod
     def of(cls, results: Several[FrameResult]) -> TrackChunk:
@@ -72,6 +77,12 @@ class TrackChunk:
             stage_names=np.array(stage_names, dtype=np.str_),
             stages=_table([result.stages for result in results], stage_names),
             iteration_costs=_tabulate_iterations([result.costs for result in results], cost_names),
+            object_status=np.array(
+                [[OBJECT_STATUSES.index(one.status) for one in result.objects] for result in results], dtype=np.int8
+            ).reshape(len(results), -1),
+            object_score=np.array([[one.quality.score for one in result.objects] for result in results]).reshape(
+                len(results), -1
+            ),
         )
 
     @classmethod
@@ -81,6 +92,7 @@ class TrackChunk:
         cost_names = sorted({str(name) for chunk in chunks for name in chunk.cost_names})
         stage_names = sorted({str(name) for chunk in chunks for name in chunk.stage_names})
         plain = ("frame", "pose", "status", "seconds", "depth_residual_mm", "silhouette_iou", "score", "iterations")
+        plain = (*plain, "object_status", "object_score")
         return cls(
             **{name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in plain},
             cost_names=np.array(cost_names, dtype=np.str_),
@@ -96,11 +108,16 @@ class TrackChunk:
 
     @classmethod
     def load(cls, path: Path) -> TrackChunk:
-        """Read what `save` wrote, or what it wrote before the costs of iterations were recorded."""
-        needed = tuple(f.name for f in fields(cls) if f.name != "iteration_costs")
-        arrays = load_arrays(path, needed, optional=("iteration_costs",))
-        nothing = np.zeros((len(arrays["frame"]), 0, len(arrays["cost_names"])), dtype=np.float32)
-        return cls(**{"iteration_costs": nothing, **arrays})
+        """Read what `save` wrote, or what it wrote before the costs of iterations and the objects were recorded."""
+        later = ("iteration_costs", "object_status", "object_score")
+        arrays = load_arrays(path, tuple(f.name for f in fields(cls) if f.name not in later), optional=later)
+        frames = len(arrays["frame"])
+        nothing = {
+            "iteration_costs": np.zeros((frames, 0, len(arrays["cost_names"])), dtype=np.float32),
+            "object_status": np.zeros((frames, 0), dtype=np.int8),
+            "object_score": np.zeros((frames, 0)),
+        }
+        return cls(**{**nothing, **arrays})
 
 
 def _names(rows: Several[dict[str, float]]) -> list[str]:

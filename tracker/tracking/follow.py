@@ -22,6 +22,7 @@ from tracker.tracking.setup import TrackSetup
 from tracker.tracking.start_annotated import with_marks
 from tracker.tracking.state import TrackState
 from tracker.tracking.tools import Tools, make_tools
+from tracker.tracking.watch_objects import stop_unseen, watch_objects
 
 Array = npt.NDArray[np.float64]
 
@@ -95,15 +96,17 @@ def follow_frame(
         longer = 0 if is_better else min(max(FIRST_IMAGE_REST, 2 * rest[2]), LAST_IMAGE_REST)
         rest = (rest[0], longer, longer)
         stages["searching the image"] = perf_counter() - searched_at
-    seconds = perf_counter() - started
-    stages["reading"] = started - read_at
     is_followed = status == "ok" and not state.is_lost
     is_lost = status == "lost" or attempt is None
     pose = state.pose if is_lost or attempt is None else attempt.pose
+    pose, objects = watch_objects(frame, camera, setup, pose, is_lost, recover)
+    seconds = perf_counter() - started
+    stages["reading"] = started - read_at
+    earlier = state.pose if is_followed else pose
     next_state = TrackState(
         state.next_frame + 1,
         pose,
-        state.pose if is_followed else pose,
+        stop_unseen(setup, pose, earlier, objects),
         _running_score(state, attempt, status),
         is_lost,
         rest,
@@ -116,6 +119,7 @@ def follow_frame(
         None if attempt is None else attempt.quality,
         () if attempt is None else attempt.fit.costs,
         stages,
+        tuple(objects),
     )
 
 

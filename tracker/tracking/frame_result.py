@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.tracking.quality import Quality
+from tracker.tracking.watch_objects import WatchedObject
 
 STATUSES = ("ok", "lost", "recovered")
 
@@ -24,6 +25,7 @@ class FrameResult:
         quality: How well the pose explains the frame; None where there was nothing to compare with.
         costs: One per iteration, cost of each term, mm².
         stages: Seconds by stage, "reading" among them though not in `seconds`.
+        objects: What became of each object, in the order of `TrackSetup.object_names`.
     """
 
     frame: int
@@ -33,3 +35,4 @@ class FrameResult:
     quality: Quality | None
     costs: tuple[dict[str, float], ...]
     stages: dict[str, float]
+    objects: tuple[WatchedObject, ...] = ()

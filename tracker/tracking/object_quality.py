@@ -49,6 +49,11 @@ class ObjectQuality:
     outline_iou: float
     score: float
 
+    @classmethod
+    def of_nothing(cls) -> ObjectQuality:
+        """Of an object that is nowhere in the image."""
+        return cls(0, 0.0, float("inf"), 0.0, 0.0)
+
     @property
     def is_hidden(self) -> bool:
         """Whether too little is in sight to say anything."""
@@ -71,7 +76,7 @@ def measure_object_quality(view: View, observation: Observation, model: int) -> 
     is_own = (view.face >= 0) & (scene.face_models == model)[view.face]
     own[is_own] = view.inverse_depth[is_own]
     if not is_own.any():
-        return ObjectQuality(0, 0.0, float("inf"), 0.0, 0.0)
+        return ObjectQuality.of_nothing()
     pixels = max(1, round(RIM * float(view.K[0, 0]) * float(np.median(own[is_own]))))
     around = cv2.dilate(own, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * pixels + 1, 2 * pixels + 1)))
     counts, residuals = _compare(

@@ -91,9 +91,10 @@ def start_tracking(
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
         model = given.get(item.name) or load_model(sequence.object_path(item.name))
-        frame, camera = setup.read(sequence, frames[0])
         others = [(other, pose) for other, pose in placed.values() if np.any(pose)]
-        placed[item.name] = model, start_object(model, item, frame, camera, setup.preprocessing, others)
+        first_second = frames[: max(1, round(sequence.fps)) : max(1, round(sequence.fps / 6))]
+        views = (setup.read(sequence, index) for index in first_second)
+        placed[item.name] = model, start_object(model, item, views, setup.preprocessing, others)
     order = (*names, *(item.name for item in sequence.objects))
     setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks)
     pose = np.concatenate([placed[name][1] for name in order])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
 
 import numpy as np
 import numpy.typing as npt
@@ -18,10 +19,8 @@ from tracker.observation import Preprocessing
 from tracker.solver.damped_step import compute_damped_step
 from tracker.terms.joint_prior import AnatomicalLimits, Regularization
 from tracker.terms.point_point import PointToPoint
-from tracker.tracking.depth_range import depth_range
-from tracker.tracking.find_object import find_object
-from tracker.tracking.forearm import leave_out_forearms
-from tracker.tracking.leave_out import leave_out
+from tracker.tracking.find_object import FoundObject
+from tracker.tracking.look_for_object import look_for_object
 from tracker.tracking.objective import Objective
 
 log = logging.getLogger(__name__)
@@ -34,54 +33,55 @@ ITERATIONS = 60
 def start_object(
     model: ArticulatedModel,
     item: RecordedObject,
-    frame: Frame,
-    camera: Camera,
+    frames: Iterable[tuple[Frame, Camera]],
     how: Preprocessing,
     others: list[tuple[ArticulatedModel, Array]],
 ) -> Array:
-    """(D,) pose of an object in a frame: as recorded, or else the one that explains best what the others leave over.
+    """(D,) pose of an object as recorded, or else the one that explains best what the others leave over.
 
-    Where colour tells hands from other things, hands stay in the frame; otherwise what they explain is left out.
+    An object that the first frame shows too badly, but one of the next ones well, starts from the best guess; it is
+    lost as long as the frames do not bear that out, and found as any lost object is.
 
     Args:
         model: The object.
         item: What the recording says of it.
-        frame: Undistorted first frame.
-        camera: Its camera.
+        frames: Undistorted frames in order, each with its camera; read only as far as needed.
         how: Preprocessing.
-        others: Models that are placed, with their poses (D,).
+        others: Models that are placed, with their poses (D,) in the first frame.
 
     Raises:
         TrackingError: It was not placed by anybody and is not found, or no bone that was placed is the model's.
     """
     if item.T_world_object is not None:
         return place_object(model, item)
-    near, far = depth_range(frame)
-    is_coloured = frame.color is not None and how.use_skin
-    hands = [Scene((other,)).pose_at(pose).landmarks(0) for other, pose in others if other.hand]
-    for other, pose in others:
-        if not (other.hand and is_coloured):
-            frame = leave_out(frame, camera, Scene((other,)), pose, [0])
-    frame = leave_out_forearms(frame, camera, hands)
-    found = find_object(frame, camera, model, how, near, far, np.concatenate(hands) if hands else None)
-    if found is None or not found.is_believable:
-        best = (
-            "nothing is there that could be one"
-            if found is None
-            else f"{100.0 * found.quality.inside:.0f} % of what would be in sight of the best guess is there"
-        )
-        raise TrackingError(
-            f"{item.name}: not found in frame {frame.index} of camera {frame.camera}: {best}. Needed: a first frame "
-            "that shows most of it, its mesh in the right unit, or `initial.T_world_object` in sequence.json."
-        )
-    log.info(
-        "%s: found in frame %d, %.1f mm from the depth at the median, %.0f %% of its outline as seen",
-        item.name,
-        frame.index,
-        1e3 * found.quality.depth_residual,
-        100.0 * found.quality.outline_iou,
+    guess: FoundObject | None = None
+    looked_at = []
+    for frame, camera in frames:
+        # Hands are left out where they were in the first frame; later they have moved away from there.
+        found = look_for_object(model, frame, camera, how, [] if looked_at else others)
+        looked_at.append(frame.index)
+        if found is None:
+            continue
+        guess = guess or found
+        if not found.is_believable:
+            continue
+        log.info("%s: found in frame %d, %s", item.name, frame.index, _describe(found))
+        if guess is not found:
+            log.warning("%s: frame %d shows it too badly: %s", item.name, looked_at[0], _describe(guess))
+        return guess.pose
+    best = "nothing is there that could be one" if guess is None else f"at best {_describe(guess)}"
+    raise TrackingError(
+        f"{item.name}: not found in frames {', '.join(map(str, looked_at))}: {best}. Needed: a first second that shows "
+        "most of it, its mesh in the right unit, or `initial.T_world_object` in sequence.json."
     )
-    return found.pose
+
+
+def _describe(found: FoundObject) -> str:
+    quality = found.quality
+    return (
+        f"{100.0 * quality.inside:.0f} % of what would be in sight is there, {1e3 * quality.depth_residual:.1f} mm off "
+        f"at the median, {100.0 * quality.outline_iou:.0f} % of the outline as seen"
+    )
 
 
 def place_object(model: ArticulatedModel, item: RecordedObject) -> Array:

@@ -1,0 +1,107 @@
+"""Judge the objects of a followed frame, and look for those that are lost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.model.scene import Scene
+from tracker.observation import Preprocessing, observe
+from tracker.tracking.find_object import ObjectSearch
+from tracker.tracking.frame_fit import draw
+from tracker.tracking.look_for_object import look_for_object
+from tracker.tracking.object_quality import ObjectQuality, measure_object_quality
+from tracker.tracking.region import region_around
+from tracker.tracking.setup import TrackSetup
+
+Array = npt.NDArray[np.float64]
+
+OBJECT_STATUSES = ("ok", "lost", "recovered", "hidden")
+
+NEAR_EVERY, FAR_EVERY = 2, 10
+"""A lost object is looked for near its last place in frames whose number these divide, and in the whole image."""
+
+NEARBY = ObjectSearch(places=8, rotations=24, hypotheses=120, rough=8, fine=2)
+
+GAIN = 0.05
+"""A pose that was found must have a merit higher by this than the one that was followed."""
+
+
+@dataclass(frozen=True)
+class WatchedObject:
+    """An object in one frame.
+
+    Attributes:
+        status: One of OBJECT_STATUSES; the pose of a lost or hidden object is a guess.
+        quality: How well its pose explains the frame.
+    """
+
+    status: str
+    quality: ObjectQuality
+
+
+def watch_objects(
+    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, hands_are_lost: bool, recover: bool
+) -> tuple[Array, list[WatchedObject]]:
+    """The pose (D,) with lost objects put where they were found again, and its objects, in order.
+
+    Args:
+        frame: Undistorted.
+        camera: Its camera.
+        setup: Models and options.
+        pose: (D,) after the fit.
+        hands_are_lost: The hands' part of the pose means nothing.
+        recover: Look for what is lost.
+    """
+    objects = [index for index, model in enumerate(setup.models) if not model.hand]
+    if not objects or frame.depth is None:
+        return pose, []
+    kept = objects if hands_are_lost else list(range(len(setup.models)))
+    pose = pose.copy()
+    watched = []
+    for index in objects:
+        quality = _measure(frame, camera, setup, pose, kept, index)
+        status = "lost" if quality.is_lost else "hidden" if quality.is_hidden else "ok"
+        if status != "ok" and recover and frame.index % NEAR_EVERY == 0:
+            search = ObjectSearch() if frame.index % FAR_EVERY == 0 else NEARBY
+            others = [(setup.models[i], pose[setup.scene.pose_slices[i]]) for i in kept if i != index]
+            last = pose[setup.scene.pose_slices[index]]
+            found = look_for_object(setup.models[index], frame, camera, setup.preprocessing, others, last, search)
+            if found is not None and found.is_believable and found.merit > quality.score + GAIN:
+                pose[setup.scene.pose_slices[index]] = found.pose
+                status, quality = "recovered", found.quality
+        watched.append(WatchedObject(status, quality))
+    return pose, watched
+
+
+def stop_unseen(setup: TrackSetup, pose: Array, earlier: Array, watched: Sequence[WatchedObject]) -> Array:
+    """The pose before (D,), to predict from, with objects that were not followed from there at rest."""
+    earlier = earlier.copy()
+    objects = [index for index, model in enumerate(setup.models) if not model.hand]
+    for index, one in zip(objects, watched, strict=False):
+        if one.status != "ok":
+            earlier[setup.scene.pose_slices[index]] = pose[setup.scene.pose_slices[index]]
+    return earlier
+
+
+def _measure(
+    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, kept: list[int], index: int
+) -> ObjectQuality:
+    """Quality of an object in a scene of the `kept` models."""
+    scene = setup.scene
+    if len(kept) < len(setup.models):
+        pose = np.concatenate([pose[scene.pose_slices[other]] for other in kept])
+        scene = Scene(tuple(setup.models[other] for other in kept))
+    place = kept.index(index)
+    posed = scene.pose_at(pose)
+    region = region_around(posed.vertices[scene.vertex_slices[place]], camera)
+    if region is None:
+        return ObjectQuality.of_nothing()
+    how: Preprocessing = replace(setup.preprocessing, objects=False)  # nearest pixels are not asked for
+    seen = observe(frame, camera, region, how)
+    return measure_object_quality(draw(posed, seen), seen, place)

@@ -117,7 +117,7 @@ def show(rows: list[Row]) -> list[Block]:
         Picture("figure_13", drawn, "Of the paper's curves only the areas are printed."),
         Text(
             f"{rows[0]['tips']} visible fingertips in {rows[0]['images']} images. Our detector has seen renders of its "
-            "own hand only, none of these hands or motions; the trained ones have seen other motions of the same hands. "
+            "own hand only, none of these hands or motions; the trained ones have seen other motions of these hands. "
             "The sequences were looked at when its pixel size and blur were chosen (docs/detection.md)."
         ),
     ]
@@ -128,7 +128,7 @@ STUDY = Study(
     title="Precision and recall of the fingertip detector",
     paper="Figure 13, §4.1.2",
     question="How well are fingertips found?",
-    same="A Hough forest of ten trees on eleven channels; PASCAL-VOC: a box counts if it overlaps a fingertip's half.",
+    same="A Hough forest of ten trees on eleven channels; PASCAL-VOC: a box counts if it overlaps a tip's by half.",
     differs="Rendered images in place of recorded ones: the noise is simpler and a twin's colour is nothing but "
     "shading, so areas are not comparable. Boxes are of 32 mm; Dexter is not at hand.",
     trials=trials,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
@@ -58,7 +58,7 @@ class Bars:
     title: str
     y_label: str
     labels: Sequence[str]
-    values: dict[str, Sequence[float]]
+    values: Mapping[str, Sequence[float]]
     paper: Sequence[str] = ()
     """Names that hold T16's numbers."""
 

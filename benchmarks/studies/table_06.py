@@ -26,6 +26,13 @@ PARTS: dict[str, tuple[str, dict[str, Any]]] = {
 }
 """Parts to the paper's name of it and the setting, by Algorithm 1 alone."""
 
+SHORT = {
+    "model to data alone (Eq. 7)": "m2d alone",
+    "T16's LO: Eq. 7 and 8": "T16's LO",
+    "data to model alone (Eq. 8, depth discontinuities)": "d2m alone",
+}
+"""For the plot."""
+
 WHOLE = ("LO", "LO+C", "LO+S", "LO+SC")
 """The tracker as it comes, with second tries and, with S, fingertips where a frame went badly."""
 
@@ -70,8 +77,7 @@ def show(rows: list[Row]) -> list[Block]:
             )
         )
     drawn_rows = [row for row in rows if row["failed"] == 0 and row["step"] == SETTING_STEP]
-    short = {"model to data alone (Eq. 7)": "m2d alone"}
-    labels = [short.get(row["what"], row["what"].replace("T16's ", "T16 ").split(":")[0]) for row in drawn_rows]
+    labels = [SHORT.get(str(row["what"]), str(row["what"])) for row in drawn_rows]
     drawn = draw_plot(
         [
             Bars(

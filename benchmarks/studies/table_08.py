@@ -95,7 +95,7 @@ STUDY = Study(
     question="Is local optimisation better than a swarm, at its settings and at equal time?",
     same="The ratio of the two errors: both follow the same images. Swarms of the paper's four settings, one hand.",
     differs="The swarm is written anew on our model and renderer (docs/baselines.md) and runs on the processor; in "
-    "the paper it is the authors' program, with its own model, on a graphics card. It starts where ours is after one frame.",
+    "the paper it is the authors' program, with its own model, on a graphics card. It starts from our pose of frame 0.",
     trials=trials,
     tabulate=tabulate,
     show=show,

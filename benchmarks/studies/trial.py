@@ -58,8 +58,10 @@ def fingerprint(*files: Path) -> str:
 
 
 def code_of(trial: Trial) -> str:
-    """The fingerprint that a trial's result has now."""
-    return fingerprint(Path(inspect.getfile(type(trial))))
+    """The fingerprint that a trial's result has now: its file counts, and those that its class names as `made_with`."""
+    own = Path(inspect.getfile(type(trial)))
+    others = (own.parent / name for name in getattr(trial, "made_with", ("twin_runs.py",)))
+    return fingerprint(own, *others)
 
 
 def path_of(trial: Trial, folder: Path) -> Path:

@@ -126,8 +126,8 @@ def _measure_objects(twin: Twin, track: Track) -> dict[str, dict[str, float]]:
             if actor.joint_names:
                 off = np.linalg.norm(posed.landmarks(place) - actor.joints(moment, true), axis=1)
             else:
-                off = np.linalg.norm(own.mean(axis=0) - true.mean(axis=0))[None]
-            bones.append(1e3 * off.mean())
+                off = np.atleast_1d(np.linalg.norm(own.mean(axis=0) - true.mean(axis=0)))
+            bones.append(1e3 * float(off.mean()))
             if row % SPARSE == 0:
                 surface.append(1e3 * compute_surface_distances(own[chosen], true, mesh).mean())
         found[actor.name] = {

@@ -55,7 +55,7 @@ def _of_bar(row: Row) -> str:
 STUDY = Study(
     name="bars",
     title="What it must show",
-    paper="none: the project's own bars",
+    paper="Bars, the project's own",
     question="Is every bar met?",
     same="Nothing here is the paper's. Twins of its eight public sequences, whole, with sensor noise, started from the "
     "annotation of the first frame, ten iterations; a hand is lost in a frame when its mean joint error exceeds 40 mm.",

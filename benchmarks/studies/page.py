@@ -28,7 +28,8 @@ th,td{padding:6px 12px;text-align:right;border-top:1px solid var(--rule);white-s
 thead th{border-top:0;font-weight:600;color:var(--mute);white-space:normal;vertical-align:bottom;line-height:1.3}
 th:first-child,td:first-child,.words td,.words th{text-align:left}.words td{white-space:normal}
 .words td:nth-child(3){text-align:right;white-space:nowrap}.words td:first-child{width:42%}
-.t16{background:var(--t16)}td strong{color:var(--bad)}td.met{color:var(--good)}td.unmet{background:var(--badbg)}
+.t16{background:var(--t16)}td.again{color:var(--mute);opacity:.5}td strong{color:var(--bad)}
+td.met{color:var(--good)}td.unmet{background:var(--badbg)}
 svg.plot{width:100%;height:auto;display:block;border:1px solid var(--rule);border-radius:8px}
 nav{columns:2;column-gap:36px;margin:28px 0 0;font-size:14.5px}nav a{display:flex;gap:10px;break-inside:avoid;
 padding:3px 0}nav span{color:var(--mute);min-width:78px}a{color:var(--accent);text-decoration:none}
@@ -78,16 +79,20 @@ def _block(block: Block) -> str:
             is_paper = [column.startswith("T16") for column in columns]
             kinds = [' class="t16"' if paper else "" for paper in is_paper]
             head = "".join(f"<th{kind}>{_inline(name)}</th>" for kind, name in zip(kinds, columns, strict=True))
-            body = "".join(
-                "<tr>" + "".join(_cell(cell, kind) for cell, kind in zip(row, kinds, strict=True)) + "</tr>"
-                for row in rows
-            )
+            body = "".join(_table_row(row, kinds, above) for row, above in zip(rows, ((), *rows), strict=False))
             name = ' class="words"' if columns[1:2] == ("measured",) else ""
             below = f"<figcaption>{_inline(caption)}</figcaption>" if caption else ""
             return (
                 f'<figure><div class="wide"><table{name}><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
                 f"</div>{below}</figure>"
             )
+
+
+def _table_row(row: Sequence[str], kinds: Sequence[str], above: Sequence[str]) -> str:
+    """A row; its first cell is faint where it says what the one above says."""
+    first = ' class="again"' if row[:1] == above[:1] and not kinds[0] else kinds[0]
+    cells = [_cell(cell, kind) for cell, kind in zip(row, (first, *kinds[1:]), strict=True)]
+    return f"<tr>{''.join(cells)}</tr>"
 
 
 def _cell(cell: str, kind: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from benchmarks.studies.plain_run import PlainRun, pool
@@ -22,15 +22,12 @@ def pooled(results: Results, sequences: Sequence[str], extent: Extent, **setting
 
 
 def show_px(value: float | None) -> str:
-    """Two digits; a dash for what there is none of."""
-    return "-" if value is None or not math.isfinite(value) else f"{value:.2f}"
+    """Two digits, three below one; a dash for what there is none of."""
+    if value is None or not math.isfinite(value):
+        return "-"
+    return f"{value:.3f}" if abs(value) < 0.9995 else f"{value:.2f}"
 
 
 def show_lost(row: Row) -> str:
     """Lost frames and collapsed sequences of a pooled row."""
     return f"{row['lost']} in {row['failed']}/{row['sequences']}" if row["lost"] else "0"
-
-
-def column(rows: Iterable[Row], name: str) -> list[float]:
-    """A column of rows."""
-    return [float(row[name]) for row in rows]

@@ -15,7 +15,8 @@ from typing import Any, Protocol, runtime_checkable
 
 from tracker.capture.atomic_file import write_atomically
 
-ROOT = Path(__file__).resolve().parents[2]
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
 
 
 @runtime_checkable
@@ -60,7 +61,7 @@ def fingerprint(*files: Path) -> str:
 def code_of(trial: Trial) -> str:
     """The fingerprint that a trial's result has now: its file counts, and those that its class names as `made_with`."""
     own = Path(inspect.getfile(type(trial)))
-    others = (own.parent / name for name in getattr(trial, "made_with", ("twin_runs.py",)))
+    others = (HERE / name for name in getattr(trial, "made_with", ("twin_runs.py",)))
     return fingerprint(own, *others)
 
 

@@ -11,7 +11,7 @@ WEB := web/dist/.stamp
 TRACKER_SOURCES := $(shell find tracker -name '*.py')
 WEB_SOURCES := $(shell find web -type f -not -path '*/node_modules/*' -not -path '*/dist/*' -not -path '*/test-results/*' -not -name '*.tsbuildinfo')
 
-.PHONY: setup demo test test-python test-web lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench clean
+.PHONY: setup demo test test-python test-web lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies clean
 .DELETE_ON_ERROR:
 
 setup: $(PROJECT) $(WEB) $(COMPILED)
@@ -85,6 +85,11 @@ api: $(PROJECT) $(NODE_MODULES)
 
 bench: setup
 	$(BIN)/handloom bench tracking
+
+# T16's tables and figures on twins of its public sequences, and every bar: docs/studies.md. DATA is the authors' folder.
+studies: setup
+	@test -n "$(DATA)" || { echo "studies: say where the data of T16 is: make studies DATA=FOLDER"; exit 2; }
+	$(BIN)/python -m benchmarks.studies $(DATA) --write
 
 clean:
 	rm -rf .venv web/node_modules web/dist

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 
-from benchmarks.studies.bar import Bar, Verdict
+from benchmarks.studies.bar import Bar
 from benchmarks.studies.bars_accuracy import list_accuracy_bars, list_term_bars
 from benchmarks.studies.bars_cost import list_cost_bars
 from benchmarks.studies.bars_elsewhere import list_other_bars
-from benchmarks.studies.blocks import Block, Table, Text
+from benchmarks.studies.blocks import Block, Picture, Table, Text
+from benchmarks.studies.ratio_plot import draw_ratios
 from benchmarks.studies.study import Extent, Row, Study
 from benchmarks.studies.trial import Results, Trial
-
-__all__ = ["STUDY", "Verdict", "list_bars"]
 
 
 def list_bars(extent: Extent) -> list[Bar]:
@@ -39,6 +38,14 @@ def show(rows: list[Row]) -> list[Block]:
     blocks: list[Block] = [
         Text(f"**{count[True]} of {len(rows)} met**, {count[False]} not met{missing}."),
     ]
+    items = [
+        (f"{row['group'].split(' (')[0]}: {row['what']}", row["ratio"]) for row in rows if row["ratio"] is not None
+    ]
+    if items:
+        drawn = draw_ratios(items, "Each bar's measured value as a share of what is allowed")
+        blocks.append(
+            Picture("bars", drawn, "Measured, of what each bar allows; those that are not numbers are below.")
+        )
     for group in dict.fromkeys(row["group"] for row in rows):
         own = [row for row in rows if row["group"] == group]
         notes = " ".join(dict.fromkeys(row["note"] for row in own if row["note"]))

@@ -16,6 +16,7 @@ from tracker.tracking.depth_range import depth_range
 from tracker.tracking.finger_search import search_fingers
 from tracker.tracking.frame_fit import Fit, FitOptions, draw, fit_frame
 from tracker.tracking.leave_out import leave_out
+from tracker.tracking.object_quality import ObjectQuality, measure_object_quality
 from tracker.tracking.objective import Objective
 from tracker.tracking.quality import Quality, measure_quality
 from tracker.tracking.region import region_around
@@ -40,11 +41,12 @@ WIDE = {
 
 @dataclass(frozen=True)
 class Attempt:
-    """A fitted pose and how well it explains each hand of the scene."""
+    """A fitted pose and how well it explains each hand, and each object, of the scene."""
 
     pose: Array
     qualities: dict[int, Quality]
     fit: Fit
+    objects: dict[int, ObjectQuality]
 
     @property
     def quality(self) -> Quality:
@@ -77,7 +79,8 @@ def attempt_fit(
     fit = fit_frame(setup.scene, seen, start, previous, objective, options)
     view = draw(setup.scene.pose_at(fit.pose), seen)
     hands = [index for index, model in enumerate(setup.models) if model.hand]
-    return Attempt(fit.pose, {index: measure_quality(view, seen, index) for index in hands}, fit)
+    objects = {i: measure_object_quality(view, seen, i) for i in range(len(setup.models)) if i not in hands}
+    return Attempt(fit.pose, {index: measure_quality(view, seen, index) for index in hands}, fit, objects)
 
 
 def look(frame: Frame, camera: Camera, setup: TrackSetup, pose: Array) -> Observation | None:

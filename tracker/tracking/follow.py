@@ -99,7 +99,8 @@ def follow_frame(
     is_followed = status == "ok" and not state.is_lost
     is_lost = status == "lost" or attempt is None
     pose = state.pose if is_lost or attempt is None else attempt.pose
-    pose, objects = watch_objects(frame, camera, setup, pose, is_lost, recover)
+    known = None if is_lost or attempt is None else attempt.objects
+    pose, objects = watch_objects(frame, camera, setup, pose, known, recover)
     seconds = perf_counter() - started
     stages["reading"] = started - read_at
     earlier = state.pose if is_followed else pose

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.model.scene import Scene
-from tracker.observation import Preprocessing, observe
+from tracker.observation import observe
 from tracker.tracking.find_object import ObjectSearch
 from tracker.tracking.frame_fit import draw
 from tracker.tracking.look_for_object import look_for_object
@@ -46,7 +46,7 @@ class WatchedObject:
 
 
 def watch_objects(
-    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, hands_are_lost: bool, recover: bool
+    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, known: dict[int, ObjectQuality] | None, recover: bool
 ) -> tuple[Array, list[WatchedObject]]:
     """The pose (D,) with lost objects put where they were found again, and its objects, in order.
 
@@ -55,17 +55,17 @@ def watch_objects(
         camera: Its camera.
         setup: Models and options.
         pose: (D,) after the fit.
-        hands_are_lost: The hands' part of the pose means nothing.
+        known: Of each object at that pose; None where the hands are lost, so that their part of the pose means nothing.
         recover: Look for what is lost.
     """
     objects = [index for index, model in enumerate(setup.models) if not model.hand]
     if not objects or frame.depth is None:
         return pose, []
-    kept = objects if hands_are_lost else list(range(len(setup.models)))
+    kept = objects if known is None else list(range(len(setup.models)))
     pose = pose.copy()
     watched = []
     for index in objects:
-        quality = _measure(frame, camera, setup, pose, kept, index)
+        quality = _measure(frame, camera, setup, pose, objects, index) if known is None else known[index]
         status = "lost" if quality.is_lost else "hidden" if quality.is_hidden else "ok"
         if status != "ok" and recover and frame.index % NEAR_EVERY == 0:
             search = ObjectSearch() if frame.index % FAR_EVERY == 0 else NEARBY
@@ -90,18 +90,15 @@ def stop_unseen(setup: TrackSetup, pose: Array, earlier: Array, watched: Sequenc
 
 
 def _measure(
-    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, kept: list[int], index: int
+    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, objects: list[int], index: int
 ) -> ObjectQuality:
-    """Quality of an object in a scene of the `kept` models."""
-    scene = setup.scene
-    if len(kept) < len(setup.models):
-        pose = np.concatenate([pose[scene.pose_slices[other]] for other in kept])
-        scene = Scene(tuple(setup.models[other] for other in kept))
-    place = kept.index(index)
+    """Quality of an object in a scene without hands."""
+    pose = np.concatenate([pose[setup.scene.pose_slices[other]] for other in objects])
+    scene = Scene(tuple(setup.models[other] for other in objects))
+    place = objects.index(index)
     posed = scene.pose_at(pose)
     region = region_around(posed.vertices[scene.vertex_slices[place]], camera)
     if region is None:
         return ObjectQuality.of_nothing()
-    how: Preprocessing = replace(setup.preprocessing, objects=False)  # nearest pixels are not asked for
-    seen = observe(frame, camera, region, how)
+    seen = observe(frame, camera, region, setup.preprocessing)
     return measure_object_quality(draw(posed, seen), seen, place)

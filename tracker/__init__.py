@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from tracker.tracking.start import start_tracking
     from tracker.tracking.state import TrackState
     from tracker.tracking.track import Track, join_chunks, load_track
+    from tracker.tracking.view_aids import ViewAids
     from tracker.tracking.warm_up import warm_up
 
 _HOMES = {
@@ -79,6 +80,7 @@ _HOMES = {
     "TrackerError": "tracker.errors",
     "TrackingError": "tracker.errors",
     "USUAL_PRESET": "tracker.tracking.presets",
+    "ViewAids": "tracker.tracking.view_aids",
     "add_commands": "tracker.cli",
     "check_import": "tracker.capture.import_check",
     "default_hand": "tracker.model.default_hand",
@@ -132,6 +134,7 @@ __all__ = [
     "TrackState",
     "TrackerError",
     "TrackingError",
+    "ViewAids",
     "add_commands",
     "check_import",
     "default_hand",

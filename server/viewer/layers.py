@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from tracker import ModelView
+    from tracker import FrameView, ModelView
 
 Color = tuple[int, int, int]
 
@@ -61,13 +61,18 @@ class Layers:
     mesh: bool = True
     skeleton: bool = False
     correspondences: bool = False
+    detections: bool = False
+    collisions: bool = False
+    contacts: bool = False
+    distances: bool = False
     hidden_terms: frozenset[str] = field(default_factory=frozenset)
     dark: bool = True
 
     def with_changes(self, changes: dict[str, Any]) -> Layers:
         """Layers after `changes`, such as `{"cloud": False, "correspondences": {"model_to_data": True}}`.
 
-        For correspondences a mapping of terms shows those that are true and hides those that are false.
+        For correspondences a mapping of terms shows those that are true and hides those that are false; the layer is
+        on, even if every term is hidden.
         """
         changes = dict(changes)
         result = self
@@ -76,7 +81,7 @@ class Layers:
             hidden = (self.hidden_terms | {t for t, on in terms.items() if not on}) - {
                 t for t, on in terms.items() if on
             }
-            changes["correspondences"] = any(terms.values())
+            changes["correspondences"] = True
             result = replace(result, hidden_terms=frozenset(hidden))
         known = {name: bool(value) for name, value in changes.items() if name in LAYER_NAMES}
         return replace(result, **known)
@@ -84,5 +89,38 @@ class Layers:
     def shows_term(self, term: str) -> bool:
         return self.correspondences and term not in self.hidden_terms
 
+    @property
+    def is_inside_shown(self) -> bool:
+        """Whether what is shown lies on and in the meshes, which then let more through."""
+        return self.detections or self.collisions or self.contacts
 
-LAYER_NAMES = ("cloud", "mesh", "skeleton", "correspondences", "dark")
+    def prepare(self, view: FrameView) -> None:
+        """Have a frame work out what these layers show."""
+        for name, attribute in VIEW_ATTRIBUTES.items():
+            if getattr(self, name):
+                getattr(view, attribute)
+
+
+LAYER_NAMES = (
+    "cloud",
+    "mesh",
+    "skeleton",
+    "correspondences",
+    "detections",
+    "collisions",
+    "contacts",
+    "distances",
+    "dark",
+)
+
+VIEW_ATTRIBUTES = {
+    "cloud": "cloud",
+    "mesh": "models",
+    "skeleton": "models",
+    "correspondences": "correspondences",
+    "detections": "detections",
+    "collisions": "collisions",
+    "contacts": "contacts",
+    "distances": "surface_fit",
+}
+"""Layer to what of a `FrameView` it shows."""

@@ -92,6 +92,9 @@ async def relay_viewer_socket(websocket: WebSocket, session_id: uuid.UUID, sessi
         session.pages -= 1
 
 
+ANSWERED = ("frame", "terms", "detections", "collisions", "contacts", "distances", "milliseconds")
+
+
 def _changes(show: Show | None) -> dict[str, Any]:
     return {} if show is None else show.model_dump(exclude_none=True)
 
@@ -102,8 +105,6 @@ def _out(session: OpenSession, answer: dict[str, Any]) -> ViewerSessionOut:
             "id": session.id,
             "track_id": session.track_id,
             "url": f"/viewer/{session.id}/",
-            "frame": answer["frame"],
-            "terms": answer["terms"],
-            "milliseconds": answer["milliseconds"],
+            **{name: answer[name] for name in ANSWERED},
         }
     )

@@ -1,17 +1,19 @@
-"""The viser scene of one session: cloud, meshes, skeleton and correspondences of one frame at a time."""
+"""The viser scene of one session: the layers of one frame at a time."""
 
 from __future__ import annotations
 
 import contextlib
 import io
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 import viser
 from viser import _messages
 
+from server.viewer.evidence import draw_evidence
 from server.viewer.layers import Layers, joint_colors, term_color
+from server.viewer.nodes import SceneNodes
 
 if TYPE_CHECKING:
     from tracker import Camera, FrameView
@@ -21,6 +23,10 @@ HAND_SPAN = 0.24
 
 POINT_SIZE = 0.0008
 """m; less than the spacing of a depth sensor's points at arm's length, so that the mesh shows between them."""
+
+
+SOLID, SEE_THROUGH = 0.85, 0.35
+"""Opacity of meshes, and where something on or in them is to be seen."""
 
 
 class ViewerScene:
@@ -37,7 +43,7 @@ class ViewerScene:
             self.server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         for request in (_messages.ShareUrlRequest, _messages.ShareUrlDisconnect):
             self.server._websock_server.unregister_handler(request)
-        self._handles: dict[str, Any] = {}
+        self._nodes = SceneNodes(self.server)
         self.set_dark(dark)
         self._place_camera(camera, focus)
 
@@ -51,14 +57,17 @@ class ViewerScene:
     def show(self, view: FrameView, layers: Layers) -> None:
         """Bring the scene to a frame. A hidden layer is not sent."""
         with self.server.atomic():
-            shown = {
-                *self._show_cloud(view, layers.cloud),
-                *self._show_meshes(view, layers.mesh),
-                *self._show_skeleton(view, layers.skeleton),
-                *self._show_correspondences(view, layers),
-            }
-            for name, handle in self._handles.items():
-                handle.visible = name in shown
+            self._nodes.begin()
+            if layers.cloud:
+                self._draw_cloud(view)
+            if layers.mesh and not layers.distances:
+                self._draw_meshes(view, SEE_THROUGH if layers.is_inside_shown else SOLID)
+            if layers.skeleton:
+                self._draw_skeletons(view)
+            if layers.correspondences:
+                self._draw_correspondences(view, layers)
+            draw_evidence(self._nodes, view, layers)
+            self._nodes.end()
         self.server.flush()
 
     def close(self) -> None:
@@ -78,95 +87,25 @@ class ViewerScene:
         start.fov = float(np.clip(2.0 * np.arctan2(HAND_SPAN / 2.0, distance), np.radians(8.0), of_camera))
         start.near = 0.01
 
-    def _show_cloud(self, view: FrameView, visible: bool) -> set[str]:
-        if not visible or len(view.cloud) == 0:
-            return set()
-        self._update(
-            "/cloud",
-            lambda: self.server.scene.add_point_cloud(
-                "/cloud",
-                view.cloud,
-                view.colors,
-                point_size=POINT_SIZE,
-                point_shape="circle",
-                point_shading="flat",
-                precision="float32",
-            ),
-            points=view.cloud,
-            colors=view.colors,
-        )
-        return {"/cloud"}
+    def _draw_cloud(self, view: FrameView) -> None:
+        if len(view.cloud):
+            self._nodes.points("/cloud", view.cloud, view.colors, POINT_SIZE)
 
-    def _show_meshes(self, view: FrameView, visible: bool) -> set[str]:
-        if not visible:
-            return set()
+    def _draw_meshes(self, view: FrameView, opacity: float) -> None:
         for model in view.models:
-            name = f"/mesh/{model.name}"
-            self._update(
-                name,
-                lambda name=name, model=model: self.server.scene.add_mesh_simple(
-                    name,
-                    model.vertices,
-                    model.faces,
-                    color=model.color,
-                    opacity=0.85,
-                    side="double",
-                    cast_shadow=False,
-                ),
-                vertices=model.vertices,
-            )
-        return {f"/mesh/{model.name}" for model in view.models}
+            self._nodes.mesh(f"/mesh/{model.name}", model.vertices, model.faces, model.color, opacity)
 
-    def _show_skeleton(self, view: FrameView, visible: bool) -> set[str]:
-        shown = set()
-        for model in view.models if visible else ():
-            if len(model.joints) == 0:
-                continue
-            colors = joint_colors(model)
-            name = f"/skeleton/{model.name}"
-            self._update(
-                f"{name}/joints",
-                lambda name=name, model=model, colors=colors: self.server.scene.add_point_cloud(
-                    f"{name}/joints",
-                    model.joints,
-                    colors,
-                    point_size=0.005,
-                    point_shape="circle",
-                    precision="float32",
-                ),
-                points=model.joints,
-            )
-            bones = model.joints[model.edges]
-            self._show_segments(f"{name}/bones", bones, colors[model.edges[:, 1]], thickness=0.0022)
-            shown |= {f"{name}/joints", f"{name}/bones"}
-        return shown
+    def _draw_skeletons(self, view: FrameView) -> None:
+        for model in view.models:
+            if len(model.joints):
+                colors = joint_colors(model)
+                name = f"/skeleton/{model.name}"
+                self._nodes.points(f"{name}/joints", model.joints, colors, size=0.005)
+                bones = model.joints[model.edges]
+                self._nodes.segments(f"{name}/bones", bones, colors[model.edges[:, 1]], thickness=0.0022)
 
-    def _show_correspondences(self, view: FrameView, layers: Layers) -> set[str]:
-        shown = set()
+    def _draw_correspondences(self, view: FrameView, layers: Layers) -> None:
         for term, segments in view.correspondences.items():
             if layers.shows_term(term) and len(segments):
                 colors = np.tile(np.array(term_color(term), dtype=np.uint8), (len(segments), 1))
-                self._show_segments(f"/correspondences/{term}", segments, colors, thickness=0.0006)
-                shown.add(f"/correspondences/{term}")
-        return shown
-
-    def _show_segments(
-        self, name: str, segments: npt.NDArray[Any], colors: npt.NDArray[np.uint8], thickness: float
-    ) -> None:
-        """Draw (M, 2, 3) segments, world, m, in (M, 3) colours."""
-        points = np.ascontiguousarray(segments, dtype=np.float32).reshape(-1, 2, 3)
-        both_ends = np.repeat(colors[:, None, :], 2, axis=1)
-        self._update(
-            name,
-            lambda: self.server.scene.add_line_segments(name, points, both_ends, thickness=thickness),
-            points=points,
-            colors=both_ends,
-        )
-
-    def _update(self, name: str, make: Any, **arrays: npt.NDArray[Any]) -> None:
-        """Make the node the first time, assign its arrays afterwards."""
-        if name not in self._handles:
-            self._handles[name] = make()
-            return
-        for attribute, value in arrays.items():
-            setattr(self._handles[name], attribute, value)
+                self._nodes.segments(f"/correspondences/{term}", segments, colors, thickness=0.0006)

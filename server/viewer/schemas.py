@@ -14,6 +14,10 @@ class Show(BaseModel):
     mesh: bool | None = None
     skeleton: bool | None = None
     correspondences: bool | dict[str, bool] | None = Field(None, description="All of them, or term by term.")
+    detections: bool | None = Field(None, description="Fingertips found in the image.")
+    collisions: bool | None = Field(None, description="Crossing triangles and penetrating vertices.")
+    contacts: bool | None = Field(None, description="Finger parts that could hold the object.")
+    distances: bool | None = Field(None, description="The meshes in colours of their distance to the data.")
     dark: bool | None = Field(None, description="Dark ground.")
 
 
@@ -40,6 +44,80 @@ class Term(BaseModel):
     color: str = Field(description="As in CSS.")
 
 
+class DetectionView(BaseModel):
+    """A fingertip found in the image."""
+
+    hand: str | None = Field(description="Of the fingertip it was assigned to; null for a false positive.")
+    finger: str | None
+    color: str = Field(description="As in CSS.")
+    confidence: float = Field(description="From 3 on it counts.")
+    distance_mm: float | None = Field(description="From that fingertip of the model.")
+
+
+class DetectionsView(BaseModel):
+    """Fingertips found in the frame that is shown."""
+
+    is_of_run: bool = Field(description="Whether the run used such detections itself.")
+    items: list[DetectionView]
+
+
+class CollidingParts(BaseModel):
+    """Two parts that stand in each other."""
+
+    first: str
+    second: str
+    crossings: int = Field(description="Pairs of triangles that cross.")
+    deepest_mm: float
+
+
+class CollisionsView(BaseModel):
+    """What stands in each other in the frame that is shown."""
+
+    is_of_run: bool = Field(description="Whether the run had the collision term.")
+    triangles: int = Field(description="That cross another.")
+    vertices: int = Field(description="Inside a part that they may not enter.")
+    deepest_mm: float
+    full_mm: float = Field(description="Depth at which the colours of the vertices end.")
+    pairs: list[CollidingParts] = Field(description="The deepest first.")
+
+
+class ContactPart(BaseModel):
+    """A finger part near the object."""
+
+    hand: str
+    part: str
+    distance_mm: float = Field(description="To the object's surface, below 0 inside.")
+    is_chosen: bool = Field(description="Whether physics would draw it into contact.")
+
+
+class ContactsView(BaseModel):
+    """Whether the object stays where it is when the frame's pose is simulated."""
+
+    is_of_run: bool = Field(description="Whether the run had the physics term.")
+    object: str | None = Field(description="Null where there is no object or no hand.")
+    is_stable: bool
+    displacement_mm: float = Field(description="Of the object's centroid.")
+    held_displacement_mm: float = Field(description="With the chosen parts in contact.")
+    simulated: int = Field(description="Combinations of parts tried.")
+    parts: list[ContactPart] = Field(description="Those within 10 mm that were considered, nearest first.")
+
+
+class ModelDistance(BaseModel):
+    """How far a model's visible skin is from the data."""
+
+    name: str
+    visible_share: float = Field(description="Of its vertices that the camera sees.")
+    median_mm: float | None
+    p95_mm: float | None
+
+
+class DistancesView(BaseModel):
+    """How far visible skin is from the data in the frame that is shown."""
+
+    full_mm: float = Field(description="Distance at which the colours end.")
+    models: list[ModelDistance]
+
+
 class ViewerSessionOut(BaseModel):
     """A session; its page is at `url`."""
 
@@ -49,5 +127,9 @@ class ViewerSessionOut(BaseModel):
     track_id: uuid.UUID
     url: str
     frame: int
-    terms: list[Term]
+    terms: list[Term] = Field(description="Empty while correspondences are hidden.")
+    detections: DetectionsView | None = Field(description="Null while hidden.")
+    collisions: CollisionsView | None = Field(description="Null while hidden.")
+    contacts: ContactsView | None = Field(description="Null while hidden.")
+    distances: DistancesView | None = Field(description="Null while hidden.")
     milliseconds: float = Field(description="That the scene took.")

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from server.viewer.evidence import describe_evidence
 from server.viewer.layers import Layers, term_color
 from server.viewer.scene import ViewerScene
 
 if TYPE_CHECKING:
-    from tracker import FrameView
+    from tracker import FrameView, ViewAids
 
 log = logging.getLogger(__name__)
 
@@ -47,6 +48,9 @@ class ViewSession:
         self._changed = threading.Condition()
         self._closing = False
         self._views: OrderedDict[int, FrameView] = OrderedDict()
+        self._prepared: dict[int, Layers] = {}
+        """Frames to the layers that they were prepared for."""
+        self._aids: ViewAids | None = None
         self._frame: int | None = None
         self._step = 1
         self._thread = threading.Thread(target=self._run, name="view-session", daemon=True)
@@ -88,20 +92,23 @@ class ViewSession:
             self._refuse_all(error)
         finally:
             self._refuse_all(RuntimeError("The viewer session was closed."))
+            if self._aids is not None:
+                self._aids.close()
             if scene is not None:
                 scene.close()
 
     def _open(self) -> ViewerScene:
-        from tracker import load_sequence, load_track
+        from tracker import ViewAids, load_sequence, load_track
 
         self._sequence = load_sequence(self._recording)
         self._track = load_track(self._track_folder)
+        camera = self._sequence.camera(self._track.setup.camera_id)
+        self._aids = ViewAids(self._track.setup, camera.T_world_camera)
         self._rows = {int(frame): row for row, frame in enumerate(self._track.frame)}
         first = self._waiting[0].frame
         start = first if first in self._rows else int(self._track.frame[0])
         view = self._view(start)
         focus = np.concatenate([model.vertices for model in view.models]).mean(axis=0).astype(np.float64)
-        camera = self._sequence.camera(self._track.setup.camera_id)
         return ViewerScene(camera, focus, self._layers.dark)
 
     def _next_requests(self) -> list[Request] | None:
@@ -131,10 +138,8 @@ class ViewSession:
         return {
             "port": scene.port,
             "frame": frame,
-            "terms": [
-                {"name": term, "count": len(segments), "color": "#{:02x}{:02x}{:02x}".format(*term_color(term))}
-                for term, segments in view.correspondences.items()
-            ],
+            "terms": _describe_terms(view) if self._layers.correspondences else [],
+            **describe_evidence(view, self._layers),
             "milliseconds": round(1000.0 * (time.perf_counter() - began), 1),
         }
 
@@ -147,9 +152,11 @@ class ViewSession:
             from tracker import describe_frame
 
             row = self._rows[frame]
-            self._views[frame] = describe_frame(self._sequence, self._track.setup, self._track.pose[row], frame)
+            pose = self._track.pose[row]
+            self._views[frame] = describe_frame(self._sequence, self._track.setup, pose, frame, self._aids)
             while len(self._views) > CACHED_VIEWS:
-                self._views.popitem(last=False)
+                gone, _ = self._views.popitem(last=False)
+                self._prepared.pop(gone, None)
         self._views.move_to_end(frame)
         return self._views[frame]
 
@@ -158,13 +165,15 @@ class ViewSession:
         if self._frame is None:
             return []
         ahead = [self._frame + k * self._step for k in range(1, PREFETCHED_VIEWS + 1)]
-        return [frame for frame in ahead if frame in self._rows and frame not in self._views]
+        return [frame for frame in ahead if frame in self._rows and self._prepared.get(frame) != self._layers]
 
     def _prefetch(self) -> None:
+        frame = self._frames_ahead()[0]
         try:
-            self._view(self._frames_ahead()[0])
+            self._layers.prepare(self._view(frame))
+            self._prepared[frame] = self._layers
         except Exception as error:
-            log.warning("frame %d cannot be prepared: %s", self._frames_ahead()[0], error)
+            log.warning("frame %d cannot be prepared: %s", frame, error)
             self._step = 0
 
     def _refuse_all(self, error: Exception) -> None:
@@ -173,3 +182,10 @@ class ViewSession:
             self._closing = True
         for request in requests:
             request.reply(error)
+
+
+def _describe_terms(view: FrameView) -> list[dict[str, Any]]:
+    return [
+        {"name": term, "count": len(segments), "color": "#{:02x}{:02x}{:02x}".format(*term_color(term))}
+        for term, segments in view.correspondences.items()
+    ]

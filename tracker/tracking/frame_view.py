@@ -1,21 +1,30 @@
-"""One frame of a track as people look at it: cloud, meshes, joints, correspondences; and the overlay on the image."""
+"""One frame of a track as people look at it, and the overlay on the image."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
+from tracker.detection import find_fingertips
 from tracker.geometry import se3
 from tracker.model.joints import HAND_EDGES
-from tracker.observation import observe
-from tracker.rendering import render_view
-from tracker.tracking.frame_fit import find_residuals
+from tracker.model.scene import PosedScene
+from tracker.observation import Observation, observe
+from tracker.rendering import View, render_view
+from tracker.tracking.frame_fit import draw, find_residuals
 from tracker.tracking.region import region_around
 from tracker.tracking.setup import TrackSetup
-from tracker.tracking.tools import make_tools
+from tracker.tracking.shown_collisions import ShownCollisions, show_collisions
+from tracker.tracking.shown_contacts import ShownContacts, show_contacts
+from tracker.tracking.shown_detections import ShownDetection, show_detections
+from tracker.tracking.surface_fit import measure_surface_fit
+from tracker.tracking.view_aids import ViewAids
 
 Array = npt.NDArray[np.float64]
 
@@ -47,53 +56,35 @@ class ModelView:
     edges: npt.NDArray[np.int32]
 
 
-@dataclass(frozen=True)
 class FrameView:
-    """What there is to see of a frame.
+    """What there is to see of a frame at a pose. Each thing is worked out when it is first asked for, and then kept.
 
     Attributes:
-        cloud: (N, 3) float32 points of the depth image, world, m.
-        colors: (N, 3) uint8 RGB.
-        models: Posed models.
-        correspondences: Name of a term to (M, 2, 3) float32 segments from model to data, world, m.
+        aids: Of the track.
         T_world_camera: (4, 4) of the depth camera.
     """
 
-    cloud: npt.NDArray[np.float32]
-    colors: npt.NDArray[np.uint8]
-    models: tuple[ModelView, ...]
-    correspondences: dict[str, npt.NDArray[np.float32]]
-    T_world_camera: Array
+    def __init__(self, frame: Frame, camera: Camera, pose: Array, aids: ViewAids) -> None:
+        assert frame.depth is not None
+        self.aids = aids
+        self.T_world_camera = camera.T_world_camera
+        self._frame, self._camera, self._pose = frame, camera, pose
 
+    @property
+    def cloud(self) -> npt.NDArray[np.float32]:
+        """(N, 3) points of the depth image, world, m."""
+        return self._cloud[0]
 
-def describe_frame(sequence: Sequence, setup: TrackSetup, pose: Array, index: int) -> FrameView:
-    """All that can be shown of a frame at a pose (D,)."""
-    frame, camera = setup.read(sequence, index)
-    posed = setup.scene.pose_at(np.asarray(pose, dtype=np.float64))
-    assert frame.depth is not None
-    center = posed.vertices.mean(axis=0)
-    rows, columns = np.nonzero(frame.depth)
-    depths = frame.depth[rows, columns].astype(np.float64)
-    x = (columns - camera.K[0, 2]) / camera.K[0, 0] * depths
-    y = (rows - camera.K[1, 2]) / camera.K[1, 1] * depths
-    cloud = se3.transform(camera.T_world_camera, np.stack([x, y, depths], axis=1))
-    near = np.linalg.norm(cloud - center, axis=1) < CLOUD_MARGIN if np.any(pose) else np.ones(len(cloud), dtype=bool)
-    if frame.color is not None:
-        colors = frame.color[rows, columns][near]
-    else:
-        shade = 90 + 140 * (1.0 - np.clip((depths[near] - depths[near].min(initial=9.0)) / 0.4, 0.0, 1.0))
-        colors = np.repeat(shade[:, None], 3, axis=1).astype(np.uint8)
-    region = region_around(posed.vertices, camera)
-    correspondences: dict[str, npt.NDArray[np.float32]] = {}
-    if region is not None:
-        seen = observe(frame, camera, region, setup.preprocessing)
-        with make_tools(setup, camera.T_world_camera) as tools:
-            objective = tools.with_fingertips(seen)
-            found = find_residuals(posed, seen, tools.with_support(objective, setup, posed.pose) or objective)
-        correspondences = {name: residual.segments(posed).astype(np.float32) for name, residual in found.items()}
-    models = []
-    for place, (name, model) in enumerate(zip(setup.names, setup.models, strict=True)):
-        models.append(
+    @property
+    def colors(self) -> npt.NDArray[np.uint8]:
+        """(N, 3) RGB of the cloud."""
+        return self._cloud[1]
+
+    @cached_property
+    def models(self) -> tuple[ModelView, ...]:
+        """Posed models."""
+        setup, posed = self.aids.setup, self._posed
+        return tuple(
             ModelView(
                 name,
                 COLORS.get(name if model.hand else "object", COLORS["object"]),
@@ -104,8 +95,82 @@ def describe_frame(sequence: Sequence, setup: TrackSetup, pose: Array, index: in
                     -1, 2
                 ),
             )
+            for place, (name, model) in enumerate(zip(setup.names, setup.models, strict=True))
         )
-    return FrameView(cloud[near].astype(np.float32), colors, tuple(models), correspondences, camera.T_world_camera)
+
+    @cached_property
+    def correspondences(self) -> dict[str, npt.NDArray[np.float32]]:
+        """Name of each term of the run to its (M, 2, 3) segments from model to data, world, m."""
+        if self._seen is None:
+            return {}
+        tools, setup = self.aids.tools, self.aids.setup
+        objective = tools.with_fingertips(self._seen)
+        objective = tools.with_support(objective, setup, self._posed.pose) or objective
+        found = find_residuals(self._posed, self._seen, objective)
+        return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}
+
+    @cached_property
+    def detections(self) -> tuple[ShownDetection, ...]:
+        """Fingertips found in the image, whether the run looked for them or not."""
+        if self._seen is None or self._drawn is None:
+            return ()
+        found = find_fingertips(self.aids.detector, self._seen)
+        return show_detections(self._posed, self._drawn, found, self.T_world_camera)
+
+    @cached_property
+    def collisions(self) -> ShownCollisions:
+        """Parts that stand in each other."""
+        return show_collisions(self._posed, self.aids.part_names)
+
+    @cached_property
+    def contacts(self) -> ShownContacts:
+        """Whether the object stays, and which finger parts could hold it."""
+        return show_contacts(self._posed, self.aids.world(self._posed))
+
+    @cached_property
+    def surface_fit(self) -> tuple[npt.NDArray[np.float32], ...]:
+        """For each model (V,) distance of its vertices to the data, m; NaN where the camera cannot see them."""
+        distances = np.full(len(self._posed.vertices), np.nan, dtype=np.float32)
+        if self._seen is not None and self._drawn is not None:
+            distances = measure_surface_fit(self._posed, self._drawn, self._seen)
+        return tuple(distances[where] for where in self.aids.setup.scene.vertex_slices)
+
+    @cached_property
+    def _posed(self) -> PosedScene:
+        return self.aids.setup.scene.pose_at(np.asarray(self._pose, dtype=np.float64))
+
+    @cached_property
+    def _seen(self) -> Observation | None:
+        region = region_around(self._posed.vertices, self._camera)
+        return None if region is None else observe(self._frame, self._camera, region, self.aids.setup.preprocessing)
+
+    @cached_property
+    def _drawn(self) -> View | None:
+        return None if self._seen is None else draw(self._posed, self._seen)
+
+    @cached_property
+    def _cloud(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:
+        depth, K = self._frame.depth, self._camera.K
+        assert depth is not None
+        rows, columns = np.nonzero(depth)
+        depths = depth[rows, columns].astype(np.float64)
+        x, y = (columns - K[0, 2]) / K[0, 0] * depths, (rows - K[1, 2]) / K[1, 1] * depths
+        cloud = se3.transform(self.T_world_camera, np.stack([x, y, depths], axis=1))
+        near = np.ones(len(cloud), dtype=bool)
+        if np.any(self._pose):
+            near = np.linalg.norm(cloud - self._posed.vertices.mean(axis=0), axis=1) < CLOUD_MARGIN
+        if self._frame.color is not None:
+            return cloud[near].astype(np.float32), self._frame.color[rows, columns][near]
+        shade = 90 + 140 * (1.0 - np.clip((depths[near] - depths[near].min(initial=9.0)) / 0.4, 0.0, 1.0))
+        return cloud[near].astype(np.float32), np.repeat(shade[:, None], 3, axis=1).astype(np.uint8)
+
+
+def describe_frame(
+    sequence: Sequence, setup: TrackSetup, pose: Array, index: int, aids: ViewAids | None = None
+) -> FrameView:
+    """All that can be shown of a frame at a pose (D,); frames that are given the same `aids` share what is costly."""
+    frame, camera = setup.read(sequence, index)
+    return FrameView(frame, camera, pose, aids or ViewAids(setup, camera.T_world_camera))
 
 
 def render_overlay(

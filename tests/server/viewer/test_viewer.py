@@ -90,12 +90,36 @@ def test_layers_come_when_they_are_asked_for(client: TestClient, view) -> None:
 
 
 def test_one_term_can_be_hidden(client: TestClient, view) -> None:
-    terms = [term["name"] for term in view["terms"]]
-    show(client, view, show={"correspondences": {terms[0]: True, terms[1]: False}})
+    assert view["terms"] == [], "nothing is looked for that nobody wants to see"
+    terms = ("model_to_data", "data_to_surface")
+    answer = show(client, view, show={"correspondences": {terms[0]: True, terms[1]: False}})
+    assert set(terms) <= {term["name"] for term in answer["terms"]}
     with connect(client, view) as socket:
         nodes = read_scene(socket)
     assert f"/correspondences/{terms[0]}" in nodes
     assert f"/correspondences/{terms[1]}" not in nodes
+
+
+def test_evidence_is_worked_out_when_it_is_asked_for_though_the_run_did_without(client: TestClient, view) -> None:
+    layers = ("detections", "collisions", "contacts", "distances")
+    assert all(view[layer] is None for layer in layers)
+    answer = show(client, view, frame=2, show=dict.fromkeys(layers, True))
+    assert not any(answer[layer]["is_of_run"] for layer in layers[:3]), "the run had depth alone"
+    items = answer["detections"]["items"]
+    assert len(items) >= 3
+    assert all(item["hand"] == "right" and item["distance_mm"] < 15.0 for item in items if item["finger"])
+    assert len({item["finger"] for item in items if item["finger"]}) >= 3
+    assert answer["contacts"]["object"] is None, "there is nothing to hold"
+    (hand,) = answer["distances"]["models"]
+    assert 0.2 < hand["visible_share"] < 0.8
+    assert hand["median_mm"] < 2.0
+    with connect(client, view) as socket:
+        nodes = read_scene(socket)
+    assert {"/detections/marks", "/detections/boxes", "/detections/links", "/distances/right"} <= nodes.keys()
+    labels = [node["props"]["text"] for name, node in nodes.items() if name.startswith("/detections/label-")]
+    assert len(labels) == len(items)
+    again = show(client, view, show=dict.fromkeys(layers, False))
+    assert all(again[layer] is None for layer in layers)
 
 
 def test_a_connected_browser_is_told_of_another_frame(client: TestClient, view) -> None:

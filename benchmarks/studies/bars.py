@@ -8,6 +8,7 @@ from benchmarks.studies.bar import Bar
 from benchmarks.studies.bars_accuracy import list_accuracy_bars, list_term_bars
 from benchmarks.studies.bars_cost import list_cost_bars
 from benchmarks.studies.bars_elsewhere import list_other_bars
+from benchmarks.studies.bars_own_hand import list_own_hand_bars
 from benchmarks.studies.blocks import Block, Picture, Table, Text
 from benchmarks.studies.ratio_plot import draw_ratios
 from benchmarks.studies.study import Extent, Row, Study
@@ -16,7 +17,13 @@ from benchmarks.studies.trial import Results, Trial
 
 def list_bars(extent: Extent) -> list[Bar]:
     """All bars, in the order of the project's table."""
-    return [*list_accuracy_bars(extent), *list_other_bars(extent), *list_term_bars(extent), *list_cost_bars(extent)]
+    return [
+        *list_accuracy_bars(extent),
+        *list_own_hand_bars(extent),
+        *list_other_bars(extent),
+        *list_term_bars(extent),
+        *list_cost_bars(extent),
+    ]
 
 
 def trials(extent: Extent) -> list[Trial]:

@@ -32,6 +32,11 @@ def run_of(name: str, step: int, extent: Extent, terms: str = DEFAULT, own: bool
     return Run(name, step, extent.frames, terms, own_hand=own, penetration=True)
 
 
+def own_hand_sequences(extent: Extent) -> Sequence[str]:
+    """Those that are followed with our own hand, whose calibration takes most of a short run."""
+    return ("09", "15") if extent.quick else SEQUENCES
+
+
 def list_accuracy_bars(extent: Extent) -> list[Bar]:
     """All of them, in the order of the project's table."""
     every = {name: run_of(name, 1, extent) for name in SEQUENCES}
@@ -63,8 +68,9 @@ def list_term_bars(extent: Extent) -> list[Bar]:
     """Each term against the run without it, and penetration with C."""
     bars = []
     for own, step, whose in ((False, 1, "same model, every frame"), (True, 3, "own hand, every 3rd frame")):
+        all_of = own_hand_sequences(extent) if own else SEQUENCES
         for name, without, with_it in PAIRS:
-            names = HAND_OBJECT if name == "P" else SEQUENCES
+            names = [n for n in all_of if n in HAND_OBJECT] if name == "P" else all_of
             both = [tuple(run_of(n, step, extent, terms, own) for terms in (without, with_it)) for n in names]
             bars.append(
                 Bar(
@@ -74,8 +80,8 @@ def list_term_bars(extent: Extent) -> list[Bar]:
                     partial(_judge_term, both),
                 )
             )
-        runs = [run_of(n, step, extent, "LO+C", own) for n in SEQUENCES]
-        truths = [TruePenetration(n, step, extent.frames) for n in SEQUENCES]
+        runs = [run_of(n, step, extent, "LO+C", own) for n in all_of]
+        truths = [TruePenetration(n, step, extent.frames) for n in all_of]
         bars.append(
             Bar(
                 f"each term, {whose}",

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from functools import partial
 
 from benchmarks.studies.bar import Bar, Verdict, at_most, none_of
-from benchmarks.studies.bars_accuracy import DEFAULT, run_of, show_each
+from benchmarks.studies.bars_accuracy import DEFAULT, own_hand_sequences, run_of, show_each
 from benchmarks.studies.study import Extent
 from benchmarks.studies.trial import Results
-from benchmarks.studies.twin_runs import SEQUENCES, Run
+from benchmarks.studies.twin_runs import Run
 
 MEAN_PX, MEAN_MM = 2.5, 4.0
 
@@ -18,7 +18,7 @@ def list_own_hand_bars(extent: Extent) -> list[Bar]:
     """All of them."""
     bars = []
     for step, which in ((1, "every frame"), (3, "every 3rd frame")):
-        runs = [run_of(name, step, extent, own=True) for name in SEQUENCES]
+        runs = [run_of(name, step, extent, own=True) for name in own_hand_sequences(extent)]
         group = f"our own hand, calibrated, {which} ({DEFAULT})"
         bars += [
             Bar(group, f"mean at most {MEAN_PX} px", runs, partial(_judge_mean, runs, "px", MEAN_PX)),

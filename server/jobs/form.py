@@ -35,6 +35,7 @@ def track_form() -> JobForm:
                 high=option.metadata.get("high"),
                 unit=option.metadata.get("unit"),
                 is_advanced=option.metadata.get("is_advanced", False),
+                about=option.metadata.get("about", "method"),
             )
             for option in dataclasses.fields(TrackOptions)
         ],

@@ -75,6 +75,9 @@ class JobFormField(BaseModel):
     high: float | None = Field(description="Largest number allowed.")
     unit: str | None = Field(description="Of a number.")
     is_advanced: bool = Field(description="Few people ever set it.")
+    about: Literal["recording", "method", "machine"] = Field(
+        description="What is tracked, how, or with what; presets are about the method."
+    )
 
 
 class JobPreset(BaseModel):

@@ -33,7 +33,7 @@ def _option(default: Any, help_text: str, **metadata: Any) -> Any:
         default: Its value if nobody says otherwise.
         help_text: One line for people.
         metadata: `label`; `choices` and their `choice_labels`; `low` and `high` bound of a number; its `unit`;
-            `is_advanced` for what few people ever set.
+            `is_advanced` for what few people ever set; `about`: "recording" (what to track), "machine", or else how.
     """
     return field(default=default, metadata={"help": help_text, **metadata})
 
@@ -48,7 +48,7 @@ class TrackOptions:
 
     terms: str = _option(
         "LO",
-        "What the fit looks at. LO is depth in both directions, C collision, S fingertips, P physics.",
+        "LO fits depth both ways; C collision, S fingertips, P physics.",
         label="Terms",
         choices=TERMS,
         choice_labels=tuple(TERM_LABELS[name] for name in TERMS),
@@ -62,9 +62,16 @@ class TrackOptions:
         high=500,
         is_advanced=True,
     )
-    first_frame: int = _option(0, "First frame to track.", label="First frame", low=0, high=LAST_FRAME)
+    first_frame: int = _option(
+        0, "First frame to track.", label="First frame", low=0, high=LAST_FRAME, about="recording"
+    )
     last_frame: int = _option(
-        -1, "Last frame to track; -1 is the recording's last.", label="Last frame", low=-1, high=LAST_FRAME
+        -1,
+        "Last frame to track; -1 is the recording's last.",
+        label="Last frame",
+        low=-1,
+        high=LAST_FRAME,
+        about="recording",
     )
     calibrate: bool = _option(True, "Fit the hand's size and shape to the first second.", label="Fit the hand's shape")
     use_skin: bool = _option(
@@ -81,9 +88,15 @@ class TrackOptions:
         is_advanced=True,
     )
     camera: str = _option(
-        "", "Depth camera to track in; empty takes the first that has depth.", label="Camera", is_advanced=True
+        "",
+        "Depth camera to track in; empty takes the first that has depth.",
+        label="Camera",
+        is_advanced=True,
+        about="recording",
     )
-    threads: int = _option(1, "Threads of the image preparation.", label="Threads", low=1, high=64, is_advanced=True)
+    threads: int = _option(
+        1, "Threads of the image preparation.", label="Threads", low=1, high=64, is_advanced=True, about="machine"
+    )
 
     def __post_init__(self) -> None:
         if self.terms not in TERMS:

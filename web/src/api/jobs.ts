@@ -2,7 +2,7 @@ import { useMutation, useQuery, useQueryClient, type QueryClient } from "@tansta
 import { useEffect, useState } from "react";
 import { listen, request } from "./client";
 import { fetchAll, recordingKeys } from "./recordings";
-import type { FormField, Job, LogLine } from "./types";
+import type { Job, JobForm, LogLine } from "./types";
 
 export const jobKeys = {
   all: ["jobs"] as const,
@@ -65,7 +65,7 @@ export function useJobLog(id: string, isLive: boolean) {
 export const useJobForm = (isWanted: boolean) =>
   useQuery({
     queryKey: ["job-form"],
-    queryFn: async () => (await request<{ fields: FormField[] }>("GET", "/jobs/form")).fields,
+    queryFn: () => request<JobForm>("GET", "/jobs/form"),
     enabled: isWanted,
     staleTime: Infinity,
   });

@@ -241,7 +241,7 @@ export interface paths {
         };
         /**
          * Get Job Form
-         * @description Options of a tracking job.
+         * @description Options of a tracking job, and presets: options that go together.
          */
         get: operations["get_job_form"];
         put?: never;
@@ -776,6 +776,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/tracks/{track_id}/frames/{frame}/energy": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Frame Energy
+         * @description Energy of one frame's fit by term and iteration.
+         */
+        get: operations["get_frame_energy"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/tracks/{track_id}/joints": {
         parameters: {
             query?: never;
@@ -1076,6 +1096,168 @@ export interface components {
             };
         };
         /**
+         * CollidingParts
+         * @description Two parts that stand in each other.
+         */
+        CollidingParts: {
+            /**
+             * Crossings
+             * @description Pairs of triangles that cross.
+             */
+            crossings: number;
+            /** Deepest Mm */
+            deepest_mm: number;
+            /** First */
+            first: string;
+            /** Second */
+            second: string;
+        };
+        /**
+         * CollisionsView
+         * @description What stands in each other in the frame that is shown.
+         */
+        CollisionsView: {
+            /** Deepest Mm */
+            deepest_mm: number;
+            /**
+             * Full Mm
+             * @description Depth at which the colours of the vertices end.
+             */
+            full_mm: number;
+            /**
+             * Is Of Run
+             * @description Whether the run had the collision term.
+             */
+            is_of_run: boolean;
+            /**
+             * Pairs
+             * @description The deepest first.
+             */
+            pairs: components["schemas"]["CollidingParts"][];
+            /**
+             * Triangles
+             * @description That cross another.
+             */
+            triangles: number;
+            /**
+             * Vertices
+             * @description Inside a part that they may not enter.
+             */
+            vertices: number;
+        };
+        /**
+         * ContactPart
+         * @description A finger part near the object.
+         */
+        ContactPart: {
+            /**
+             * Distance Mm
+             * @description To the object's surface, below 0 inside.
+             */
+            distance_mm: number;
+            /** Hand */
+            hand: string;
+            /**
+             * Is Chosen
+             * @description Whether physics would draw it into contact.
+             */
+            is_chosen: boolean;
+            /** Part */
+            part: string;
+        };
+        /**
+         * ContactsView
+         * @description Whether the object stays where it is when the frame's pose is simulated.
+         */
+        ContactsView: {
+            /**
+             * Displacement Mm
+             * @description Of the object's centroid.
+             */
+            displacement_mm: number;
+            /**
+             * Held Displacement Mm
+             * @description With the chosen parts in contact.
+             */
+            held_displacement_mm: number;
+            /**
+             * Is Of Run
+             * @description Whether the run had the physics term.
+             */
+            is_of_run: boolean;
+            /** Is Stable */
+            is_stable: boolean;
+            /**
+             * Object
+             * @description Null where there is no object or no hand.
+             */
+            object: string | null;
+            /**
+             * Parts
+             * @description Those within 10 mm that were considered, nearest first.
+             */
+            parts: components["schemas"]["ContactPart"][];
+            /**
+             * Simulated
+             * @description Combinations of parts tried.
+             */
+            simulated: number;
+        };
+        /**
+         * DetectionView
+         * @description A fingertip found in the image.
+         */
+        DetectionView: {
+            /**
+             * Color
+             * @description As in CSS.
+             */
+            color: string;
+            /**
+             * Confidence
+             * @description From 3 on it counts.
+             */
+            confidence: number;
+            /**
+             * Distance Mm
+             * @description From that fingertip of the model.
+             */
+            distance_mm: number | null;
+            /** Finger */
+            finger: string | null;
+            /**
+             * Hand
+             * @description Of the fingertip it was assigned to; null for a false positive.
+             */
+            hand: string | null;
+        };
+        /**
+         * DetectionsView
+         * @description Fingertips found in the frame that is shown.
+         */
+        DetectionsView: {
+            /**
+             * Is Of Run
+             * @description Whether the run used such detections itself.
+             */
+            is_of_run: boolean;
+            /** Items */
+            items: components["schemas"]["DetectionView"][];
+        };
+        /**
+         * DistancesView
+         * @description How far visible skin is from the data in the frame that is shown.
+         */
+        DistancesView: {
+            /**
+             * Full Mm
+             * @description Distance at which the colours end.
+             */
+            full_mm: number;
+            /** Models */
+            models: components["schemas"]["ModelDistance"][];
+        };
+        /**
          * ErrorBody
          * @description The body of every answer that is not a success.
          */
@@ -1091,6 +1273,31 @@ export interface components {
              * @example NotFoundError
              */
             error: string;
+        };
+        /**
+         * FrameEnergy
+         * @description The energy of one frame's fit, iteration by iteration.
+         */
+        FrameEnergy: {
+            /**
+             * Costs
+             * @description Of each term at the beginning of every iteration, mm²; null where it had no part.
+             */
+            costs: {
+                [key: string]: (number | null)[];
+            };
+            /** Frame */
+            frame: number;
+            /**
+             * Is Recorded
+             * @description False for tracks made before iterations were recorded.
+             */
+            is_recorded: boolean;
+            /**
+             * Iterations
+             * @description Of the fit that was kept; 0 where nothing was fitted.
+             */
+            iterations: number;
         };
         /**
          * HandModelOut
@@ -1280,12 +1487,33 @@ export interface components {
             fields: components["schemas"]["JobFormField"][];
             /** Kind */
             kind: string;
+            /**
+             * Presets
+             * @description From the quickest to the most thorough.
+             */
+            presets: components["schemas"]["JobPreset"][];
+            /**
+             * Usual Preset
+             * @description Name of the one that forms begin with; jobs without params take defaults.
+             */
+            usual_preset: string;
         };
         /**
          * JobFormField
          * @description One option of the tracker.
          */
         JobFormField: {
+            /**
+             * About
+             * @description What is tracked, how, or with what; presets are about the method.
+             * @enum {string}
+             */
+            about: "recording" | "method" | "machine";
+            /**
+             * Choice Labels
+             * @description The choices for people, in the same order.
+             */
+            choice_labels: string[] | null;
             /**
              * Choices
              * @description The only values there are; null when any will do.
@@ -1295,6 +1523,23 @@ export interface components {
             default: number | boolean | string;
             /** Help */
             help: string;
+            /**
+             * High
+             * @description Largest number allowed.
+             */
+            high: number | null;
+            /**
+             * Is Advanced
+             * @description Few people ever set it.
+             */
+            is_advanced: boolean;
+            /** Label */
+            label: string;
+            /**
+             * Low
+             * @description Smallest number allowed.
+             */
+            low: number | null;
             /** Name */
             name: string;
             /**
@@ -1302,6 +1547,11 @@ export interface components {
              * @enum {string}
              */
             type: "integer" | "number" | "boolean" | "text";
+            /**
+             * Unit
+             * @description Of a number.
+             */
+            unit: string | null;
         };
         /**
          * JobLog
@@ -1404,6 +1654,55 @@ export interface components {
              * @description Grows with every change.
              */
             version: number;
+        };
+        /**
+         * JobPreset
+         * @description Values of some options that go together.
+         */
+        JobPreset: {
+            /**
+             * Help
+             * @description One sentence.
+             */
+            help: string;
+            /** Label */
+            label: string;
+            /** Name */
+            name: string;
+            /**
+             * One Hand Ms
+             * @description Measured median time of a frame with one hand, ms.
+             */
+            one_hand_ms: number;
+            /**
+             * Two Hands And Object Ms
+             * @description The same with two hands and an object, ms.
+             */
+            two_hands_and_object_ms: number;
+            /**
+             * Values
+             * @description As in `params`.
+             */
+            values: {
+                [key: string]: number | boolean | string;
+            };
+        };
+        /**
+         * ModelDistance
+         * @description How far a model's visible skin is from the data.
+         */
+        ModelDistance: {
+            /** Median Mm */
+            median_mm: number | null;
+            /** Name */
+            name: string;
+            /** P95 Mm */
+            p95_mm: number | null;
+            /**
+             * Visible Share
+             * @description Of its vertices that the camera sees.
+             */
+            visible_share: number;
         };
         /** Page[AnnotationOut] */
         Page_AnnotationOut_: {
@@ -1603,6 +1902,16 @@ export interface components {
             /** Cloud */
             cloud?: boolean | null;
             /**
+             * Collisions
+             * @description Crossing triangles and penetrating vertices.
+             */
+            collisions?: boolean | null;
+            /**
+             * Contacts
+             * @description Finger parts that could hold the object.
+             */
+            contacts?: boolean | null;
+            /**
              * Correspondences
              * @description All of them, or term by term.
              */
@@ -1614,6 +1923,16 @@ export interface components {
              * @description Dark ground.
              */
             dark?: boolean | null;
+            /**
+             * Detections
+             * @description Fingertips found in the image.
+             */
+            detections?: boolean | null;
+            /**
+             * Distances
+             * @description The meshes in colours of their distance to the data.
+             */
+            distances?: boolean | null;
             /** Mesh */
             mesh?: boolean | null;
             /** Skeleton */
@@ -1641,7 +1960,7 @@ export interface components {
         TrackFrames: {
             /**
              * Costs
-             * @description Of each term at the last iteration, mm².
+             * @description Of each term at the last iteration, mm²; null where it had no part.
              */
             costs: {
                 [key: string]: (number | null)[];
@@ -1757,6 +2076,14 @@ export interface components {
          * @description A session; its page is at `url`.
          */
         ViewerSessionOut: {
+            /** @description Null while hidden. */
+            collisions: components["schemas"]["CollisionsView"] | null;
+            /** @description Null while hidden. */
+            contacts: components["schemas"]["ContactsView"] | null;
+            /** @description Null while hidden. */
+            detections: components["schemas"]["DetectionsView"] | null;
+            /** @description Null while hidden. */
+            distances: components["schemas"]["DistancesView"] | null;
             /** Frame */
             frame: number;
             /**
@@ -1769,7 +2096,10 @@ export interface components {
              * @description That the scene took.
              */
             milliseconds: number;
-            /** Terms */
+            /**
+             * Terms
+             * @description Empty while correspondences are hidden.
+             */
             terms: components["schemas"]["Term"][];
             /**
              * Track Id
@@ -4521,6 +4851,65 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["TrackFrames"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_frame_energy: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                track_id: string;
+                frame: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FrameEnergy"];
                 };
             };
             /** @description Forbidden */

@@ -1,8 +1,8 @@
-import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { keepPreviousData, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useRef, useState } from "react";
 import { API, ApiError, request } from "./client";
 import { fetchAll } from "./recordings";
-import type { Evaluation, Track, TrackFrames, TrackJoints, ViewerSession } from "./types";
+import type { Evaluation, FrameEnergy, Track, TrackFrames, TrackJoints, ViewerSession } from "./types";
 
 export const trackKeys = {
   all: ["tracks"] as const,
@@ -24,6 +24,15 @@ export const useTrackFrames = (id: string | undefined) =>
     queryFn: () => request<TrackFrames>("GET", `/tracks/${id}/frames`),
     enabled: Boolean(id),
     staleTime: Infinity,
+  });
+
+/** Energy of one frame by term and iteration; the last one stays until the next is there. */
+export const useFrameEnergy = (id: string, frame: number) =>
+  useQuery({
+    queryKey: [...trackKeys.one(id), "energy", frame],
+    queryFn: () => request<FrameEnergy>("GET", `/tracks/${id}/frames/${frame}/energy`),
+    staleTime: Infinity,
+    placeholderData: keepPreviousData,
   });
 
 export const useTrackJoints = (id: string, camera: string | undefined) =>
@@ -79,18 +88,23 @@ export function useRestoreTrack() {
   });
 }
 
-/** Layers of the 3D viewer, under the viewer's own names. */
-export interface Shown {
-  cloud: boolean;
-  mesh: boolean;
-  skeleton: boolean;
-  correspondences: boolean;
-  dark: boolean;
-}
+/** Layers of the 3D viewer that are on or off. */
+export const LAYERS = ["cloud", "mesh", "skeleton", "correspondences", "detections", "collisions", "contacts", "distances"] as const;
+export type Layer = (typeof LAYERS)[number];
 
-interface Viewer {
+/** What the 3D viewer is to show, under its own names. */
+export type Shown = Record<Exclude<Layer, "correspondences">, boolean> & {
+  /** Terms that are hidden are false; terms that are not named are shown. */
+  correspondences: boolean | Record<string, boolean>;
+  dark: boolean;
+};
+
+export interface Viewer {
   session: ViewerSession | null;
-  terms: ViewerSession["terms"];
+  /** What the server said of the frame that is shown. */
+  told: ViewerSession | null;
+  /** The server is at work on another frame or other layers. */
+  isBusy: boolean;
   failure: Error | null;
   retry: () => void;
 }
@@ -98,7 +112,8 @@ interface Viewer {
 /** A viewer session of this page: made with it, told of frame and toggles (the newest only), ended with it. */
 export function useViewer(track: string, frame: number, show: Shown): Viewer {
   const [session, setSession] = useState<ViewerSession | null>(null);
-  const [terms, setTerms] = useState<ViewerSession["terms"]>([]);
+  const [told, setTold] = useState<ViewerSession | null>(null);
+  const [isBusy, setBusy] = useState(false);
   const [failure, setFailure] = useState<Error | null>(null);
   const [attempt, setAttempt] = useState(0);
   const wanted = useRef({ frame, show });
@@ -110,6 +125,7 @@ export function useViewer(track: string, frame: number, show: Shown): Viewer {
     let isGone = false;
     const end = (id: string): void => void request("DELETE", `/viewer-sessions/${id}`, { keepalive: true }).catch(() => undefined);
     setSession(null);
+    setTold(null);
     setFailure(null);
     request<ViewerSession>("POST", "/viewer-sessions", { body: { track_id: track, ...wanted.current } }).then(
       (opened) => {
@@ -133,20 +149,21 @@ export function useViewer(track: string, frame: number, show: Shown): Viewer {
   useEffect(() => {
     if (!session || isTelling.current) return;
     isTelling.current = true;
+    setBusy(true);
     const tell = async (): Promise<void> => {
-      let told: typeof wanted.current | null = null;
-      while (told?.frame !== wanted.current.frame || told.show !== wanted.current.show) {
-        told = wanted.current;
-        const now = await request<ViewerSession>("PUT", `/viewer-sessions/${session.id}`, { body: told });
-        setTerms(now.terms);
+      let sent: typeof wanted.current | null = null;
+      while (sent?.frame !== wanted.current.frame || sent.show !== wanted.current.show) {
+        sent = wanted.current;
+        setTold(await request<ViewerSession>("PUT", `/viewer-sessions/${session.id}`, { body: sent }));
       }
     };
     tell()
       .catch((reason: Error) => setFailure(reason))
       .finally(() => {
         isTelling.current = false;
+        setBusy(false);
       });
   }, [session, frame, show]);
 
-  return { session, terms, failure, retry: () => setAttempt((count) => count + 1) };
+  return { session, told, isBusy, failure, retry: () => setAttempt((count) => count + 1) };
 }

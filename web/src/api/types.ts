@@ -15,8 +15,11 @@ export type WirePoint = Annotation["points"][number];
 export type Job = Schemas["JobOut"];
 export type JobState = Job["state"];
 export type LogLine = Schemas["JobLogLine"];
+export type JobForm = Schemas["JobForm"];
 export type FormField = Schemas["JobFormField"];
+export type Preset = Schemas["JobPreset"];
 export type TrackFrames = Schemas["TrackFrames"];
+export type FrameEnergy = Schemas["FrameEnergy"];
 export type TrackJoints = Schemas["TrackJoints"];
 export type ViewerSession = Schemas["ViewerSessionOut"];
 

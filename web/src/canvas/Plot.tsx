@@ -4,6 +4,7 @@ import { useEffect, useRef } from "react";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import classes from "./Plot.module.css";
+import { PlotLegend } from "./PlotLegend";
 
 export interface Curve {
   readonly label: string;
@@ -24,12 +25,27 @@ interface PlotProps {
   curves: readonly Curve[];
   /** Frames to shade. */
   lost: readonly number[];
-  frame: number;
-  onSeek: (frame: number) => void;
+  /** Where the line stands; null for none. */
+  frame: number | null;
+  /** Without it a click does nothing. */
+  onSeek?: (frame: number) => void;
+  /** The left axis by powers of ten; what is not above zero is left out. */
+  isLog?: boolean;
+  /** Names and values of the curves; off where another plot beside this one has them. */
+  hasLegend?: boolean;
 }
 
-/** Curves over the frames; a click goes to the frame, the line shows where one is. */
-export function Plot({ label, frames, curves, lost, frame, onSeek }: PlotProps) {
+const compact = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
+
+/** The powers of ten around positive values. */
+const decades = (low: number | null, high: number | null): [number, number] => {
+  const from = Math.floor(Math.log10(low !== null && low > 0 ? low : 1));
+  const to = Math.ceil(Math.log10(high !== null && high > 0 ? high : 10));
+  return [10 ** from, 10 ** Math.max(to, from + 1)];
+};
+
+/** Curves over the frames, or over anything counted; a click goes to the frame, the line shows where one is. */
+export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false, hasLegend = true }: PlotProps) {
   const { ref: sizeRef, width, height } = useElementSize();
   const holder = useRef<HTMLDivElement | null>(null);
   const plot = useRef<uPlot | null>(null);
@@ -52,6 +68,7 @@ export function Plot({ label, frames, curves, lost, frame, onSeek }: PlotProps) 
       stroke: ink,
       font,
       size: 44,
+      values: (_, splits) => splits.map((split) => (split === null ? "" : compact.format(split))),
       ticks: { show: false },
       grid: { show: side === "left", stroke: line, width: 1 },
     });
@@ -65,7 +82,9 @@ export function Plot({ label, frames, curves, lost, frame, onSeek }: PlotProps) 
         cursor: { drag: { x: false, y: false }, points: { size: 6 }, y: false },
         scales: {
           x: { time: false },
-          left: { range: (_, low, high) => [Math.min(0, low ?? 0), high === null || high <= 0 ? 1 : high * 1.08] },
+          left: isLog
+            ? { distr: 3, log: 10, range: (_, low, high) => decades(low, high) }
+            : { range: (_, low, high) => [Math.min(0, low ?? 0), high === null || high <= 0 ? 1 : high * 1.08] },
           right: { range: (_, low, high) => [Math.min(0, low ?? 0), high === null || high <= 0 ? 1 : high * 1.08] },
         },
         axes: [
@@ -101,6 +120,7 @@ export function Plot({ label, frames, curves, lost, frame, onSeek }: PlotProps) 
           ],
           draw: [
             (drawn) => {
+              if (here.current === null) return;
               const { ctx, bbox } = drawn;
               const x = Math.round(drawn.valToPos(here.current, "x", true));
               ctx.save();
@@ -119,12 +139,15 @@ export function Plot({ label, frames, curves, lost, frame, onSeek }: PlotProps) 
               drawn.over.addEventListener("click", () => {
                 const at = drawn.cursor.idx;
                 const chosen = at === null || at === undefined ? undefined : drawn.data[0][at];
-                if (chosen !== undefined) seek.current(chosen);
+                if (chosen !== undefined) seek.current?.(chosen);
               }),
           ],
         },
       },
-      [frames as number[], ...curves.map((curve) => curve.values as (number | null)[])],
+      [
+        frames as number[],
+        ...curves.map((curve) => (isLog && curve.axis === "left" ? curve.values.map((value) => (value !== null && value > 0 ? value : null)) : curve.values) as (number | null)[]),
+      ],
       element,
     );
     plot.current = made;
@@ -132,31 +155,14 @@ export function Plot({ label, frames, curves, lost, frame, onSeek }: PlotProps) 
       plot.current = null;
       made.destroy();
     };
-  }, [width, height, frames, curves, lost, scheme]);
+  }, [width, height, frames, curves, lost, scheme, isLog]);
 
   useEffect(() => plot.current?.redraw(false), [frame]);
 
-  const index = frames.indexOf(frame);
+  const index = frame === null ? -1 : frames.indexOf(frame);
   return (
-    <figure className={classes.figure} aria-label={label}>
-      <figcaption className={classes.legend}>
-        {curves.map((curve) => {
-          const value = index >= 0 ? curve.values[index] : null;
-          return (
-            <span key={curve.label} className={classes.entry}>
-              <svg width="18" height="8" aria-hidden>
-                {curve.isSparse ? (
-                  <circle cx="9" cy="4" r="3" fill={curve.color} />
-                ) : (
-                  <line x1="0" y1="4" x2="18" y2="4" stroke={curve.color} strokeWidth="2" strokeDasharray={curve.dash?.join(" ")} />
-                )}
-              </svg>
-              {curve.label}
-              <strong>{value === null || value === undefined ? "–" : `${value.toFixed(curve.digits ?? 1)}${curve.unit ? ` ${curve.unit}` : ""}`}</strong>
-            </span>
-          );
-        })}
-      </figcaption>
+    <figure className={classes.figure} aria-label={label} data-seeks={onSeek !== undefined}>
+      {hasLegend && <PlotLegend curves={curves} index={index} />}
       <div
         ref={(element) => {
           holder.current = element;

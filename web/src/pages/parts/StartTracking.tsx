@@ -1,10 +1,12 @@
-import { Button, Checkbox, Collapse, Group, Modal, NumberInput, Select, SimpleGrid, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Button, Collapse, Group, Modal, SimpleGrid, Skeleton, Stack, Text, Title } from "@mantine/core";
 import { useState } from "react";
 import { useNavigate } from "react-router";
 import { useJobForm, useStartTracking } from "../../api/jobs";
 import type { FormField, Recording } from "../../api/types";
-import { formatName } from "../../model/format";
+import { choosePreset, matchPreset, type Changed } from "../../model/presets";
 import { Failure } from "./Failure";
+import { JobField } from "./JobField";
+import { PresetChoice } from "./PresetChoice";
 
 interface StartTrackingProps {
   recording: Recording;
@@ -12,44 +14,17 @@ interface StartTrackingProps {
   onClose: () => void;
 }
 
-/** Fields most people set; the others are one click away. */
-const USUAL = ["first_frame", "last_frame", "iterations", "calibrate"];
-
-interface FieldProps {
-  field: FormField;
-  value: unknown;
-  onChange: (value: unknown) => void;
-}
-
-function Field({ field, value, onChange }: FieldProps) {
-  const label = formatName(field.name);
-  if (field.choices) {
-    return <Select label={label} description={field.help} data={field.choices} value={String(value)} allowDeselect={false} onChange={onChange} />;
-  }
-  if (field.type === "boolean") {
-    return <Checkbox label={label} description={field.help} checked={Boolean(value)} onChange={(event) => onChange(event.currentTarget.checked)} />;
-  }
-  if (field.type !== "text") {
-    return (
-      <NumberInput
-        label={label}
-        description={field.help}
-        value={(value as number | null) ?? ""}
-        allowDecimal={field.type === "number"}
-        onChange={onChange}
-      />
-    );
-  }
-  return <TextInput label={label} description={field.help} value={(value as string | null) ?? ""} onChange={(event) => onChange(event.currentTarget.value)} />;
-}
-
 /** Start a tracking job: the fields, defaults and help come from the server. */
 export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps) {
   const form = useJobForm(isOpen);
   const start = useStartTracking();
   const navigate = useNavigate();
-  const [changed, setChanged] = useState<Record<string, unknown>>({});
+  const [touched, setTouched] = useState<Changed | null>(null);
   const [isAllShown, setAllShown] = useState(false);
+
+  const fields = form.data?.fields ?? [];
+  const usual = form.data?.presets.find((preset) => preset.name === form.data.usual_preset);
+  const changed: Changed = touched ?? (form.data && usual ? choosePreset(form.data, {}, usual) : {});
 
   const submit = (): void =>
     start.mutate(
@@ -57,25 +32,23 @@ export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps
       {
         onSuccess: (job) => {
           onClose();
-          setChanged({});
+          setTouched(null);
           void navigate(`/jobs/${job.id}`);
         },
       },
     );
-  const set = (field: FormField, value: unknown): void =>
-    setChanged((now) => {
-      const { [field.name]: gone, ...others } = now;
-      void gone;
-      return value === field.default || value === "" ? others : { ...others, [field.name]: value };
-    });
+  const set = (field: FormField, value: unknown): void => {
+    const { [field.name]: gone, ...others } = changed;
+    void gone;
+    setTouched(value === field.default || value === "" ? others : { ...others, [field.name]: value });
+  };
   const show = (field: FormField) => (
-    <Field key={field.name} field={field} value={field.name in changed ? changed[field.name] : field.default} onChange={(value) => set(field, value)} />
+    <JobField key={field.name} field={field} recording={recording} value={field.name in changed ? changed[field.name] : field.default} onChange={(value) => set(field, value)} />
   );
-  const usual = form.data?.filter((field) => USUAL.includes(field.name)) ?? [];
-  const rest = form.data?.filter((field) => !USUAL.includes(field.name)) ?? [];
+  const advanced = fields.filter((field) => field.is_advanced);
 
   return (
-    <Modal opened={isOpen} onClose={onClose} size="lg" title={<Title order={2}>Track {recording.name}</Title>}>
+    <Modal opened={isOpen} onClose={onClose} size={760} title={<Title order={2}>Track {recording.name}</Title>}>
       <form
         onSubmit={(event) => {
           event.preventDefault();
@@ -94,17 +67,23 @@ export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps
               <Skeleton height={56} />
             </>
           )}
+          {form.data && (
+            <PresetChoice presets={form.data.presets} chosen={matchPreset(form.data, changed)} onChoose={(preset) => setTouched(choosePreset(form.data, changed, preset))} />
+          )}
           <SimpleGrid cols={2} spacing="md">
-            {usual.map(show)}
+            {fields.filter((field) => !field.is_advanced && field.type !== "boolean").map(show)}
           </SimpleGrid>
-          {rest.length > 0 && (
+          <SimpleGrid cols={3} spacing="md">
+            {fields.filter((field) => !field.is_advanced && field.type === "boolean").map(show)}
+          </SimpleGrid>
+          {advanced.length > 0 && (
             <>
               <Button variant="subtle" size="compact-sm" onClick={() => setAllShown(!isAllShown)} aria-expanded={isAllShown} style={{ alignSelf: "flex-start" }}>
                 {isAllShown ? "Fewer parameters" : "All parameters"}
               </Button>
               <Collapse expanded={isAllShown}>
                 <SimpleGrid cols={2} spacing="md">
-                  {rest.map(show)}
+                  {advanced.map(show)}
                 </SimpleGrid>
               </Collapse>
             </>

@@ -1,9 +1,11 @@
-import { Tabs, Text } from "@mantine/core";
+import { Switch, Tabs, Text } from "@mantine/core";
+import { useLocalStorage } from "@mantine/hooks";
 import { useMemo } from "react";
 import { useEvaluation } from "../../api/tracks";
 import type { Track, TrackFrames } from "../../api/types";
 import { Plot, type Curve } from "../../canvas/Plot";
-import { formatName, formatNumber } from "../../model/format";
+import { formatNumber } from "../../model/format";
+import { EnergyPlots } from "./EnergyPlots";
 import classes from "./TrackReview.module.css";
 
 interface TrackPlotsProps {
@@ -17,11 +19,10 @@ interface TrackPlotsProps {
   onSeek: (frame: number) => void;
 }
 
-const TERM_COLORS = ["#22b8cf", "#e83eb4", "#94a3ff", "#ffb088", "#a3e635", "#96f2d7"];
-
 /** Error and timing by frame; a click goes there. */
 export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onSeek }: TrackPlotsProps) {
   const evaluation = useEvaluation(track.id).data;
+  const [isLog, setLog] = useLocalStorage({ key: "handloom/energy-log", defaultValue: true, getInitialValueInEffect: false });
 
   const errorCurves = useMemo<Curve[]>(() => {
     const curves: Curve[] = [
@@ -46,31 +47,19 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
     [frames],
   );
 
-  const energyCurves = useMemo<Curve[]>(
-    () =>
-      Object.entries(frames.costs).map(([term, values], index) => ({
-        label: formatName(term),
-        unit: "mm²",
-        values,
-        color: TERM_COLORS[index % TERM_COLORS.length] ?? "#999",
-        ...(index % 2 === 1 ? { dash: [5, 3] } : {}),
-        axis: "left",
-        digits: 0,
-      })),
-    [frames],
-  );
-
+  const hasEnergy = Object.keys(frames.costs).length > 0;
   const stages = Object.entries(track.summary.stages_ms ?? {});
   return (
-    <Tabs value={tab} onChange={(next) => next && onTab(next)} className={classes.plots} keepMounted={false}>
+    <Tabs value={tab} onChange={(next) => next && onTab(next)} className={classes.plots} data-tall={tab === "energy" || undefined} keepMounted={false}>
       <Tabs.List style={{ flexWrap: "nowrap" }}>
         <Tabs.Tab value="error">Error</Tabs.Tab>
-        {energyCurves.length > 0 && <Tabs.Tab value="energy">Energy</Tabs.Tab>}
+        {hasEnergy && <Tabs.Tab value="energy">Energy</Tabs.Tab>}
         <Tabs.Tab value="timing">Timing</Tabs.Tab>
-        <Text size="xs" className="quiet one-line" ml="auto" my="auto" px={12}>
-          {tab === "energy"
-            ? "each term at its last iteration"
-            : tab === "timing"
+        {tab === "energy" && (
+          <Switch size="xs" ml="auto" my="auto" px={12} label="Logarithmic" checked={isLog} onChange={(event) => setLog(event.currentTarget.checked)} />
+        )}
+        <Text size="xs" className="quiet one-line" ml="auto" my="auto" px={12} hidden={tab === "energy"}>
+          {tab === "timing"
             ? `median ${formatNumber(track.summary.median_ms)} ms, 95 % below ${formatNumber(track.summary.p95_ms)} ms`
             : evaluation && evaluation.evaluated > 0
               ? `${formatNumber(evaluation.joint_error_px.mean)} px mean error in ${evaluation.evaluated} annotated`
@@ -81,7 +70,7 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
         <Plot label="Error by frame" frames={frames.frame} curves={errorCurves} lost={lost} frame={frame} onSeek={onSeek} />
       </Tabs.Panel>
       <Tabs.Panel value="energy" className={classes.plot}>
-        <Plot label="Energy of each term by frame" frames={frames.frame} curves={energyCurves} lost={lost} frame={frame} onSeek={onSeek} />
+        <EnergyPlots track={track} frames={frames} lost={lost} frame={frame} isLog={isLog} onSeek={onSeek} />
       </Tabs.Panel>
       <Tabs.Panel value="timing" className={classes.plot}>
         <Plot label="Time by frame" frames={frames.frame} curves={timingCurves} lost={lost} frame={frame} onSeek={onSeek} />

@@ -2,7 +2,7 @@ import { useComputedColorScheme } from "@mantine/core";
 import { useCallback, useEffect, useMemo, useState } from "react";
 import { useNavigate, useSearchParams } from "react-router";
 import { useKeymap } from "../../actions/useKeymap";
-import { useViewer } from "../../api/tracks";
+import { LAYERS, useViewer, type Layer, type Shown } from "../../api/tracks";
 import type { Recording, Track, TrackFrames } from "../../api/types";
 import { FrameStrip } from "../../canvas/FrameStrip";
 import { badFrames, nextIn } from "../../model/badFrames";
@@ -15,6 +15,14 @@ import { TrackImage } from "./TrackImage";
 import { TrackPlots } from "./TrackPlots";
 import classes from "./TrackReview.module.css";
 import { ViewerFrame } from "./ViewerFrame";
+
+type ShownLayers = Record<Layer, boolean>;
+
+/** Layers as the address names them; cloud and mesh when it names none. */
+const readLayers = (named: string | null): ShownLayers => {
+  const on = (named ?? "cloud,mesh").split(",");
+  return Object.fromEntries(LAYERS.map((layer) => [layer, on.includes(layer)])) as ShownLayers;
+};
 
 interface TrackReviewProps {
   track: Track;
@@ -33,11 +41,12 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const [cameraId, setCameraId] = useState(() => address.get("camera") ?? recording.cameras[0]?.id ?? "");
   const [tab, setTab] = useState(() => ["energy", "timing"].find((name) => name === address.get("tab")) ?? "error");
   const camera = recording.cameras.find((one) => one.id === cameraId) ?? recording.cameras[0];
-  const [layers, setLayers] = useState({ cloud: true, mesh: true, skeleton: false, correspondences: false });
+  const [layers, setLayers] = useState<ShownLayers>(() => readLayers(address.get("layers")));
+  const [terms, setTerms] = useState<Record<string, boolean>>({});
   const [isMeshShown, setMeshShown] = useState(true);
   const [isSkeletonShown, setSkeletonShown] = useState(true);
   const dark = useComputedColorScheme("dark") === "dark";
-  const show = useMemo(() => ({ ...layers, dark }), [layers, dark]);
+  const show = useMemo<Shown>(() => ({ ...layers, correspondences: layers.correspondences && (Object.keys(terms).length > 0 ? terms : true), dark }), [layers, terms, dark]);
   const viewer = useViewer(track.id, frame, show);
   const seek = useCallback((to: number) => setFrame(clamp(to)), [clamp]);
 
@@ -47,9 +56,10 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   });
 
   useEffect(() => {
-    const timer = setTimeout(() => setAddress({ frame: String(frame), camera: camera?.id ?? "", tab }, { replace: true }), 150);
+    const on = LAYERS.filter((layer) => layers[layer]).join(",");
+    const timer = setTimeout(() => setAddress({ frame: String(frame), camera: camera?.id ?? "", tab, layers: on }, { replace: true }), 150);
     return () => clearTimeout(timer);
-  }, [frame, camera?.id, tab, setAddress]);
+  }, [frame, camera?.id, tab, layers, setAddress]);
 
   const bad = useMemo(() => badFrames(frames), [frames]);
   const lost = useMemo(() => frames.frame.filter((_, index) => frames.status[index] === "lost"), [frames]);
@@ -99,7 +109,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
         onAnnotate={annotate}
       />
       <div className={classes.middle}>
-        <ViewerFrame viewer={viewer} layers={layers} onLayers={setLayers} />
+        <ViewerFrame viewer={viewer} layers={layers} terms={terms} onLayers={setLayers} onTerms={setTerms} />
         <div className={classes.side}>
           {camera && (
             <TrackImage

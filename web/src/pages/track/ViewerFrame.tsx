@@ -1,23 +1,34 @@
-import { Checkbox, Group, Loader, Stack, Text } from "@mantine/core";
+import { Checkbox, Loader, Stack, Text } from "@mantine/core";
 import { useEffect, useState } from "react";
-import type { Shown, useViewer } from "../../api/tracks";
+import { LAYERS, type Layer, type Viewer } from "../../api/tracks";
+import { countOf } from "../../model/evidence";
 import { formatName } from "../../model/format";
 import { Failure } from "../parts/Failure";
+import { EvidenceCard } from "./EvidenceCard";
 import classes from "./TrackReview.module.css";
 
-type Layers = Omit<Shown, "dark">;
+type ShownLayers = Record<Layer, boolean>;
 
 interface ViewerFrameProps {
-  viewer: ReturnType<typeof useViewer>;
-  layers: Layers;
-  onLayers: (layers: Layers) => void;
+  viewer: Viewer;
+  layers: ShownLayers;
+  /** Terms whose correspondences were switched; the others are shown. */
+  terms: Record<string, boolean>;
+  onLayers: (layers: ShownLayers) => void;
+  onTerms: (terms: Record<string, boolean>) => void;
 }
 
-const NAMES = ["cloud", "mesh", "skeleton", "correspondences"] as const;
+const HELP: Partial<Record<Layer, string>> = {
+  correspondences: "What each term matches: a line from the model to the data",
+  detections: "Fingertips found in the image, and the finger each was assigned to",
+  collisions: "Triangles that cross, and vertices that are inside another part",
+  contacts: "Finger parts within 10 mm of the object, and whether it is held",
+  distances: "The meshes in colours of their distance to the measured points",
+};
 
 /** The 3D viewer, with its layers above it under their own names. */
-export function ViewerFrame({ viewer, layers, onLayers }: ViewerFrameProps) {
-  const { session, terms, failure, retry } = viewer;
+export function ViewerFrame({ viewer, layers, terms, onLayers, onTerms }: ViewerFrameProps) {
+  const { session, told, isBusy, failure, retry } = viewer;
   const [isLoaded, setLoaded] = useState(false);
   const [hasKeys, setHasKeys] = useState(false);
   useEffect(() => setLoaded(false), [session?.id]);
@@ -35,30 +46,33 @@ export function ViewerFrame({ viewer, layers, onLayers }: ViewerFrameProps) {
 
   return (
     <section className={classes.viewer} aria-label="3D view">
-      <div className={classes.layers}>
-        {NAMES.map((name) => (
-          <Checkbox key={name} size="xs" label={formatName(name)} checked={layers[name]} onChange={(event) => onLayers({ ...layers, [name]: event.currentTarget.checked })} />
-        ))}
-        {layers.correspondences && (
-          <Group gap="sm" wrap="nowrap" style={{ overflow: "hidden" }}>
-            {terms.map((term) => (
-              <Text key={term.name} size="xs" className="quiet one-line">
-                <span style={{ color: term.color }} aria-hidden>
-                  ■{" "}
-                </span>
-                {formatName(term.name).toLowerCase()} {term.count}
-              </Text>
-            ))}
-          </Group>
-        )}
-        {hasKeys && (
-          <Text size="xs" ml="auto" className="quiet one-line">
-            keys go to the 3D view; click outside it to bring them back
-          </Text>
-        )}
+      <div className={classes.layers} role="group" aria-label="Layers of the 3D view">
+        {LAYERS.map((name) => {
+          const count = layers[name] ? countOf(told, name) : null;
+          return (
+            <Checkbox
+              key={name}
+              size="xs"
+              title={HELP[name]}
+              label={
+                <>
+                  {formatName(name)}
+                  {count !== null && <span className={classes.count}>{count}</span>}
+                </>
+              }
+              aria-label={formatName(name)}
+              checked={layers[name]}
+              onChange={(event) => onLayers({ ...layers, [name]: event.currentTarget.checked })}
+            />
+          );
+        })}
       </div>
       <div className={classes.stage}>
         {session && !failure && <iframe className={classes.page3d} src={session.url} title="3D view of the track" onLoad={() => setLoaded(true)} />}
+        {session && !failure && isLoaded && (
+          <EvidenceCard told={told} layers={layers} isBusy={isBusy} terms={terms} onTerms={onTerms} />
+        )}
+        {hasKeys && <span className={classes.note}>keys go to the 3D view; click outside it to bring them back</span>}
         {failure && (
           <div className={classes.waiting} style={{ background: "var(--mantine-color-body)" }}>
             <Failure what="The 3D view could not be opened" error={failure} safe="The image, the curves and the timeline work without it." onRetry={retry} />

@@ -1,0 +1,23 @@
+import { expect, test } from "vitest";
+import { describeCollisions, describeContacts, describeDetections, describeOrigin } from "./evidence";
+
+const contacts = { is_of_run: true, object: "pipe", is_stable: false, displacement_mm: 36, held_displacement_mm: 36, simulated: 4, parts: [] };
+const part = { hand: "right", part: "index distal", distance_mm: 2, is_chosen: false };
+
+test("a frame where nothing is found says so", () => {
+  expect(describeDetections({ is_of_run: true, items: [] })).toContain("No fingertip was found");
+  expect(describeCollisions({ is_of_run: true, triangles: 0, vertices: 0, deepest_mm: 0, full_mm: 5, pairs: [] })).toBe("Nothing stands in anything else here.");
+  expect(describeContacts({ ...contacts, object: null })).toContain("needs an object and a hand");
+});
+
+test("an object is held, or falls for want of fingers, or would be held by those chosen", () => {
+  expect(describeContacts({ ...contacts, is_stable: true, displacement_mm: 0.82 })).toBe("pipe is held: simulated, it moves 0.8 mm (less than 3 mm).");
+  expect(describeContacts(contacts)).toBe("pipe falls: no finger part is within 10 mm of it.");
+  expect(describeContacts({ ...contacts, displacement_mm: 7, parts: [part] })).toContain("slips by 7.0 mm, and no combination");
+  expect(describeContacts({ ...contacts, held_displacement_mm: 0.4, parts: [{ ...part, is_chosen: true }] })).toContain("in contact it moves 0.4 mm");
+});
+
+test("what the run did without is said to be worked out now", () => {
+  expect(describeOrigin("collisions", false)).toContain("did without collision (C)");
+  expect(describeOrigin("collisions", true)).toBeNull();
+});

@@ -1,0 +1,62 @@
+/** What the 3D view's layers say of a frame, in one sentence each. */
+
+import type { ViewerSession } from "../api/types";
+import { formatCount, formatNumber } from "./format";
+
+type Detections = NonNullable<ViewerSession["detections"]>;
+type Collisions = NonNullable<ViewerSession["collisions"]>;
+type Contacts = NonNullable<ViewerSession["contacts"]>;
+
+/** Displacement at which physics calls an object fallen, mm. */
+export const STABLE_BELOW_MM = 3;
+
+const SIMULATION_ENDS_MM = 30;
+
+const mm = (value: number): string => `${formatNumber(value)} mm`;
+
+export function describeDetections({ items }: Detections): string {
+  if (items.length === 0) return "No fingertip was found in this image: the fingers are bent, hidden or too far away.";
+  const owned = items.filter((item) => item.finger !== null).length;
+  const rest = items.length - owned;
+  return `${formatCount(owned, "detection")} of a fingertip${rest > 0 ? `, ${rest} that no fingertip is near enough to` : ""}.`;
+}
+
+export function describeCollisions({ pairs, vertices, deepest_mm: deepest }: Collisions): string {
+  if (pairs.length === 0) return "Nothing stands in anything else here.";
+  if (vertices === 0) return "Surfaces touch and cross; no vertex is inside.";
+  return `${formatCount(vertices, "vertex is", "vertices are")} inside, ${mm(deepest)} deep at most.`;
+}
+
+export function describeContacts({ object, is_stable: isStable, displacement_mm: moved, held_displacement_mm: held, parts }: Contacts): string {
+  if (object === null) return "There is nothing to hold: physics needs an object and a hand.";
+  if (isStable) return `${object} is held: simulated, it moves ${mm(moved)} (less than ${STABLE_BELOW_MM} mm).`;
+  const falls = moved >= SIMULATION_ENDS_MM ? `${object} falls` : `${object} slips by ${mm(moved)}`;
+  if (parts.length === 0) return `${falls}: no finger part is within 10 mm of it.`;
+  if (parts.some((part) => part.is_chosen)) return `${falls}; with the chosen parts in contact it moves ${mm(held)}.`;
+  return `${falls}, and no combination of the parts near it would hold it.`;
+}
+
+/** That a layer shows what the run itself did without; null if it did not. */
+export function describeOrigin(layer: "detections" | "collisions" | "contacts", isOfRun: boolean): string | null {
+  const terms = { detections: "fingertips (S)", collisions: "collision (C)", contacts: "physics (P)" } as const;
+  if (!isOfRun) return `Worked out now. This run did without ${terms[layer]}.`;
+  return layer === "detections" ? "The run itself looks at them only where a frame goes badly." : null;
+}
+
+/** What stands beside a layer's name; null while it is off or not known. */
+export function countOf(told: ViewerSession | null, layer: string): string | null {
+  if (!told) return null;
+  const count = (value: number): string => value.toLocaleString("en");
+  switch (layer) {
+    case "correspondences":
+      return told.terms.length > 0 ? count(told.terms.reduce((sum, term) => sum + term.count, 0)) : null;
+    case "detections":
+      return told.detections && count(told.detections.items.length);
+    case "collisions":
+      return told.collisions && count(told.collisions.triangles);
+    case "contacts":
+      return told.contacts && count(told.contacts.parts.length);
+    default:
+      return null;
+  }
+}

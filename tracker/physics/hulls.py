@@ -30,12 +30,19 @@ class BoneHull:
         vertices: (H, 3) rest pose, model axes, from `center`, m.
         center: (3,) centroid of the hull, rest pose, model frame, m.
         volume: m³.
+        planes: (P, 4) of its faces, rest pose, model axes, from `center`: n · x + d is at most 0 inside, m.
     """
 
     bone: int
     vertices: Array
     center: Array
     volume: float
+    planes: Array
+
+    @property
+    def radius(self) -> float:
+        """Of the sphere around `center` that holds the hull, m."""
+        return float(np.linalg.norm(self.vertices, axis=1).max())
 
     @property
     def inertia_per_mass(self) -> Array:
@@ -69,7 +76,9 @@ def build_hull(bone: int, points: Array) -> BoneHull:
         points = corners
         hull = ConvexHull(points)
     center = _centroid(points, hull)
-    return BoneHull(bone, points[np.sort(hull.vertices)] - center, center, float(hull.volume))
+    planes = np.unique(np.round(hull.equations, 9), axis=0)
+    planes[:, 3] += planes[:, :3] @ center
+    return BoneHull(bone, points[np.sort(hull.vertices)] - center, center, float(hull.volume), planes)
 
 
 def _thin_out(points: Array) -> Array:

@@ -53,6 +53,12 @@ class Protocol:
         """Between hand and object."""
         return self.friction**2
 
+    @property
+    def free_fall(self) -> float:
+        """How far an object falls that nothing holds, m."""
+        ticks = self.steps * self.substeps
+        return 0.5 * GRAVITY * (self.time_step / self.substeps) ** 2 * ticks * (ticks + 1)
+
 
 SD_SEED = Protocol("SD-seed", time_step=0.1)
 """[T16] §4.2.1 to the letter: 35 iterations with a time-step of 0.1 s.

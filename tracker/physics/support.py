@@ -44,7 +44,7 @@ class SupportOptions:
         most_parts: Parts in one combination; at least two.
         most_simulations: Combinations that are simulated, the most promising of those that the wrench test lets pass.
         carried: A combination passes that leaves at most this share of the weight uncarried.
-        reach: Still hulls farther from the object than this play no part, m.
+        reach: Still hulls farther from the object than this play no part, m; no less than `near`.
         protocol: Of the simulations.
     """
 
@@ -54,7 +54,7 @@ class SupportOptions:
     most_parts: int = 4
     most_simulations: int = 4
     carried: float = 0.05
-    reach: float = 0.030
+    reach: float = 0.010
     protocol: Protocol = SEARCH
 
 
@@ -85,35 +85,52 @@ FALLEN = 0.030
 """m; an object that has moved so far is not coming back, and the simulation of a combination ends."""
 
 
-def find_support(world: PhysicsWorld, posed: PosedScene, options: SupportOptions | None = None) -> Support:
+def find_support(
+    world: PhysicsWorld, posed: PosedScene, options: SupportOptions | None = None, likely: Sequence[Contact] = ()
+) -> Support:
     """Simulate the pose; if the object falls, try the finger parts near it and keep what holds it best.
 
     Overlaps of hulls are resolved before anything is simulated (a hull is set back until it just touches), because
     they would throw the object. A candidate is set forward until it touches.
 
     Differs from the paper: combinations must pass a wrench test, and at most `most_simulations` of those that do are
-    simulated; the search ends early at one that moves the object less than a third of `stable_below`.
+    simulated; the search ends early at one that moves the object less than a third of `stable_below`. An object that
+    nothing is near is not simulated: it falls.
+
+    Args:
+        world: Hulls of the scene.
+        posed: The scene.
+        options: How to look.
+        likely: Contacts to try first, such as those of the frame before.
     """
     options = options or SupportOptions()
     world.place(posed, options.protocol, options.reach)
     gaps = world.find_gaps(max(options.near, 2.0 * options.protocol.skin))
-    settled = {gap.hull: -gap.distance * gap.normal for gap in gaps if gap.distance < 0.0}
-    displacement = world.run(settled, give_up=FALLEN)
     movable = _find_movable(world, gaps, options)
     candidates = tuple(contact for _, contact in movable)
+    if not gaps and not world.planes:
+        fall = options.protocol.free_fall
+        return Support(fall, False, candidates, (), fall, 0, 0)
+    settled = {gap.hull: -gap.distance * gap.normal for gap in gaps if gap.distance < 0.0}
+    displacement = world.run(settled, give_up=FALLEN, calm_below=options.stable_below)
     if displacement < options.stable_below or len(movable) < 2:
         is_stable = displacement < options.stable_below
         return Support(displacement, is_stable, candidates, (), displacement, 0, 0)
     ranked, passed = rank_combinations(world, gaps, [gap for gap, _ in movable], options)
+    first = tuple(place for place, (_, contact) in enumerate(movable) if contact in likely)
+    if first in ranked[:passed]:
+        ranked.remove(first)
+        ranked.insert(0, first)
     best: tuple[int, ...] = ()
     best_displacement, simulated = displacement, 0
     for combination in ranked[: min(passed, options.most_simulations)]:
         moved = settled | {movable[i][0].hull: -movable[i][0].distance * movable[i][0].normal for i in combination}
         simulated += 1
-        trial = world.run(moved, give_up=min(FALLEN, best_displacement))
+        enough = options.stable_below / 3.0
+        trial = world.run(moved, give_up=min(FALLEN, best_displacement), calm_below=enough)
         if trial < best_displacement:
             best, best_displacement = combination, trial
-        if best_displacement < options.stable_below / 3.0:
+        if best_displacement < enough:
             break
     if best_displacement >= FALLEN:
         best, best_displacement = (), displacement

@@ -14,6 +14,8 @@ from scipy.spatial.transform import Rotation
 from tracker.model.scene import PosedScene, Scene
 from tracker.physics.bullet import load_bullet
 from tracker.physics.hulls import BoneHull, find_bone_hulls
+from tracker.physics.moving_body import build_moving_body
+from tracker.physics.near_hulls import HullPairs
 from tracker.physics.protocol import GRAVITY, Protocol, StaticPlane
 
 Array = npt.NDArray[np.float64]
@@ -22,6 +24,12 @@ MAX_PLANE_CONTACTS = 12
 
 BLOCK = 1.0
 """m; half the side of the block that stands for a plane. Nothing falls through it in one step."""
+
+CHECKED = 5
+"""Steps between two looks at where the object is."""
+
+CAUTION = 3.0
+"""The object is taken to be at rest if it would stay where it should even at so many times its present speed."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +87,7 @@ class PhysicsWorld:
             for hull in find_bone_hulls(model)
         ]
         self.object_hulls = sorted(find_bone_hulls(scene.models[self.moving]), key=lambda h: (-h.volume, h.bone))
+        self._pairs = HullPairs([hull for _, hull in self.hulls], self.object_hulls)
         self._shapes = [self._shape(hull) for _, hull in self.hulls]
         self._object_shapes = [self._shape(hull) for hull in self.object_hulls]
         self._block_shape = self._bullet.createCollisionShape(
@@ -92,6 +101,7 @@ class PhysicsWorld:
         self._protocol: Protocol | None = None
         self._corners = np.zeros((0, 3))
         self._object_home: tuple[list[float], list[float]] = [0.0] * 3, [0.0, 0.0, 0.0, 1.0]
+        self._object_R = np.eye(3)
         self.centroid = np.zeros(3)
         self.radius = 0.0
         self._skin = 0.0
@@ -114,7 +124,8 @@ class PhysicsWorld:
         Args:
             posed: Of this world's scene.
             protocol: Materials and time-step of the runs that follow.
-            reach: Leave out still hulls whose bounding sphere is farther than this from the object's, m.
+            reach: Leave out still hulls that are farther than this from the object, m; nothing that is simulated can
+                touch them.
         """
         assert posed.scene is self.scene
         bullet, client = self._bullet, self._client
@@ -129,6 +140,8 @@ class PhysicsWorld:
         )
         bullet.setGravity(*(GRAVITY * self.down), physicsClientId=client)
         self._bodies, self._home, self._moved, self._placed = {}, {}, set(), []
+        if protocol.skin != self._skin:
+            self._set_object_skin(protocol.skin)
         self._protocol, self._skin = protocol, protocol.skin
         Rs, centers = self._poses(posed, [(self.moving, hull) for hull in self.object_hulls])
         weights = np.array([hull.volume for hull in self.object_hulls])
@@ -137,11 +150,13 @@ class PhysicsWorld:
             [c + h.vertices @ R.T for h, R, c in zip(self.object_hulls, Rs, centers, strict=True)]
         )
         self.radius = float(np.linalg.norm(self._corners - self.centroid, axis=1).max())
+        still_Rs, still_centers = self._poses(posed, self.hulls)
+        near = self._pairs.find_near(still_Rs, still_centers, Rs, centers, reach)
         for plane in self.planes:
             self._place_plane(plane, protocol)
-        if self.hulls:
-            self._place_hulls(posed, protocol, reach)
-        self._place_object(Rs, centers, weights * (protocol.mass / weights.sum()), protocol)
+        self._place_hulls(still_Rs, still_centers, np.any(near, axis=1), protocol)
+        is_near = np.any(near, axis=0) | bool(self.planes) | np.isinf(reach)
+        self._place_object(Rs, centers, weights * (protocol.mass / weights.sum()), is_near, protocol)
 
     def find_gaps(self, within: float) -> tuple[Gap, ...]:
         """The still hulls not farther than `within`, m, from the object, as they were placed; nearest first."""
@@ -171,12 +186,14 @@ class PhysicsWorld:
         none = [np.zeros((0, 3))]
         return np.concatenate(corners or none), np.concatenate(normals or none)
 
-    def run(self, shifts: Mapping[int, Array] | None = None, give_up: float = np.inf) -> float:
+    def run(self, shifts: Mapping[int, Array] | None = None, give_up: float = np.inf, calm_below: float = 0.0) -> float:
         """Simulate from where everything was placed; the distance that the object's centroid has moved, m.
 
         Args:
             shifts: Still hulls to set aside first, by how much (3,), world, m.
             give_up: Stop as soon as the centroid is farther off than this, m: it will hardly come back.
+            calm_below: Stop as soon as the object is so slow that it will hardly come as far as this, m; the distance
+                is then what it would come to at that pace. 0 takes all steps.
         """
         assert self._protocol is not None, "place a pose first"
         bullet, client, shifts = self._bullet, self._client, shifts or {}
@@ -189,21 +206,30 @@ class PhysicsWorld:
         position, turn = self._object_home
         bullet.resetBasePositionAndOrientation(self._object, position, turn, physicsClientId=client)
         bullet.resetBaseVelocity(self._object, [0.0] * 3, [0.0] * 3, physicsClientId=client)
-        moved = 0.0
-        for step in range(self._protocol.steps):
+        steps, is_watched = self._protocol.steps, give_up < np.inf or calm_below > 0.0
+        offset, turned = np.zeros(3), np.eye(3)
+        for step in range(1, steps + 1):
             bullet.stepSimulation(physicsClientId=client)
-            if step + 1 == self._protocol.steps or (step % 5 == 4 and give_up < np.inf):
-                moved = self._displacement()
+            if step == steps or (is_watched and step % CHECKED == 0):
+                earlier_offset, earlier_turned = offset, turned
+                offset, turned = self._motion()
+                moved = float(np.linalg.norm(offset))
                 if moved > give_up:
-                    break
-        return moved
+                    return moved
+                ahead = (steps - step) / CHECKED
+                to_come = ahead * float(np.linalg.norm(offset - earlier_offset))
+                to_swing = ahead * self.radius * float(np.linalg.norm(turned - earlier_turned))
+                if step > CHECKED and moved + CAUTION * (to_come + to_swing) < calm_below:
+                    return moved + to_come
+        return float(np.linalg.norm(offset))
 
-    def _displacement(self) -> float:
-        position, turn = self._bullet.getBasePositionAndOrientation(self._object, physicsClientId=self._client)
-        start, start_turn = self._object_home
-        turned = Rotation.from_quat(turn) * Rotation.from_quat(start_turn).inv()
-        now = np.array(position) + turned.apply(self.centroid - np.array(start))
-        return float(np.linalg.norm(now - self.centroid))
+    def _motion(self) -> tuple[Array, Array]:
+        """How the object has moved since it was placed: its centroid (3,), m, and its rotation (3, 3), world."""
+        position, turn_xyzw = self._bullet.getBasePositionAndOrientation(self._object, physicsClientId=self._client)
+        R = np.reshape(self._bullet.getMatrixFromQuaternion(turn_xyzw), (3, 3))
+        turned = R @ self._object_R.T
+        start = np.array(self._object_home[0])
+        return np.array(position) + turned @ (self.centroid - start) - self.centroid, turned
 
     def _shape(self, hull: BoneHull) -> int:
         shape = self._bullet.createCollisionShape(
@@ -226,15 +252,13 @@ class PhysicsWorld:
         center = np.array(plane.point) - BLOCK * normal
         self._add(self._block_shape, center.tolist(), turn.as_quat().tolist(), protocol.static_friction)
 
-    def _place_hulls(self, posed: PosedScene, protocol: Protocol, reach: float) -> None:
-        Rs, centers = self._poses(posed, self.hulls)
-        radii = np.array([np.linalg.norm(hull.vertices, axis=1).max() for _, hull in self.hulls])
-        apart = np.linalg.norm(centers - self.centroid, axis=1) - radii - self.radius
-        quaternions_xyzw = Rotation.from_matrix(Rs).as_quat().tolist()
-        for index in np.flatnonzero(apart <= reach):
-            home = centers[index].tolist(), quaternions_xyzw[index]
-            body = self._add(self._shapes[index], *home, protocol.friction)
-            self._bodies[int(index)], self._home[int(index)] = body, home
+    def _place_hulls(self, Rs: Array, centers: Array, is_near: npt.NDArray[np.bool_], protocol: Protocol) -> None:
+        chosen = np.flatnonzero(is_near)
+        turns_xyzw = Rotation.from_matrix(Rs[chosen]).as_quat().tolist() if len(chosen) else []
+        for index, turn_xyzw in zip(chosen.tolist(), turns_xyzw, strict=True):
+            home = centers[index].tolist(), turn_xyzw
+            self._bodies[index] = self._add(self._shapes[index], *home, protocol.friction)
+            self._home[index] = home
 
     def _add(self, shape: int, position: list[float], turn_xyzw: list[float], friction: float) -> int:
         bullet, client = self._bullet, self._client
@@ -250,41 +274,57 @@ class PhysicsWorld:
         self._placed.append(body)
         return body
 
-    def _place_object(self, Rs: Array, centers: Array, masses: Array, protocol: Protocol) -> None:
-        """One body; the hulls but the first hang on it by fixed joints."""
-        bullet, client, links = self._bullet, self._client, len(centers) - 1
-        relative = np.einsum("ji,njk->nik", Rs[0], Rs[1:])
-        offsets = (centers[1:] - centers[0]) @ Rs[0]
+    def _place_object(
+        self, Rs: Array, centers: Array, masses: Array, is_near: npt.NDArray[np.bool_], protocol: Protocol
+    ) -> None:
+        """One body; hulls hang on its base by fixed joints."""
+        bullet, client = self._bullet, self._client
+        body = build_moving_body(self.object_hulls, Rs, centers, masses, is_near)
+        links, count = list(body.links), len(body.links)
+        relative = np.einsum("ji,njk->nik", body.R, Rs[links])
+        offsets = (centers[links] - body.center) @ body.R
         turns = Rotation.from_matrix(relative).as_quat().tolist() if links else []
-        self._object_home = centers[0].tolist(), Rotation.from_matrix(Rs[0]).as_quat().tolist()
+        self._object_home = body.center.tolist(), Rotation.from_matrix(body.R).as_quat().tolist()
+        self._object_R = body.R
         self._object = bullet.createMultiBody(
-            float(masses[0]),
-            self._object_shapes[0],
+            body.mass,
+            -1 if body.base < 0 else self._object_shapes[body.base],
             -1,
             *self._object_home,
-            linkMasses=masses[1:].tolist(),
-            linkCollisionShapeIndices=self._object_shapes[1:],
-            linkVisualShapeIndices=[-1] * links,
+            linkMasses=masses[links].tolist(),
+            linkCollisionShapeIndices=[self._object_shapes[link] for link in links],
+            linkVisualShapeIndices=[-1] * count,
             linkPositions=offsets.tolist(),
             linkOrientations=turns,
-            linkInertialFramePositions=[[0.0] * 3] * links,
-            linkInertialFrameOrientations=[[0.0, 0.0, 0.0, 1.0]] * links,
-            linkParentIndices=[0] * links,
-            linkJointTypes=[bullet.JOINT_FIXED] * links,
-            linkJointAxis=[[0.0, 0.0, 1.0]] * links,
+            linkInertialFramePositions=[[0.0] * 3] * count,
+            linkInertialFrameOrientations=[[0.0, 0.0, 0.0, 1.0]] * count,
+            linkParentIndices=[0] * count,
+            linkJointTypes=[bullet.JOINT_FIXED] * count,
+            linkJointAxis=[[0.0, 0.0, 1.0]] * count,
             physicsClientId=client,
         )
         self._placed.append(self._object)
-        for link, (hull, mass) in enumerate(zip(self.object_hulls, masses.tolist(), strict=True), start=-1):
+        inertias = [body.inertia, *(masses[link] * self.object_hulls[link].inertia_per_mass for link in links)]
+        for link, inertia in enumerate(inertias, start=-1):
             # Said outright: what Bullet works out itself depends on the skin that the shape happened to have before.
             bullet.changeDynamics(
                 self._object,
                 link,
-                localInertiaDiagonal=(mass * hull.inertia_per_mass).tolist(),
+                localInertiaDiagonal=inertia.tolist(),
                 lateralFriction=protocol.friction,
                 restitution=protocol.restitution,
                 linearDamping=0.0,
                 angularDamping=0.0,
-                collisionMargin=self._skin,
                 physicsClientId=client,
             )
+
+    def _set_object_skin(self, skin: float) -> None:
+        """Give the object's shapes a skin, each as the base of a body of its own.
+
+        Bullet takes a skin for the base of a body only; asked for a link's, it applies all of that call to the base.
+        """
+        bullet, client = self._bullet, self._client
+        for shape in self._object_shapes:
+            body = bullet.createMultiBody(0.0, shape, physicsClientId=client)
+            bullet.changeDynamics(body, -1, collisionMargin=skin, physicsClientId=client)
+            bullet.removeBody(body, physicsClientId=client)

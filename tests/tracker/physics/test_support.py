@@ -7,7 +7,7 @@ import pytest
 
 from tests.tracker.grips import PINCH, cube, gripped
 from tracker.model.default_hand import default_hand
-from tracker.physics import Contact, PhysicsWorld, SupportOptions, find_part_bones, find_support
+from tracker.physics import SEARCH, Contact, PhysicsWorld, SupportOptions, find_part_bones, find_support
 from tracker.physics.support import rank_combinations
 
 AROUND = ([1, 0, 0], [-1, 0.1, 0], [0.5, 0.1, 0.85], [0.5, 0, -0.85])
@@ -76,6 +76,27 @@ def gripped_elsewhere(posed):
     pose = posed.pose.copy()
     pose[6:10] += 0.02
     return posed.scene.pose_at(pose)
+
+
+def test_what_is_likely_is_tried_first_and_kept_if_it_holds():
+    posed = gripped((*PINCH, [0, 0, 1], [0, 0, -1]), (0.004, 0.004, 0.005, 0.005))
+    with PhysicsWorld(posed.scene) as world:
+        alone = find_support(world, posed)
+        other = tuple(contact for contact in alone.candidates if contact not in alone.contacts)
+        assert len(alone.contacts) == len(other) == 2
+        support = find_support(world, posed, likely=other)
+        assert support.simulated == 1 and set(support.contacts) == set(other)
+        hopeless = (alone.contacts[0], other[0])
+        assert find_support(world, posed, likely=hopeless).held_displacement < 0.003
+
+
+def test_what_nothing_is_near_falls_freely_and_is_not_simulated():
+    posed = gripped(PINCH, (0.1, 0.1))
+    with PhysicsWorld(posed.scene) as world:
+        support = find_support(world, posed)
+        world.place(posed, SEARCH)
+        assert support.displacement == pytest.approx(world.run(), rel=1e-3)
+    assert not support.is_stable and support.contacts == () and support.candidates == ()
 
 
 def test_a_hand_supports_with_its_fingers_only():

@@ -109,6 +109,56 @@ def test_an_articulated_object_falls_and_rests_as_one_body():
         assert simulate(world, posed, SEARCH) < 0.003
 
 
+def test_a_rope_that_hangs_on_a_fingertip_moves_the_same_whether_its_far_bones_have_shapes_or_not():
+    scene = Scene((gripped(PINCH, (0.1, 0.1)).scene.models[0], tube(bones=6, rings=25)))
+    pose = scene.rest_pose()
+    pose[scene.pose_slices[1].start + 6 :] = 0.2
+    start, short = scene.pose_at(pose), Protocol("short", time_step=1.0 / 240.0, steps=12)
+    hand = scene.models[0].hand
+    assert hand is not None
+    tip = start.vertices[hand.finger_parts["thumb_distal"]].mean(axis=0)
+    for bone in (0, 5):  # an end of the rope lies on a fingertip; the rest swings down
+        of_bone = np.argmax(scene.models[1].skinning_weights, axis=1) == bone
+        end = start.vertices[scene.vertex_slices[1]][of_bone].mean(axis=0)
+        moved = pose.copy()
+        moved[scene.pose_slices[0].start : scene.pose_slices[0].start + 3] += end - tip + [0.0, 0.016, 0.0]
+        posed = scene.pose_at(moved)
+        with PhysicsWorld(scene) as world:
+            world.place(posed, short)
+            every = world.run()
+            world.place(posed, short, reach=0.03)
+            near = world.run()
+            assert near == pytest.approx(every, rel=0.01) and near < 0.9 * short.free_fall
+
+
+@pytest.mark.parametrize("protocol", [SD_OBMAN, SEARCH], ids=lambda p: p.name)
+def test_every_bone_of_an_object_has_the_materials_of_the_protocol(protocol):
+    scene = Scene((gripped(PINCH, (0.1, 0.1)).scene.models[0], tube(bones=4, rings=17)))
+    posed = scene.pose_at(scene.rest_pose())
+    with PhysicsWorld(scene) as world:
+        world.place(posed, protocol)
+        bullet, client, body = world._bullet, world._client, world._object
+        links = range(-1, bullet.getNumJoints(body, physicsClientId=client))
+        found = [bullet.getDynamicsInfo(body, link, physicsClientId=client) for link in links]
+        weights = np.array([hull.volume for hull in world.object_hulls])
+        assert len(found) == 4
+        for info, hull, mass in zip(found, world.object_hulls, weights / weights.sum(), strict=True):
+            assert info[0] == pytest.approx(mass) and info[1] == protocol.friction and info[5] == protocol.restitution
+            np.testing.assert_allclose(info[2], mass * hull.inertia_per_mass, rtol=1e-9)
+            assert info[11] == protocol.skin
+
+
+def test_an_early_end_says_what_all_steps_say():
+    for gaps in ((0.0, 0.0), (0.0008, -0.0005), (0.001, 0.1), (0.1, 0.1)):
+        posed = gripped(PINCH, gaps)
+        with PhysicsWorld(posed.scene) as world:
+            world.place(posed, SEARCH)
+            all_steps, early = world.run(), world.run(give_up=0.03, calm_below=0.003)
+            assert (early < 0.003) == (all_steps < 0.003)
+            if all_steps < 0.003:
+                assert early == pytest.approx(all_steps, abs=0.0005)
+
+
 def test_closed_worlds_give_their_clients_back():
     posed = gripped(PINCH, (0.0, 0.0))
     clients = set()

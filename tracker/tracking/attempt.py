@@ -11,32 +11,32 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.observation import Observation, observe
 from tracker.terms.data_to_surface import DataToSurface
+from tracker.terms.joint_prior import Regularization
 from tracker.terms.model_to_data import ModelToData
-from tracker.tracking.depth_range import depth_range
-from tracker.tracking.finger_search import search_fingers
+from tracker.tracking.finger_search import search_fingers, swap_fingers
 from tracker.tracking.frame_fit import Fit, FitOptions, draw, fit_frame
-from tracker.tracking.leave_out import leave_out
 from tracker.tracking.object_quality import ObjectQuality, measure_object_quality
 from tracker.tracking.objective import Objective
 from tracker.tracking.quality import Quality, measure_quality
 from tracker.tracking.region import region_around
 from tracker.tracking.setup import TrackSetup
-from tracker.tracking.start_automatic import find_hand
-from tracker.tracking.tools import Tools
 
 Array = npt.NDArray[np.float64]
 
 MIN_PIXELS = 60
 """Fewer hand pixels than this near the expected place mean that the hand is gone."""
 
+FINGER_ROUNDS = 2
+"""Searches of single fingers, each with fits after it; a finger that is in another's place must wait for that one."""
+
 SCORED_PIXELS = 1500
 """About so many hand pixels are enough to compare bends of a finger by."""
 
-WIDE = {
-    "model_to_data": ModelToData(max_distance=0.025, max_angle=60.0),
-    "data_to_surface": DataToSurface(max_distance=0.025),
-}
-"""Terms with longer reach, for the second try."""
+FAR_REACH, WIDE_REACH = 0.040, 0.025
+"""Greatest distance of a correspondence, m: where a hand's place is in doubt, and where only its fingers are."""
+
+UNSETTLED = 4e-5
+"""A misfit above this area, m², is worth another try: a fingertip is about twice as large."""
 
 
 @dataclass(frozen=True)
@@ -49,28 +49,98 @@ class Attempt:
     objects: dict[int, ObjectQuality]
 
     @property
+    def worst(self) -> int:
+        """The hand that is worst explained."""
+        return min(self.qualities, key=lambda hand: (not self.qualities[hand].is_lost, self.qualities[hand].score))
+
+    @property
     def quality(self) -> Quality:
         """Of the hand that is worst explained."""
-        return min(self.qualities.values(), key=lambda quality: quality.score)
+        return self.qualities[self.worst]
+
+    @property
+    def lost(self) -> tuple[int, ...]:
+        """Hands that nobody should believe."""
+        return tuple(index for index, quality in self.qualities.items() if quality.is_lost)
+
+    @property
+    def worth(self) -> float:
+        """To compare attempts at the same scene by: the score of all hands."""
+        return sum(quality.score for quality in self.qualities.values())
+
+    @property
+    def misfit(self) -> float:
+        """Of the hand that has most, m²."""
+        return max(quality.misfit for quality in self.qualities.values())
 
 
 def try_again(
     setup: TrackSetup, seen: Observation, start: Array, objective: Objective, guided: Objective, options: FitOptions
 ) -> Attempt:
-    """A search of single fingers, a fit with longer reach and `guided` by fingertips, and the usual fit from there."""
-    scene, pose = setup.scene, start
+    """Fits with longer reach, stiff and then with fingers; if that leaves something, other places of fingers.
+
+    Args:
+        setup: Models and options.
+        seen: The frame.
+        start: (D,) pose to start from.
+        objective: For the last fit.
+        guided: The same with the frame's fingertips, for the fits with longer reach.
+        options: Of the last fit.
+    """
+    far = FitOptions(iterations=options.iterations, damping=1e-2, max_turn=0.25, max_shift=0.02)
+    stiff = replace(_reaching(guided, FAR_REACH), regularization=Regularization(2.0))
+    pose = fit_frame(setup.scene, seen, start, start, stiff, far).pose
+    pose = fit_frame(setup.scene, seen, pose, pose, _reaching(guided, FAR_REACH), far).pose
+    best = attempt_fit(setup, seen, pose, pose, objective, options)
+    wide = _reaching(guided, WIDE_REACH)
+
+    def try_from(pose: Array) -> Attempt:
+        pose = fit_frame(setup.scene, seen, pose, pose, wide, far).pose
+        other = attempt_fit(setup, seen, pose, pose, objective, options)
+        return other if other.worth > best.worth else best
+
+    for _ in range(FINGER_ROUNDS):
+        before = best
+        for pose in _swap_fingers(setup, before):
+            best = try_from(pose)
+        if best.misfit > UNSETTLED:
+            best = try_from(_bend_fingers(setup, seen, best.pose))
+        if best.misfit < UNSETTLED or best is before:
+            break
+    return best
+
+
+def _swap_fingers(setup: TrackSetup, attempt: Attempt) -> list[Array]:
+    """Poses (D,) with two neighbouring fingers swapped, of hands that leave something."""
+    poses = []
+    for index, quality in attempt.qualities.items():
+        if quality.misfit > UNSETTLED:
+            first_dof = setup.scene.pose_slices[index].start
+            poses += swap_fingers(attempt.pose, first_dof, setup.models[index])
+    return poses
+
+
+def _reaching(objective: Objective, reach: float) -> Objective:
+    """The objective with correspondences as far as `reach`, m."""
+    wide = {
+        "model_to_data": ModelToData(max_distance=reach, max_angle=60.0),
+        "data_to_surface": DataToSurface(max_distance=reach),
+    }
+    return replace(objective, terms={**objective.terms, **wide})
+
+
+def _bend_fingers(setup: TrackSetup, seen: Observation, pose: Array) -> Array:
+    """The pose with every finger in turn at the best of a few bends."""
+    scene = setup.scene
     thin = seen.thin(max(1, round((seen.hand_count / SCORED_PIXELS) ** 0.5)))
     for index, (model, where) in enumerate(zip(setup.models, scene.pose_slices, strict=True)):
-        if model.hand:
+        if model.hand is not None:
 
             def score(trial: Array, index: int = index) -> float:
                 return measure_quality(draw(scene.pose_at(trial), thin), thin, index).score
 
             pose = search_fingers(pose, where.start, model, score)
-    wide = replace(guided, terms={**guided.terms, **WIDE})
-    far = FitOptions(iterations=options.iterations, damping=1e-2, max_turn=0.25, max_shift=0.02)
-    pose = fit_frame(scene, seen, pose, pose, wide, far).pose
-    return attempt_fit(setup, seen, pose, pose, objective, options)
+    return pose
 
 
 def attempt_fit(
@@ -83,34 +153,12 @@ def attempt_fit(
     return Attempt(fit.pose, {index: measure_quality(view, seen, index) for index in hands}, fit, objects)
 
 
-def look(frame: Frame, camera: Camera, setup: TrackSetup, pose: Array) -> Observation | None:
+def look(
+    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, min_pixels: int = MIN_PIXELS
+) -> Observation | None:
+    """What is seen around a pose (D,); None where it is out of sight or too few hand pixels are."""
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
         return None
     seen = observe(frame, camera, region, setup.preprocessing)
-    return seen if seen.hand_count >= MIN_PIXELS else None
-
-
-def find_again(
-    frame: Frame, camera: Camera, setup: TrackSetup, tools: Tools, last: Array, attempt: Attempt | None
-) -> Attempt | None:
-    """Look for every hand that is lost, or failing that for the worst, in what the rest of the scene leaves over."""
-    near, far = depth_range(frame)
-    pose = (last if attempt is None else attempt.pose).copy()
-    hands = [index for index, model in enumerate(setup.models) if model.hand]
-    qualities = {} if attempt is None else attempt.qualities
-    wanted = [index for index in hands if index not in qualities or qualities[index].is_lost]
-    kept = [index for index in range(len(setup.models)) if index not in wanted]
-    for index in wanted or [min(hands, key=lambda hand: qualities[hand].score)]:
-        others = [other for other in kept if other != index]
-        rest = leave_out(frame, camera, setup.scene, pose, others)
-        found = find_hand(rest, camera, setup.models[index], setup.preprocessing, near, far)
-        if found is None or found.quality.is_lost:
-            return None
-        pose[setup.scene.pose_slices[index]] = found.pose
-        kept.append(index)
-    seen = look(frame, camera, setup, pose)
-    if seen is None:
-        return None
-    again = attempt_fit(setup, seen, pose, pose, tools.objective, FitOptions(iterations=setup.options.iterations))
-    return None if again.quality.is_lost else again
+    return seen if seen.hand_count >= min_pixels else None

@@ -49,6 +49,33 @@ def search_fingers(pose: Array, first_dof: int, model: ArticulatedModel, score: 
     return best
 
 
+def swap_fingers(pose: Array, first_dof: int, model: ArticulatedModel) -> list[Array]:
+    """Poses (D,) with two neighbouring fingers each bent as the other is, neither to its side.
+
+    A finger that has taken its neighbour's place leaves that one only its own; descent cannot undo that.
+
+    Args:
+        pose: (D,) of the scene.
+        first_dof: Where the model's parameters begin in the pose.
+        model: The hand.
+    """
+    far = _farther_limit(model)
+    poses = []
+    for finger in range(1, len(FINGERS) - 1):
+        swapped = pose.copy()
+        old = pose[first_dof + 6 : first_dof + model.num_dofs]
+        new = swapped[first_dof + 6 : first_dof + model.num_dofs]
+        for one, other in ((finger, finger + 1), (finger + 1, finger)):
+            every, *bends, _ = _finger_dofs(model, one)
+            _, *others, _ = _finger_dofs(model, other)
+            new[every] = 0.0
+            for own, taken in zip(bends, others, strict=True):
+                if len(own) == len(taken):
+                    new[own] = old[taken] / far[taken] * far[own]
+        poses.append(swapped)
+    return poses
+
+
 def curl_fingers(model: ArticulatedModel, share: float) -> Array:
     """(K,) joint angles with every joint of a wide range at a share of its farther limit, rad."""
     return np.where(_is_wide(model), share * _farther_limit(model), 0.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from time import perf_counter
 
 import cv2
@@ -12,11 +13,14 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
-from tracker.tracking.attempt import Attempt, attempt_fit, find_again, look, try_again
+from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look, try_again
 from tracker.tracking.chunk import TrackChunk
+from tracker.tracking.find_again import find_again
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.frame_result import FrameResult
 from tracker.tracking.hold import hold_object
+from tracker.tracking.object_quality import ObjectQuality
+from tracker.tracking.part import Part
 from tracker.tracking.quality import Quality
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.start_annotated import with_marks
@@ -38,14 +42,15 @@ SCORE_GAIN = 0.02
 DOUBTFUL = 0.25
 """With this share of hand pixels unexplained the whole image is searched, now and then."""
 
-FINGER_REST = 4
-"""Frames to wait after a search of fingers in vain."""
-
+FIRST_FINGER_REST, LAST_FINGER_REST = 4, 64
 FIRST_IMAGE_REST, LAST_IMAGE_REST = 15, 120
-"""Frames to wait after a search of the image in vain: the first time, and at most; the wait doubles each time."""
+"""Frames to wait after a search in vain, of fingers or of the image: the first time, and at most; the wait doubles each
+time."""
 
 SCORE_MEMORY = 0.9
 """Share of the running score kept from frame to frame."""
+
+Rest = tuple[int, int, int, int]
 
 
 def track_frames(
@@ -83,45 +88,95 @@ def follow_frame(
     read_at = perf_counter()
     frame, camera = setup.read(sequence, state.next_frame)
     started = perf_counter()
-    attempt, rest, stages = _follow(frame, camera, setup, tools, state)
+    lost = _lost_before(setup, state)
+    attempt, rest, stages = _follow(frame, camera, Part.without(setup, lost), tools, state)
+    falling = _fallen(setup, attempt, lost)
     status = "ok"
-    if attempt is None or attempt.quality.is_lost:
-        found = find_again(frame, camera, setup, tools, state.pose, attempt) if recover else None
-        attempt, status = (found, "recovered") if found else (attempt, "lost")
+    if falling or attempt is None:
+        searched_at = perf_counter()
+        attempt, status, falling = _catch(frame, camera, setup, tools, state, attempt, falling, recover)
+        stages["searching the image"] = perf_counter() - searched_at
     elif recover and rest[1] == 0 and _is_doubtful(attempt.quality, state):
         searched_at = perf_counter()
-        found = find_again(frame, camera, setup, tools, state.pose, attempt)
-        is_better = found is not None and found.quality.merit > attempt.quality.merit + SCORE_GAIN
-        attempt, status = (found, "recovered") if found and is_better else (attempt, "ok")
+        found = find_again(frame, camera, setup, tools, attempt.pose, (attempt.worst,))
+        is_better = found is not None and not found[1] and found[0].worth > attempt.worth + SCORE_GAIN
+        attempt, status = (found[0], "recovered") if found and is_better else (attempt, "ok")
         longer = 0 if is_better else min(max(FIRST_IMAGE_REST, 2 * rest[2]), LAST_IMAGE_REST)
-        rest = (rest[0], longer, longer)
+        rest = (rest[0], longer, longer, rest[3])
         stages["searching the image"] = perf_counter() - searched_at
-    is_followed = status == "ok" and not state.is_lost
-    is_lost = status == "lost" or attempt is None
-    pose = state.pose if is_lost or attempt is None else attempt.pose
-    known = None if is_lost or attempt is None else attempt.objects
-    pose, objects = watch_objects(frame, camera, setup, pose, known, recover)
+    pose = state.pose if attempt is None else attempt.pose
+    pose, objects = watch_objects(frame, camera, setup, pose, _known_objects(attempt, falling), recover)
     seconds = perf_counter() - started
     stages["reading"] = started - read_at
-    earlier = state.pose if is_followed else pose
     next_state = TrackState(
         state.next_frame + 1,
         pose,
-        stop_unseen(setup, pose, earlier, objects),
+        stop_unseen(setup, pose, _earlier(setup, state, pose, status, (*lost, *falling)), objects),
         _running_score(state, attempt, status),
-        is_lost,
+        bool(falling),
         rest,
+        falling,
     )
     return next_state, FrameResult(
         state.next_frame,
         pose,
         status,
         seconds,
-        None if attempt is None else attempt.quality,
+        attempt.quality if attempt is not None and attempt.qualities else None,
         () if attempt is None else attempt.fit.costs,
         stages,
         tuple(objects),
     )
+
+
+def _hands(setup: TrackSetup) -> tuple[int, ...]:
+    return tuple(index for index, model in enumerate(setup.models) if model.hand is not None)
+
+
+def _lost_before(setup: TrackSetup, state: TrackState) -> tuple[int, ...]:
+    """Hands that were lost in the last frame."""
+    return (state.lost_hands or _hands(setup)) if state.is_lost else ()
+
+
+def _fallen(setup: TrackSetup, attempt: Attempt | None, lost: tuple[int, ...]) -> tuple[int, ...]:
+    """Hands that are lost now: those that were, and those that nobody should believe."""
+    return _hands(setup) if attempt is None else tuple(sorted({*lost, *attempt.lost}))
+
+
+def _catch(
+    frame: Frame,
+    camera: Camera,
+    setup: TrackSetup,
+    tools: Tools,
+    state: TrackState,
+    attempt: Attempt | None,
+    falling: tuple[int, ...],
+    recover: bool,
+) -> tuple[Attempt | None, str, tuple[int, ...]]:
+    """Follow the rest of the scene without hands that are lost, and look for them: attempt, status, still lost."""
+    if attempt is not None and attempt.lost:  # a hand that is not there has pulled at the others
+        attempt = _follow(frame, camera, Part.without(setup, falling), tools, state)[0]
+        falling = _fallen(setup, attempt, falling)
+    if recover:
+        pose = state.pose if attempt is None else attempt.pose
+        found = find_again(frame, camera, setup, tools, pose, falling)
+        if found is not None:
+            return found[0], "lost" if found[1] else "recovered", found[1]
+    return attempt, "lost", falling
+
+
+def _known_objects(attempt: Attempt | None, lost: tuple[int, ...]) -> dict[int, ObjectQuality] | None:
+    """Quality of each object, where no lost hand stands before it."""
+    return None if attempt is None or lost else attempt.objects
+
+
+def _earlier(setup: TrackSetup, state: TrackState, pose: Array, status: str, lost: tuple[int, ...]) -> Array:
+    """The pose (D,) before, to predict from; what was not followed from there is at rest."""
+    earlier = pose if status == "recovered" else state.pose
+    earlier = earlier.copy()
+    for index in lost:
+        earlier[setup.scene.pose_slices[index]] = pose[setup.scene.pose_slices[index]]
+    return earlier
 
 
 def _is_doubtful(quality: Quality, state: TrackState) -> bool:
@@ -138,16 +193,17 @@ def _running_score(state: TrackState, attempt: Attempt | None, status: str) -> f
 
 
 def _follow(
-    frame: Frame, camera: Camera, setup: TrackSetup, tools: Tools, state: TrackState
-) -> tuple[Attempt | None, tuple[int, int, int], dict[str, float]]:
-    """Fit from the predicted pose, and again after a search of fingers if that left something unexplained."""
+    frame: Frame, camera: Camera, part: Part, tools: Tools, state: TrackState
+) -> tuple[Attempt | None, Rest, dict[str, float]]:
+    """Fit a part of the scene from the predicted pose, and try again if that left something unexplained."""
     stages: dict[str, float] = {}
-    rest = (max(0, state.rest[0] - 1), max(0, state.rest[1] - 1), state.rest[2])
-    if state.is_lost:
+    rest = (max(0, state.rest[0] - 1), max(0, state.rest[1] - 1), *state.rest[2:])
+    if not part.kept:
         return None, rest, stages
-    predicted = state.predict(setup.scene)
+    setup, previous = part.setup, part.take(state.pose)
+    predicted = replace(state, pose=previous, earlier_pose=part.take(state.earlier_pose)).predict(setup.scene)
     started = perf_counter()
-    seen = look(frame, camera, setup, predicted)
+    seen = look(frame, camera, setup, predicted, MIN_PIXELS if part.has_hand else 0)
     stages["observing"] = perf_counter() - started
     if seen is None:
         return None, rest, stages
@@ -157,21 +213,26 @@ def _follow(
     objective = tools.objective
     if is_first:
         objective = with_marks(objective, setup.scene, setup.names, setup.marks, camera)
-    best = attempt_fit(setup, seen, predicted, state.pose, objective, options)
+    best = attempt_fit(setup, seen, predicted, previous, objective, options)
     stages |= best.fit.stages
-    is_falling = best.quality.is_lost or best.quality.score < state.score - SCORE_DROP
-    if is_falling or (best.quality.explained < 1.0 - UNEXPLAINED and rest[0] == 0):
-        started = perf_counter()
-        before = best.quality.score
-        guided = tools.with_fingertips(seen)
-        for start in (state.pose, best.pose) if is_falling else (best.pose,):
-            other = try_again(setup, seen, start, objective, guided, options)
-            if other.quality.score > best.quality.score:
-                best = other
-        rest = (0 if best.quality.score > before + SCORE_GAIN else FINGER_REST, *rest[1:])
-        stages["second try"] = perf_counter() - started
-    if tools.world is not None:
-        started = perf_counter()
-        best = hold_object(setup, tools, seen, objective, state, best, options)
-        stages["physics"] = perf_counter() - started
-    return best, rest, stages
+    if best.qualities:
+        is_falling = bool(best.lost) or best.quality.score < state.score - SCORE_DROP
+        is_unsettled = best.quality.explained < 1.0 - UNEXPLAINED or best.misfit > UNSETTLED
+        if is_falling or (is_unsettled and rest[0] == 0):
+            started = perf_counter()
+            first = best
+            guided, again = tools.with_fingertips(seen), replace(options, iterations=setup.options.iterations)
+            for start in (previous, best.pose) if is_falling else (best.pose,):
+                other = try_again(setup, seen, start, objective, guided, again)
+                best = other if other.worth > best.worth else best
+                if best.misfit < UNSETTLED:
+                    break
+            is_better = best.misfit < UNSETTLED or best.worth > first.worth + SCORE_GAIN
+            longer = 0 if is_better else min(max(FIRST_FINGER_REST, 2 * rest[3]), LAST_FINGER_REST)
+            rest = (longer, *rest[1:3], longer)
+            stages["second try"] = perf_counter() - started
+        if tools.world is not None and setup is part.whole:
+            started = perf_counter()
+            best = hold_object(setup, tools, seen, objective, state, best, options)
+            stages["physics"] = perf_counter() - started
+    return part.widen(best, state.pose), rest, stages

@@ -24,9 +24,10 @@ class TrackState:
         pose: (D,) of the last frame.
         earlier_pose: (D,) of the frame before; equal to `pose` where there is none.
         score: Running quality score of good frames.
-        is_lost: Whether the hand was lost in the last frame.
-        rest: Frames until bends of fingers, and until the whole image, are searched again after a search in vain, and
-            how long the last rest from searching the image was.
+        is_lost: Whether a hand was lost in the last frame.
+        lost_hands: Which, indices of the scene's models; none though one is lost means all.
+        rest: Frames until fingers, and until the whole image, are searched again after a search in vain, how long the
+            last rest from searching the image was, and the last from searching fingers.
     """
 
     next_frame: int
@@ -34,7 +35,8 @@ class TrackState:
     earlier_pose: Array
     score: float = 0.0
     is_lost: bool = False
-    rest: tuple[int, int, int] = (0, 0, 0)
+    rest: tuple[int, int, int, int] = (0, 0, 0, 0)
+    lost_hands: tuple[int, ...] = ()
 
     def predict(self, scene: Scene) -> Array:
         """(D,) the pose if roots go on as they moved last; joint angles are kept.
@@ -59,18 +61,22 @@ class TrackState:
                 "score": np.array(self.score),
                 "is_lost": np.array(self.is_lost),
                 "rest": np.array(self.rest),
+                "lost_hands": np.array(self.lost_hands, dtype=np.int64),
             },
         )
 
     @classmethod
     def load(cls, path: Path) -> TrackState:
         """Read what `save` wrote."""
-        arrays = load_arrays(path, ("next_frame", "pose", "earlier_pose", "score", "is_lost", "rest"))
+        names = ("next_frame", "pose", "earlier_pose", "score", "is_lost", "rest")
+        arrays = load_arrays(path, names, optional=("lost_hands",))
+        rest = [int(frames) for frames in arrays["rest"]]
         return cls(
             int(arrays["next_frame"]),
             arrays["pose"],
             arrays["earlier_pose"],
             float(arrays["score"]),
             bool(arrays["is_lost"]),
-            (int(arrays["rest"][0]), int(arrays["rest"][1]), int(arrays["rest"][2])),
+            (rest[0], rest[1], rest[2], rest[3] if len(rest) > 3 else 0),
+            tuple(int(hand) for hand in arrays.get("lost_hands", ())),
         )

@@ -1,0 +1,111 @@
+"""Look for hands that are lost: near their last place, then in the whole image."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.observation import HAND, observe
+from tracker.tracking.attempt import UNSETTLED, Attempt, attempt_fit, look, try_again
+from tracker.tracking.depth_range import depth_range
+from tracker.tracking.frame_fit import FitOptions
+from tracker.tracking.leave_out import leave_out
+from tracker.tracking.part import Part
+from tracker.tracking.region import whole_image
+from tracker.tracking.setup import TrackSetup
+from tracker.tracking.start_automatic import Found, find_hand
+from tracker.tracking.tools import Tools
+
+Array = npt.NDArray[np.float64]
+
+COARSE = 4
+"""Every so many pixels are looked at to see whether there is anything left to search."""
+
+MIN_AREA = 1e-3
+"""Less hand than this, m², is left over by an outline or shows a fingertip, not a hand."""
+
+
+def find_again(
+    frame: Frame, camera: Camera, setup: TrackSetup, tools: Tools, pose: Array, lost: tuple[int, ...]
+) -> tuple[Attempt, tuple[int, ...]] | None:
+    """The scene with lost hands where they were found, and the hands still lost; None if none was found.
+
+    Args:
+        frame: Undistorted.
+        camera: Its camera.
+        setup: Models and options.
+        tools: Of the run.
+        pose: (D,) of the other models; of the lost hands where they were last.
+        lost: Indices of the hands.
+    """
+    if not _is_hand_left(frame, camera, setup, pose, lost):
+        return None
+    near_by = _settle(frame, camera, setup, tools, pose, ())
+    if near_by is not None and not near_by.lost:
+        return near_by, ()
+    found_pose, missing = _search(frame, camera, setup, pose, lost)
+    for still in dict.fromkeys((missing, *((*missing, index) for index in lost if index not in missing))):
+        if len(still) == len(lost):
+            break
+        attempt = _settle(frame, camera, setup, tools, found_pose, still)
+        if attempt is not None and not attempt.lost:
+            return attempt, still
+    return None
+
+
+def _is_hand_left(frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, lost: tuple[int, ...]) -> bool:
+    """Whether the other models leave enough hand pixels for one of those that are lost."""
+    others = [index for index in range(len(setup.models)) if index not in lost]
+    rest = leave_out(frame, camera, setup.scene, pose, others)
+    how = replace(setup.preprocessing, bilateral_diameter=0, objects=False)
+    seen = observe(rest, camera, whole_image(camera, *depth_range(frame)), how, COARSE)
+    depths = seen.depth[(seen.labels & HAND) > 0].astype(np.float64)
+    return float(np.sum(depths**2)) / (seen.K[0, 0] * seen.K[1, 1]) > MIN_AREA
+
+
+def _search(
+    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, lost: tuple[int, ...]
+) -> tuple[Array, tuple[int, ...]]:
+    """The pose with hands where a search of the whole image puts them, and those of which there is no trace.
+
+    The hand that is found best comes first; what it explains is not looked at again.
+    """
+    near, far = depth_range(frame)
+    pose, missing = pose.copy(), list(lost)
+    while missing:
+        others = [index for index in range(len(setup.models)) if index not in missing]
+        rest = leave_out(frame, camera, setup.scene, pose, others)
+        candidates: dict[int, Found] = {}
+        for index in missing:
+            found = find_hand(rest, camera, setup.models[index], setup.preprocessing, near, far)
+            if found is not None and found.quality.agrees:
+                candidates[index] = found
+        if not candidates:
+            break
+        best = max(candidates, key=lambda index: candidates[index].quality.merit)
+        pose[setup.scene.pose_slices[best]] = candidates[best].pose
+        missing.remove(best)
+    return pose, tuple(missing)
+
+
+def _settle(
+    frame: Frame, camera: Camera, setup: TrackSetup, tools: Tools, pose: Array, missing: tuple[int, ...]
+) -> Attempt | None:
+    """Fit the scene without the missing hands from a pose (D,), and once more where that leaves something."""
+    part = Part.without(setup, missing)
+    start = part.take(pose)
+    seen = look(frame, camera, part.setup, start)
+    if seen is None:
+        return None
+    options = FitOptions(iterations=setup.options.iterations)
+    attempt = attempt_fit(part.setup, seen, start, start, tools.objective, options)
+    if attempt.misfit > UNSETTLED:
+        guided = tools.with_fingertips(seen)
+        for again in (start, attempt.pose):
+            other = try_again(part.setup, seen, again, tools.objective, guided, options)
+            attempt = other if other.worth > attempt.worth else attempt
+    return part.widen(attempt, pose)

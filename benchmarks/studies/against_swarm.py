@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.studies.twin_runs import Twin, render_twin, start_twin
+from benchmarks.studies.twin_runs import Twin, find_first_motion, render_twin, start_twin
 from tracker.baselines import SwarmOptions, track_with_swarm
 from tracker.evaluation import compute_statistics, evaluate_against_truth
 from tracker.tracking.chunk import TrackChunk
@@ -21,7 +21,7 @@ from tracker.tracking.track import join_chunks
 
 @dataclass(frozen=True)
 class AgainstSwarm:
-    """The first frames of a twin, followed by ours and by swarms.
+    """The first frames of a twin in which something moves, followed by ours and by swarms.
 
     The swarm starts where ours is after the first frame. At equal time it stops, on every frame, after the median time
     that ours took in this run.
@@ -47,9 +47,9 @@ class AgainstSwarm:
     def __call__(self, data: Path, twins: Path) -> dict[str, Any]:
         """Track and compare: a row for ours and one for each swarm."""
         twin = render_twin(data, twins, self.sequence, None, self.step, self.seed)
-        options = TrackOptions(terms="LO+SC", calibrate=False)
-        setup, state = start_twin(twin, options)
-        frames = range(min(self.tracked, twin.sequence.frame_count))
+        first = find_first_motion(twin)
+        setup, state = start_twin(twin, TrackOptions(terms="LO+SC", calibrate=False, first_frame=first))
+        frames = range(first, min(first + self.tracked, twin.sequence.frame_count))
         _, warm = track_frames(
             twin.sequence, setup, state, frames[:1]
         )  # ours compiles, and settles, on its first frame

@@ -106,7 +106,9 @@ def show_each(runs: Sequence[Run], values: Sequence[float], unit: str, digits: i
 
 def _judge_mean(runs: Sequence[Run], limit: float, results: Results) -> Verdict:
     means = [results[run]["px"] for run in runs]
-    return at_most(max(means), limit, show_each(runs, means, "px"))
+    still = [run for run in runs if 0 < results[run]["moving_frames"] < results[run]["frames"] - 1]
+    notes = [f"{run.sequence} from its first motion on: {results[run]['moving_px']:.2f} px." for run in still]
+    return at_most(max(means), limit, show_each(runs, means, "px"), " ".join(notes))
 
 
 def _judge_worst(runs: Sequence[Run], results: Results) -> Verdict:

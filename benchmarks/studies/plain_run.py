@@ -15,7 +15,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from benchmarks.studies.twin_runs import measure, render_twin, start_twin
+from benchmarks.studies.twin_runs import find_first_motion, measure, render_twin, start_twin
 from benchmarks.studies.variants import AsPoints, CorrespondingVertices, SalientInEveryFrame
 from tracker.capture.sequence import Sequence
 from tracker.detection import default_detector
@@ -51,7 +51,7 @@ DATA = ("ours", "m2d", "d2m", "paper")
 
 @dataclass(frozen=True)
 class PlainRun:
-    """An objective made of parts, and where to follow it.
+    """An objective made of parts, and where to follow it: from where something begins to move, to the end.
 
     Attributes:
         sequence: Of the public ones.
@@ -89,7 +89,11 @@ class PlainRun:
         """Render, follow, measure."""
         twin = render_twin(data, twins, self.sequence, self.frames, self.step, self.seed)
         options = TrackOptions(
-            terms="LO", iterations=self.iterations, calibrate=False, stop_below_mm=self.stop_below_mm
+            terms="LO",
+            iterations=self.iterations,
+            calibrate=False,
+            stop_below_mm=self.stop_below_mm,
+            first_frame=find_first_motion(twin),
         )
         setup, state = start_twin(twin, options)
         chunk = follow_plainly(self, twin.sequence, setup, state)

@@ -76,7 +76,8 @@ def show(rows: list[Row]) -> list[Block]:
                 "median ms",
             ),
             cells,
-            f"The first {frames} frames of each; {repeats} run(s) of each swarm, lost frames of all of them.",
+            f"{frames} frames of each, from where the hand begins to move (12: frame 419). "
+            f"{repeats} run(s) of each swarm, lost frames of all of them.",
         ),
         Table(("T16: generations x particles", "T16 mean px", "T16 std px", "T16 max px"), theirs),
         Picture("table_08", drawn, "Generations x particles, and swarms that have as long as ours."),
@@ -95,7 +96,7 @@ STUDY = Study(
     question="Is local optimisation better than a swarm, at its settings and at equal time?",
     same="The ratio of the two errors: both follow the same images. Swarms of the paper's four settings, one hand.",
     differs="The swarm is written anew on our model and renderer (docs/baselines.md) and runs on the processor; in "
-    "the paper it is the authors' program, with its own model, on a graphics card. It starts from our pose of frame 0.",
+    "the paper it is the authors' program, with its own model, on a graphics card. It starts from our first pose.",
     trials=trials,
     tabulate=tabulate,
     show=show,

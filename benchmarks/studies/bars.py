@@ -8,6 +8,7 @@ from benchmarks.studies.bar import Bar
 from benchmarks.studies.bars_accuracy import list_accuracy_bars, list_term_bars
 from benchmarks.studies.bars_cost import list_cost_bars
 from benchmarks.studies.bars_elsewhere import list_other_bars
+from benchmarks.studies.bars_held import list_held_bars
 from benchmarks.studies.bars_own_hand import list_own_hand_bars
 from benchmarks.studies.blocks import Block, Picture, Table, Text
 from benchmarks.studies.ratio_plot import draw_ratios
@@ -22,6 +23,7 @@ def list_bars(extent: Extent) -> list[Bar]:
         *list_own_hand_bars(extent),
         *list_other_bars(extent),
         *list_term_bars(extent),
+        *list_held_bars(extent),
         *list_cost_bars(extent),
     ]
 

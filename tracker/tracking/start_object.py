@@ -29,6 +29,9 @@ Array = npt.NDArray[np.float64]
 
 ITERATIONS = 60
 
+CLEAR = 0.75
+"""An object found with a lower score may be another thing of about its size, or badly seen: a warning says so."""
+
 
 def start_object(
     model: ArticulatedModel,
@@ -65,7 +68,8 @@ def start_object(
         guess = guess or found
         if not found.is_believable:
             continue
-        log.info("%s: found in frame %d, %s", item.name, frame.index, _describe(found))
+        level = logging.INFO if found.quality.score >= CLEAR else logging.WARNING
+        log.log(level, "%s: found in frame %d, %s", item.name, frame.index, _describe(found))
         if guess is not found:
             log.warning("%s: frame %d shows it too badly: %s", item.name, looked_at[0], _describe(guess))
         return guess.pose
@@ -80,7 +84,7 @@ def _describe(found: FoundObject) -> str:
     quality = found.quality
     return (
         f"{100.0 * quality.inside:.0f} % of what would be in sight is there, {1e3 * quality.depth_residual:.1f} mm off "
-        f"at the median, {100.0 * quality.outline_iou:.0f} % of the outline as seen"
+        f"at the median, {100.0 * quality.outline_iou:.0f} % of the outline as seen, score {quality.score:.2f}"
     )
 
 

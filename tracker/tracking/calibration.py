@@ -1,157 +1,212 @@
-"""Fit the shape of a hand to a few frames of depth, together with its poses."""
+"""Fit the shapes of the hands of a scene to a few frames of depth and the marks of one, together with all poses."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from tracker.model.articulated import ArticulatedModel
+from tracker.model.hand_directions import HandDirections
+from tracker.model.joints import HAND_JOINTS
+from tracker.model.local_directions import local_directions, mark_directions
 from tracker.model.scene import PosedScene, Scene
-from tracker.model.shape import with_shape
 from tracker.observation import Observation
-from tracker.terms.point_plane import PointToPlane
+from tracker.solver.elimination import solve_definite
 from tracker.terms.residual import MILLIMETRES
-from tracker.tracking.frame_fit import FitOptions, find_residuals, fit_frame
+from tracker.tracking.frame_fit import FitOptions, fit_frame
 from tracker.tracking.objective import Objective
+from tracker.tracking.shape_equations import SceneDirections, ShapeEquations, reduce_equations
+from tracker.tracking.start_annotated import MarkedJoints
 
 Array = npt.NDArray[np.float64]
-
 
 FEW = 4
 """With fewer frames than this the prior grows: pose and shape of one frame explain each other away."""
 
+COARSE = ("size", "finger_length", "finger_thickness", "palm_thickness", "palm_width", "thumb_length", "forearm_length")
+"""What is fitted first; the rest says too little in depth while these are wrong."""
+
+MARK_ALONG = {"wrist": 0.012, "thumb_cmc": 0.006, "tip": 0.0015, "": 0.003}
+MARK_ACROSS = {"wrist": 0.004, "thumb_cmc": 0.005, "tip": 0.0015, "": 0.002}
+"""How far from the model's joint a lab may put its own, along the bone and square to it, standard deviation, m: where a
+finger ends there is no doubt, where a forearm does there is."""
+
 
 @dataclass(frozen=True)
 class CalibrationOptions:
-    """How a shape is fitted.
+    """How shapes are fitted.
 
     Attributes:
-        rounds: Shape steps, each after refitting every pose.
-        iterations: Iterations of each refit.
-        prior: Weight of β² against the squared mm of one frame's correspondences, each; more frames outweigh it.
-        modes: Leading coefficients that are fitted; the rest say too little in depth and keep their start.
-        step: Finite difference of a shape parameter.
+        rounds: Shape steps.
+        coarse_rounds: The first of them, with `COARSE` alone.
+        iterations: Of the refit of every pose before each shape step.
+        prior: Weight of a direction's squared value against the squared mm of one frame's correspondences, each.
+        mark_share: Share of that weight for where the marks are; small, so that marks do not bend the pose.
+        mark_noise_px: An annotator's standard deviation; four of them differed by 1.46 px, [T16] §4.1.
+        longest_step: Of a value in one round.
+        largest: Values are kept within this.
     """
 
-    rounds: int = 8
-    iterations: int = 4
-    prior: float = 0.15
-    modes: int = 6
-    step: float = 1e-3
+    rounds: int = 10
+    coarse_rounds: int = 3
+    iterations: int = 2
+    prior: float = 0.03
+    mark_share: float = 0.1
+    mark_noise_px: float = 1.5
+    longest_step: float = 0.7
+    largest: float = 4.0
+
+
+@dataclass(frozen=True)
+class CalibrationFrame:
+    """What is known of one frame.
+
+    Attributes:
+        observation: What was seen.
+        pose: (D,) of the whole scene, near the truth.
+        marks: The marked joints of hands that somebody marked here, by index of the model; their weight is not used.
+    """
+
+    observation: Observation
+    pose: Array
+    marks: dict[int, MarkedJoints]
 
 
 @dataclass(frozen=True)
 class Calibrated:
-    """A fitted shape.
+    """Fitted shapes.
 
     Attributes:
-        model: The hand with the shape baked in.
-        shape: (S,) its coefficients.
-        poses: (D,) of each frame, of that model.
+        models: Of the scene, fitted ones with their shape baked in.
+        values: Name of each direction and its value, for each model; empty for one whose shape is fixed.
+        poses: (D,) of each frame, of those models.
     """
 
-    model: ArticulatedModel
-    shape: Array
+    models: tuple[ArticulatedModel, ...]
+    values: tuple[dict[str, float], ...]
     poses: list[Array]
 
 
-def calibrate_shape(
-    base: ArticulatedModel,
-    start: Array,
-    observations: list[Observation],
-    poses: list[Array],
+def calibrate_shapes(
+    scene: Scene,
+    frames: list[CalibrationFrame],
     options: CalibrationOptions | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Calibrated:
-    """Alternate between poses and shape; each shape step eliminates the poses by their Schur complement.
+    """Gauss-Newton on shapes and poses together; the poses are eliminated by their Schur complement.
+
+    Every hand with a shape basis is fitted: along that basis, along the directions of its parts
+    (`model/local_directions.py`) and, where it is marked, along the offsets of its marks. A direction's value of 1 is
+    about a standard deviation, so that one weight serves as prior for all.
 
     Args:
-        base: The hand with a shape basis.
-        start: (S,) coefficients to start at.
-        observations: One a frame.
-        poses: (D,) one a frame, near the truth.
+        scene: Hands and objects as they were followed.
+        frames: At least one.
         options: How.
         progress: Told the share done.
     """
     options = options or CalibrationOptions()
-    assert base.shape is not None, "a model without a shape basis has nothing to calibrate"
-    objective, shape, poses = Objective(), start.copy(), list(poses)
+    marked = {model for frame in frames for model in frame.marks}
+    own = tuple(_directions(model, index in marked) for index, model in enumerate(scene.models))
+    directions = SceneDirections.stack(scene, own)
+    names = [name for part in own if part is not None for name in part.names]
+    is_coarse = np.array([name in COARSE for name in names])
+    is_mark = np.array([name.startswith("mark") for name in names])
+    values, poses, weight = np.zeros(len(names)), [frame.pose for frame in frames], 0.0
+    current = scene
     for turn in range(options.rounds):
-        scene = Scene((with_shape(base, shape),))
+        current = _shaped(scene, own, directions, values)
+        refit = FitOptions(iterations=options.iterations)
         poses = [
-            fit_frame(scene, seen, pose, pose, objective, FitOptions(iterations=options.iterations)).pose
-            for seen, pose in zip(observations, poses, strict=True)
+            fit_frame(current, frame.observation, pose, pose, Objective(), refit).pose
+            for frame, pose in zip(frames, poses, strict=True)
         ]
-        A = np.zeros((len(shape), len(shape)))
-        b = np.zeros(len(shape))
-        count = 0
-        for seen, pose in zip(observations, poses, strict=True):
-            A_frame, b_frame, count_frame = _reduced_equations(base, shape, scene, seen, pose, objective, options.step)
-            A += A_frame
-            b += b_frame
-            count += count_frame
-        weight = options.prior * count / len(observations) * max(1.0, FEW / len(observations)) ** 2
-        A[np.diag_indices_from(A)] += weight
-        free = slice(0, options.modes)
-        change = np.zeros_like(shape)
-        change[free] = np.clip(np.linalg.solve(A[free, free], -(b + weight * shape)[free]), -0.7, 0.7)
-        shape = np.clip(shape + change, base.shape.lower, base.shape.upper)
+        equations = [
+            reduce_equations(
+                current,
+                directions,
+                frame.observation,
+                pose,
+                _with_marks(current.pose_at(pose), frame, options, weight * options.mark_share),
+            )
+            for frame, pose in zip(frames, poses, strict=True)
+        ]
+        if turn == 0:
+            mean_count = sum(each.count for each in equations) / len(frames)
+            weight = options.prior * mean_count * max(1.0, FEW / len(frames)) ** 2
+        free = is_coarse if turn < options.coarse_rounds else np.ones(len(names), dtype=bool)
+        step = _step(equations, np.where(is_mark, options.mark_share * weight, weight), values, free, options)
+        values = np.clip(values + step, -options.largest, options.largest)
+        poses = [
+            current.retract(pose, np.clip(each.settle - each.follow @ step, -0.1, 0.1))
+            for pose, each in zip(poses, equations, strict=True)
+        ]
         if progress:
             progress((turn + 1) / options.rounds)
-    scene = Scene((with_shape(base, shape),))
-    final = FitOptions(iterations=2 * options.iterations)
+    current = _shaped(scene, own, directions, values)
+    final = FitOptions(iterations=4 * options.iterations)
     poses = [
-        fit_frame(scene, seen, pose, pose, objective, final).pose
-        for seen, pose in zip(observations, poses, strict=True)
+        fit_frame(current, frame.observation, pose, pose, Objective(), final).pose
+        for frame, pose in zip(frames, poses, strict=True)
     ]
-    return Calibrated(scene.models[0], shape, poses)
+    found = [
+        dict(zip(() if part is None else part.names, values[where].tolist(), strict=True))
+        for part, where in zip(own, directions.slices, strict=True)
+    ]
+    return Calibrated(current.models, tuple(found), poses)
 
 
-def _reduced_equations(
-    base: ArticulatedModel,
-    shape: Array,
-    scene: Scene,
-    observation: Observation,
-    pose: Array,
-    objective: Objective,
-    step: float,
-) -> tuple[Array, Array, int]:
-    """Normal equations (S, S) and (S,) of the shape with this frame's pose eliminated, and its correspondences."""
-    posed = scene.pose_at(pose)
-    residuals = find_residuals(posed, observation, objective)
-    moves = _shape_derivative(base, shape, posed, pose, step)
-    A_pp, _, _ = objective.linearize(posed, residuals, pose)
-    A_pp[np.diag_indices_from(A_pp)] *= 1.0 + 1e-3
-    A_ps = np.zeros((scene.num_dofs, len(shape)))
-    A_ss, b_s, b_p = np.zeros((len(shape), len(shape))), np.zeros(len(shape)), np.zeros(scene.num_dofs)
-    count = 0
-    for residual in residuals.values():
-        if not isinstance(residual, PointToPlane) or residual.count == 0:
-            continue
-        block = residual.linearize(posed)
-        along = np.einsum("ni,snci,nc->ns", residual.normals, moves[:, residual.ids], residual.barycentric)
-        J_s = MILLIMETRES * along
-        weighted = block.weights[:, None] * J_s
-        A_ss += weighted.T @ J_s
-        A_ps += block.jacobian.T @ weighted
-        b_s += weighted.T @ block.residual
-        b_p += block.jacobian.T @ (block.weights * block.residual)
-        count += residual.count
-    eliminated = np.linalg.solve(A_pp, np.column_stack([A_ps, b_p]))
-    return A_ss - A_ps.T @ eliminated[:, :-1], b_s - A_ps.T @ eliminated[:, -1], count
+def _directions(model: ArticulatedModel, is_marked: bool) -> HandDirections | None:
+    """In which directions a model is fitted."""
+    if model.hand is None or model.shape is None:
+        return None
+    parts = [HandDirections.of_shape(model), local_directions(model)]
+    if is_marked:
+        along, across = (_deviations(table) for table in (MARK_ALONG, MARK_ACROSS))
+        parts.append(mark_directions(model, along, across))
+    return HandDirections.join(parts)
 
 
-def _shape_derivative(base: ArticulatedModel, shape: Array, posed: PosedScene, pose: Array, step: float) -> Array:
-    """(S, V, 3) derivative of the posed vertices by each shape coefficient, m."""
-    moves = np.zeros((len(shape), *posed.vertices.shape))
-    for index in range(len(shape)):
-        ahead = shape.copy()
-        ahead[index] += step
-        moves[index] = (Scene((with_shape(base, ahead),)).pose_at(pose).vertices - posed.vertices) / step
-    return moves
+def _deviations(table: dict[str, float]) -> Array:
+    """(21,) of a table with the joint's name, or "tip", or "" for any other."""
+    return np.array([table.get(joint, table["tip" if joint.endswith("tip") else ""]) for joint in HAND_JOINTS])
+
+
+def _shaped(scene: Scene, own: tuple[HandDirections | None, ...], directions: SceneDirections, values: Array) -> Scene:
+    """The scene with the values applied."""
+    parts = zip(scene.models, own, directions.slices, strict=True)
+    return Scene(tuple(model if part is None else part.apply(model, values[where]) for model, part, where in parts))
+
+
+def _with_marks(posed: PosedScene, frame: CalibrationFrame, options: CalibrationOptions, weight: float) -> Objective:
+    """The objective of a frame; a mark that is off by its noise costs `weight`."""
+    terms = dict(Objective().terms)
+    if weight > 0.0:
+        T_camera_world = np.linalg.inv(frame.observation.T_world_camera)
+        for model, joints in frame.marks.items():
+            depth = float(np.mean(posed.landmarks(model) @ T_camera_world[2, :3] + T_camera_world[2, 3]))
+            noise_mm = MILLIMETRES * options.mark_noise_px * depth / frame.observation.K[0, 0]
+            terms[f"marks_{model}"] = replace(joints, weight=weight / noise_mm**2)
+    return Objective(terms=terms)
+
+
+def _step(
+    equations: list[ShapeEquations],
+    weights: Array,
+    values: Array,
+    free: npt.NDArray[np.bool_],
+    options: CalibrationOptions,
+) -> Array:
+    """(S,) step of the values that are free, with the prior's weights (S,)."""
+    A = np.sum([each.A for each in equations], axis=0)
+    b = np.sum([each.b for each in equations], axis=0) + weights * values
+    A[np.diag_indices_from(A)] += weights
+    step = np.zeros_like(values)
+    step[free] = -solve_definite(A[np.ix_(free, free)], b[free, None])[:, 0]
+    return np.clip(step, -options.longest_step, options.longest_step)
 
 
 def propose_shapes(base: ArticulatedModel) -> list[Array]:

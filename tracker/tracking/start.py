@@ -1,8 +1,7 @@
-"""Begin a run: place every hand in the first frame and fit its shape to the first second."""
+"""Begin a run: place every hand and object in the first frame and calibrate the hands."""
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -19,10 +18,10 @@ from tracker.model.default_hand import default_hand
 from tracker.model.files import load_model
 from tracker.model.scene import Scene
 from tracker.model.shape import with_shape
-from tracker.observation import Observation, observe
-from tracker.tracking.calibration import calibrate_shape, propose_shapes
+from tracker.observation import observe
+from tracker.tracking.calibration import propose_shapes
+from tracker.tracking.calibration_run import calibrate_hands
 from tracker.tracking.depth_range import depth_range
-from tracker.tracking.follow import follow_frame
 from tracker.tracking.frame_fit import FitOptions, draw, fit_frame
 from tracker.tracking.leave_out import leave_out
 from tracker.tracking.objective import Objective
@@ -34,9 +33,6 @@ from tracker.tracking.start_annotated import start_hand, undistort_points, with_
 from tracker.tracking.start_automatic import find_hand
 from tracker.tracking.start_object import start_object
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import Tools
-
-log = logging.getLogger(__name__)
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
@@ -46,12 +42,6 @@ MIN_MARKED = 6
 
 SIZE_GAIN = 0.02
 """Another size is taken if it raises the merit by this."""
-
-WELL_EXPLAINED = 0.8
-"""A frame says something about the hand's shape when this share of the hand's pixels is explained."""
-
-CALIBRATION_FRAMES = 10
-"""Frames of the first second that the shape is fitted to."""
 
 
 def start_tracking(
@@ -87,7 +77,7 @@ def start_tracking(
         tell(f"placing the {name} hand", 0.0)
         own = {name: marks[name]} if name in marks else {}
         setup = TrackSetup((name,), (hands[name],), camera_id, options, own)
-        placed[name] = _begin(sequence, setup, frames, list(placed.values()), tell)
+        placed[name] = _begin(sequence, setup, frames[0], list(placed.values()))
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
         model = given.get(item.name) or load_model(sequence.object_path(item.name))
@@ -96,9 +86,12 @@ def start_tracking(
         views = (setup.read(sequence, index) for index in first_second)
         placed[item.name] = model, start_object(model, item, views, setup.preprocessing, others)
     order = (*names, *(item.name for item in sequence.objects))
+    is_lost = any(not np.any(placed[name][1]) for name in names)
+    if options.calibrate:
+        there = tuple(name for name in order if name not in names or np.any(placed[name][1]))
+        placed |= _calibrate(sequence, there, placed, TrackSetup((), (), camera_id, options, marks), frames, tell)
     setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks)
     pose = np.concatenate([placed[name][1] for name in order])
-    is_lost = any(not np.any(placed[name][1]) for name in names)
     return setup, TrackState(frames[0], pose, pose, is_lost=is_lost)
 
 
@@ -113,30 +106,44 @@ def _find_marks(sequence: Sequence, annotations: Annotations | None, index: int,
 
 
 def _begin(
-    sequence: Sequence,
-    setup: TrackSetup,
-    frames: range,
-    others: list[tuple[ArticulatedModel, Array]],
-    tell: Progress,
+    sequence: Sequence, setup: TrackSetup, index: int, others: list[tuple[ArticulatedModel, Array]]
 ) -> tuple[ArticulatedModel, Array]:
-    """One hand with its shape fitted, and its pose in the first frame: zeros if nothing like a hand is there.
+    """One hand of about the right size, and its pose in the first frame: zeros if nothing like a hand is there.
 
     `others` are hands that were placed before, with their poses; what they explain is not looked at.
     """
     base = setup.models[0]
-    if base.shape is None or not setup.options.calibrate:
-        _, pose = _place(sequence, setup, frames[0], others)
-        return base, np.zeros(base.num_dofs) if pose is None else pose
-    merit, pose = _place(sequence, setup, frames[0], others)
+    merit, pose = _place(sequence, setup, index, others)
     if pose is None:
         return base, np.zeros(base.num_dofs)
-    shape = np.zeros(len(base.shape.names))
-    for other in propose_shapes(base):
-        sized = replace(setup, models=(with_shape(base, other),))
-        other_merit, other_pose = _settle(sequence, sized, frames[0], pose)
+    if base.shape is None or not setup.options.calibrate:
+        return base, pose
+    model = base
+    for shape in propose_shapes(base):
+        sized = replace(setup, models=(with_shape(base, shape),))
+        other_merit, other_pose = _settle(sequence, sized, index, pose)
         if other_merit > merit + SIZE_GAIN:
-            shape, pose, merit = other, other_pose, other_merit
-    return _calibrate(sequence, setup, frames, shape, pose, merit, tell)
+            model, pose, merit = sized.models[0], other_pose, other_merit
+    return model, pose
+
+
+def _calibrate(
+    sequence: Sequence,
+    there: tuple[str, ...],
+    placed: dict[str, tuple[ArticulatedModel, Array]],
+    bare: TrackSetup,
+    frames: range,
+    tell: Progress,
+) -> dict[str, tuple[ArticulatedModel, Array]]:
+    """Fitted model and first pose of everything that was found, by name; `bare` is the setup without any models."""
+    if not any(placed[name][0].hand and placed[name][0].shape for name in there):
+        return {}
+    marks = {name: points for name, points in bare.marks.items() if name in there}
+    setup = replace(bare, names=there, models=tuple(placed[name][0] for name in there), marks=marks)
+    pose = np.concatenate([placed[name][1] for name in there])
+    setup, pose = calibrate_hands(sequence, setup, frames, pose, tell)
+    parts = zip(there, setup.models, setup.scene.pose_slices, strict=True)
+    return {name: (model, pose[where]) for name, model, where in parts}
 
 
 def _settle(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> tuple[float, Array]:
@@ -182,40 +189,3 @@ def _place_marked(frame: Frame, camera: Camera, setup: TrackSetup, depths: tuple
     options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
     pose = fit_frame(scene, seen, pose, pose, objective, options).pose
     return measure_quality(draw(scene.pose_at(pose), seen), seen).merit, pose
-
-
-def _calibrate(
-    sequence: Sequence, setup: TrackSetup, frames: range, shape: Array, pose: Array, merit: float, tell: Progress
-) -> tuple[ArticulatedModel, Array]:
-    """Follow the hand through the first second, while it goes well, then fit its shape to some of those frames."""
-    base = setup.models[0]
-    assert base.shape is not None
-    sized = replace(setup, models=(with_shape(base, shape),))
-    first_second = frames[: max(1, min(len(frames), round(sequence.fps)))]
-    every = max(1, len(first_second) // CALIBRATION_FRAMES)
-    state = TrackState(frames[0], pose, pose)
-    tools = Tools(Objective(), None, None)
-    observations: list[Observation] = []
-    poses: list[Array] = []
-    for done, index in enumerate(first_second):
-        state, result = follow_frame(sequence, sized, tools, state, recover=False)
-        if result.status != "ok" or result.quality is None or result.quality.merit < 0.9 * merit:
-            break
-        is_telling = done % every == 0 and result.quality.explained >= WELL_EXPLAINED
-        seen = _look(sequence, sized, index, state.pose) if is_telling else None
-        if seen is not None:
-            observations.append(seen)
-            poses.append(state.pose)
-        tell("following the first second", (done + 1) / len(first_second))
-    if not observations:
-        return sized.models[0], pose
-    fitted = calibrate_shape(base, shape, observations, poses, progress=lambda share: tell("fitting the shape", share))
-    named = zip(base.shape.names, fitted.shape, strict=True)
-    log.info("shape: %s", ", ".join(f"{name} {value:+.2f}" for name, value in named))
-    return fitted.model, _settle(sequence, replace(setup, models=(fitted.model,)), frames[0], pose)[1]
-
-
-def _look(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> Observation | None:
-    frame, camera = setup.read(sequence, index)
-    region = region_around(setup.scene.pose_at(pose).vertices, camera)
-    return None if region is None else observe(frame, camera, region, setup.preprocessing)

@@ -27,6 +27,17 @@ def find_ticks(low: float, high: float, wanted: int = 5) -> list[float]:
     return [round(n * step, 12) for n in range(first, last + 1)]
 
 
+def wrap(text: str, room: float) -> list[str]:
+    """A text in lines of whole words no wider than `room`, px."""
+    lines: list[str] = []
+    for word in text.split():
+        if lines and width_of(f"{lines[-1]} {word}") <= room:
+            lines[-1] += f" {word}"
+        else:
+            lines.append(word)
+    return lines
+
+
 def show_number(value: float) -> str:
     """A tick's label."""
     return f"{value:.6g}"
@@ -75,10 +86,11 @@ class Axes:
         )
         return parts
 
-    def x_tick(self, value: float, label: str) -> str:
-        """A mark and its label under the field."""
+    def x_tick(self, value: float, label: str, room: float = math.inf) -> str:
+        """A mark and its label under the field, in lines no wider than `room`, px, where words allow."""
         bottom, x = self.top + self.height, self.x(value)
-        return (
-            f'<path class="axis" d="M{x:.1f} {bottom:.1f}v4"/>'
-            f'<text x="{x:.1f}" y="{bottom + 18:.1f}" text-anchor="middle">{escape(label)}</text>'
+        lines = "".join(
+            f'<text x="{x:.1f}" y="{bottom + 18 + 14 * number:.1f}" text-anchor="middle">{escape(line)}</text>'
+            for number, line in enumerate(wrap(label, room))
         )
+        return f'<path class="axis" d="M{x:.1f} {bottom:.1f}v4"/>{lines}'

@@ -27,7 +27,8 @@ table{border-collapse:collapse;width:100%;font-size:13.5px;font-variant-numeric:
 th,td{padding:6px 12px;text-align:right;border-top:1px solid var(--rule);white-space:nowrap}
 thead th{border-top:0;font-weight:600;color:var(--mute);white-space:normal;vertical-align:bottom;line-height:1.3}
 th:first-child,td:first-child,.words td,.words th{text-align:left}.words td{white-space:normal}
-.words td:nth-child(3){text-align:right;white-space:nowrap}.words td:first-child{width:42%}
+.words td:nth-child(3){text-align:right;white-space:nowrap}table.words{table-layout:fixed;min-width:640px}
+.words th:first-child{width:38%}.words th:nth-child(3){width:88px;text-align:right}.words th:nth-child(4){width:96px}
 .t16{background:var(--t16)}td.again{color:var(--mute);opacity:.5}td strong{color:var(--bad)}
 td.met{color:var(--good)}td.unmet{background:var(--badbg)}
 svg.plot{width:100%;height:auto;display:block;border:1px solid var(--rule);border-radius:8px}

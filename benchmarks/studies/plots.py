@@ -142,7 +142,8 @@ def _bars(panel: Bars, field: tuple[float, float, float, float], colors: dict[st
     ticks = find_ticks(0.0, max(known))
     axes = Axes(*field, (-0.5, len(panel.labels) - 0.5), (0.0, ticks[-1]))
     parts = axes.frame(panel.title, "", panel.y_label, ticks)
-    parts += [axes.x_tick(number, label) for number, label in enumerate(panel.labels)]
+    room = axes.width / len(panel.labels)
+    parts += [axes.x_tick(number, label, room) for number, label in enumerate(panel.labels)]
     width = 0.76 / len(panel.values)
     for column, (name, values) in enumerate(panel.values.items()):
         for number, value in enumerate(values):

@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from benchmarks.studies.axes import Axes, find_ticks
+from benchmarks.studies.axes import Axes, find_ticks, width_of, wrap
 from benchmarks.studies.plots import Bars, Lines, Series, draw_plot
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -54,3 +54,9 @@ def test_bars_are_as_high_as_their_values():
     assert len(heights) == 3, "none for what is not known"
     assert heights[1] == pytest.approx(2 * heights[0], abs=0.2)
     assert heights[2] == pytest.approx(4 * heights[0], abs=0.2)
+
+
+def test_labels_are_broken_between_words_only():
+    assert wrap("T16's LO+SC tracker", 60.0) == ["T16's", "LO+SC", "tracker"]
+    assert wrap("T16's LO+SC tracker", 90.0) == ["T16's LO+SC", "tracker"]
+    assert all(width_of(line) <= 90.0 for line in wrap("as it comes, with second tries", 90.0))

@@ -15,7 +15,7 @@ STYLE = """
 --t16:#1e222a;--accent:#6aa5f5;--good:#58c497;--bad:#f28b8b;--badbg:#341c1f}}
 *{box-sizing:border-box}body{margin:0;background:var(--bg);color:var(--ink);
 font:16px/1.55 system-ui,-apple-system,"Segoe UI",sans-serif}
-main{max-width:980px;margin:0 auto;padding:56px 28px 96px}h1{font-size:34px;line-height:1.2;margin:0 0 20px;
+main{max-width:1120px;margin:0 auto;padding:56px 28px 96px}h1{font-size:34px;line-height:1.2;margin:0 0 20px;
 letter-spacing:-.015em}h2{font-size:23px;margin:0;letter-spacing:-.01em}section{margin-top:64px;padding-top:28px;
 border-top:1px solid var(--rule)}p{max-width:76ch;margin:12px 0}.lead p:first-child{font-size:18px}
 .source{color:var(--mute);font-size:14px;margin:2px 0 10px}.question{font-size:17px;margin:6px 0 14px}

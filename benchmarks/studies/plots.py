@@ -139,7 +139,7 @@ def _lines(panel: Lines, field: tuple[float, float, float, float], colors: dict[
 
 def _bars(panel: Bars, field: tuple[float, float, float, float], colors: dict[str, str]) -> list[str]:
     known = [float(v) for values in panel.values.values() for v in values if math.isfinite(v)] or [1.0]
-    ticks = find_ticks(0.0, max(known))
+    ticks = find_ticks(0.0, 1.05 * max(known))
     axes = Axes(*field, (-0.5, len(panel.labels) - 0.5), (0.0, ticks[-1]))
     parts = axes.frame(panel.title, "", panel.y_label, ticks)
     room = axes.width / len(panel.labels)

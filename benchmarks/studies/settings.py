@@ -25,6 +25,8 @@ def show_px(value: float | None) -> str:
     """Two digits, three below one; a dash for what there is none of."""
     if value is None or not math.isfinite(value):
         return "-"
+    if value == 0.0:
+        return "0"
     return f"{value:.3f}" if abs(value) < 0.9995 else f"{value:.2f}"
 
 

@@ -31,8 +31,9 @@ MAX_MESSAGE = 8 * 1024 * 1024
 HIDDEN_PANEL = """<style>
 [data-floating-window], [data-dock-region] { display: none !important; }
 div[style*="position: fixed"][style*="width: 20em"] { display: none !important; }
+.mantine-Notifications-root { inset: auto 8px 8px auto !important; }
 </style>"""
-"""The studio's page has the controls; viser's own panel would be in the way."""
+"""The studio's page has the controls; viser's own panel would be in the way, and its notices go to the lower right."""
 
 CONTENT_SECURITY_POLICY = "; ".join(
     (

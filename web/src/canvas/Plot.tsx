@@ -35,6 +35,12 @@ interface PlotProps {
   hasLegend?: boolean;
 }
 
+/** Only the powers of ten themselves get a line and a number. */
+const onlyDecades: uPlot.Axis.Filter = (_, splits) => splits.map((split) => (Math.abs(Math.log10(split) % 1) < 1e-6 ? split : null));
+
+/** Frames and iterations are counted. */
+const WHOLE = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000, 100_000];
+
 const compact = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 
 /** The powers of ten around positive values. */
@@ -70,7 +76,8 @@ export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false
       size: 44,
       values: (_, splits) => splits.map((split) => (split === null ? "" : compact.format(split))),
       ticks: { show: false },
-      grid: { show: side === "left", stroke: line, width: 1 },
+      grid: { show: side === "left", stroke: line, width: 1, ...(isLog ? { filter: onlyDecades } : {}) },
+      ...(isLog && side === "left" ? { filter: onlyDecades } : {}),
     });
     const hasRight = curves.some((curve) => curve.axis === "right");
     const made = new uPlot(
@@ -88,7 +95,7 @@ export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false
           right: { range: (_, low, high) => [Math.min(0, low ?? 0), high === null || high <= 0 ? 1 : high * 1.08] },
         },
         axes: [
-          { stroke: ink, font, size: 26, ticks: { show: false }, grid: { show: false } },
+          { stroke: ink, font, size: 26, incrs: WHOLE, ticks: { show: false }, grid: { show: false } },
           axisOf("left"),
           ...(hasRight ? [axisOf("right")] : []),
         ],

@@ -1,5 +1,6 @@
 import { expect, test } from "vitest";
-import { describeCollisions, describeContacts, describeDetections, describeOrigin } from "./evidence";
+import type { ViewerSession } from "../api/types";
+import { countOf, describeCollisions, describeContacts, describeDetections, describeOrigin } from "./evidence";
 
 const contacts = { is_of_run: true, object: "pipe", is_stable: false, displacement_mm: 36, held_displacement_mm: 36, simulated: 4, parts: [] };
 const part = { hand: "right", part: "index distal", distance_mm: 2, is_chosen: false };
@@ -20,4 +21,10 @@ test("an object is held, or falls for want of fingers, or would be held by those
 test("what the run did without is said to be worked out now", () => {
   expect(describeOrigin("collisions", false)).toContain("did without collision (C)");
   expect(describeOrigin("collisions", true)).toBeNull();
+});
+
+test("a layer's count is known when it is on", () => {
+  const told = { terms: [{ name: "a", count: 620, color: "" }, { name: "b", count: 3000, color: "" }], contacts: { ...contacts, parts: [part] }, collisions: null } as unknown as ViewerSession;
+  expect(["correspondences", "contacts", "collisions", "cloud"].map((layer) => countOf(told, layer))).toEqual(["3.6k", "1", null, null]);
+  expect(countOf(null, "contacts")).toBeNull();
 });

@@ -46,7 +46,7 @@ export function describeOrigin(layer: "detections" | "collisions" | "contacts", 
 /** What stands beside a layer's name; null while it is off or not known. */
 export function countOf(told: ViewerSession | null, layer: string): string | null {
   if (!told) return null;
-  const count = (value: number): string => value.toLocaleString("en");
+  const count = (value: number): string => (value < 1000 ? String(value) : `${(value / 1000).toFixed(1)}k`);
   switch (layer) {
     case "correspondences":
       return told.terms.length > 0 ? count(told.terms.reduce((sum, term) => sum + term.count, 0)) : null;

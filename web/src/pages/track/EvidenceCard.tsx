@@ -53,7 +53,12 @@ export function EvidenceCard({ told, layers, isBusy, terms, onTerms }: EvidenceC
           )}
           {layers.collisions && told.collisions && (
             <Part title="Collisions" says={describeCollisions(told.collisions)} origin={describeOrigin("collisions", told.collisions.is_of_run)}>
-              <Rows rows={told.collisions.pairs.map((pair) => ({ name: `${pair.first} – ${pair.second}`, values: [`${formatNumber(pair.deepest_mm)} mm`] }))} />
+              <Rows
+                rows={told.collisions.pairs.map((pair) => ({
+                  name: `${pair.first} – ${pair.second}`,
+                  values: [pair.deepest_mm > 0 ? `${formatNumber(pair.deepest_mm)} mm` : "crossing"],
+                }))}
+              />
               {told.collisions.vertices > 0 && <Scale label="depth of a vertex" full={told.collisions.full_mm} />}
             </Part>
           )}
@@ -130,7 +135,7 @@ function Rows({ rows }: { rows: { color?: string; name: string; values: string[]
     <>
       {rows.slice(0, MOST_ROWS).map((row, place) => (
         <div key={place} className={classes.row}>
-          <span className="one-line" title={row.name}>
+          <span className={classes.name}>
             {row.color && <i className={classes.swatch} style={{ background: row.color }} aria-hidden />} {row.name}
           </span>
           {row.values.filter(Boolean).map((value) => (

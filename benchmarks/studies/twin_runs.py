@@ -7,9 +7,11 @@ because nothing in a depth image tells how far a plain rope has slid along itsel
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -65,9 +67,19 @@ def render_twin(data: Path, cache: Path, name: str, frames: int | None, step: in
     last = performance.num_moments if frames is None else min(frames, performance.num_moments)
     folder = cache / f"{name}_{last}_{step}_{seed}"
     if not folder.exists():
-        cache.mkdir(parents=True, exist_ok=True)
-        write_recording(performance, folder, RecordingOptions(range(0, last, step), seed=seed), save_model)
+        render_into(folder, performance, RecordingOptions(range(0, last, step), seed=seed))
     return Twin(performance, load_sequence(folder), load_truth(folder / "truth.npz"))
+
+
+def render_into(folder: Path, performance: Performance, options: RecordingOptions) -> None:
+    """Write a recording beside `folder` and move it there whole: two processes may want the same one at a time."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as temporary:
+        written = Path(temporary) / folder.name
+        write_recording(performance, written, options, save_model)
+        with suppress(OSError):  # the other one was first; both would be the same
+            written.rename(folder)
+    assert folder.is_dir()
 
 
 def start_twin(twin: Twin, options: TrackOptions, own_hand: bool = False) -> tuple[TrackSetup, TrackState]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.studies.plain_run import PlainRun, follow_plainly, pool
-from benchmarks.studies.twin_runs import Twin, measure, start_twin
+from benchmarks.studies.twin_runs import Twin, measure, render_into, start_twin
 from tracker.capture.sequence import load_sequence
 from tracker.capture.truth import load_truth
 from tracker.model import save_model
@@ -85,3 +85,12 @@ def test_pooled_runs_are_as_one():
     assert pooled["px_std"] == pytest.approx(whole.std())
     assert pooled["px_max"] == whole.max()
     assert (pooled["frames"], pooled["lost"], pooled["failed"], pooled["sequences"]) == (10, 2, 1, 2)
+
+
+def test_a_twin_is_there_whole_or_not_at_all(tmp_path):
+    performance = perform({"right": default_hand("right")}, "wave", 2)
+    folder = tmp_path / "twins" / "toy"
+    for _ in range(2):  # the second finds the first's
+        render_into(folder, performance, RecordingOptions(range(2)))
+    assert load_sequence(folder).frame_count == 2 and len(load_truth(folder / "truth.npz").frame) == 2
+    assert [path.name for path in folder.parent.iterdir()] == ["toy"], "nothing half written is left"

@@ -10,6 +10,7 @@ from tests.tracker.toys import tube
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.geometry import se3
+from tracker.model.default_hand import default_hand
 from tracker.model.scene import PosedScene, Scene
 from tracker.observation import Observation, Preprocessing, observe
 from tracker.rendering import render_depth, render_view
@@ -50,6 +51,19 @@ def drawn_tube(T_world_camera: np.ndarray | None = None) -> DrawnScene:
     in_camera = se3.exp(np.array([-0.045, 0.0, 0.3, 0.0, 0.0, 0.0])) @ se3.exp(np.array([0, 0, 0, 0.2, 0.3, 0.1]))
     pose[:6] = se3.log(T_world_camera @ in_camera)
     pose[6:] = [0.4, -0.3, 0.5, 0.2]
+    return draw_scene(scene, pose, T_world_camera)
+
+
+def drawn_hand() -> DrawnScene:
+    """The default right hand at rest, 0.45 m before a camera at the origin."""
+    scene = Scene((default_hand("right"),))
+    pose = scene.rest_pose()
+    pose[:3] = np.array([0.0, 0.0, 0.45]) - scene.pose_at(pose).vertices.mean(axis=0)
+    return draw_scene(scene, pose, np.eye(4))
+
+
+def draw_scene(scene: Scene, pose: np.ndarray, T_world_camera: np.ndarray) -> DrawnScene:
+    """A scene as a camera of 320x240 px sees it, without noise."""
     camera = Camera("cam0", 320, 240, K, T_world_camera=T_world_camera)
     vertices = scene.pose_at(pose).vertices
     rendering = render_depth(se3.transform(se3.inverse(T_world_camera), vertices), scene.arrays.faces, K, 320, 240)

@@ -15,6 +15,9 @@ from tracker.model.kinematics import SceneArrays, move_bones_into, normals_into,
 
 Array = npt.NDArray[np.float64]
 
+PARALLEL = 0.999
+"""Cosine above which two axes are one."""
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -74,9 +77,33 @@ class Scene:
         return models
 
     @cached_property
+    def is_palm(self) -> npt.NDArray[np.bool_]:
+        """(V,) whether a vertex follows the root of a hand most."""
+        arrays = self.arrays
+        roots = [bones.start for model, bones in zip(self.models, self.bone_slices, strict=True) if model.hand]
+        return np.isin(arrays.weight_bones[np.arange(len(arrays.weights)), arrays.weights.argmax(axis=1)], roots)
+
+    @cached_property
     def angle_dofs(self) -> npt.NDArray[np.int64]:
         """(K,) places of the joint angles in the pose."""
         return np.concatenate([np.arange(s.start + 6, s.stop) for s in self.pose_slices])
+
+    @cached_property
+    def bends(self) -> npt.NDArray[np.int64]:
+        """(K, 2) places in the pose of joints of an object and of the joint about the same axis of the bone before.
+
+        Hands have none: their fingers do not bend evenly.
+        """
+        pairs = []
+        for model, where in zip(self.models, self.pose_slices, strict=True):
+            skeleton = model.skeleton
+            if model.hand is not None:
+                continue
+            for dof, bone in enumerate(skeleton.dof_bones):
+                for other in np.flatnonzero(skeleton.dof_bones == skeleton.parents[bone]):
+                    if skeleton.dof_axes[dof] @ skeleton.dof_axes[other] > PARALLEL:
+                        pairs.append((where.start + 6 + dof, where.start + 6 + int(other)))
+        return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
     @cached_property
     def lower(self) -> Array:

@@ -15,11 +15,12 @@ from tracker.terms.surface_point import barycentric_into
 
 @dataclass(frozen=True)
 class DataToSurface:
-    """Pull the drawn surface onto the data points, every `stride`-th pixel: E = Σ |N_iᵀ(v_i − X_i)|², N_i of the data.
+    """Pull the drawn surface onto the data points, every `stride`-th pixel: E = Σ |n_iᵀ(v_i − X_i)|², n_i of the face.
 
     Differs from the paper: T16 matches depth discontinuities only, because matching the whole cloud by a kd-tree cost
     40 % without lowering its error. Against the rendering the search is a few pixels, and on rendered twins the dense
-    form is what keeps fingers apart (docs/objective.md).
+    form is what keeps fingers apart (docs/objective.md). Normals of the face, held fixed: those of the data are noisy,
+    and noisy normals hold a surface back along itself, like friction.
     """
 
     weight: float = 1.0
@@ -135,11 +136,12 @@ def _find_into(
                                 best_row, best_column = r, c
                 ring += 1
             if best_row >= 0:
-                corners = faces[face[best_row, best_column]]
+                matched = face[best_row, best_column]
+                corners = faces[matched]
                 barycentric_into(barycentric[count], corners, projected, best_column, best_row)
                 for i in range(3):
                     ids[count, i] = corners[i]
                     targets[count, i] = points[row, column, i]
-                    target_normals[count, i] = normals[row, column, i]
+                    target_normals[count, i] = face_normals[matched, i]
                 count += 1
     return count

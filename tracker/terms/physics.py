@@ -19,7 +19,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Physics:
-    """Pull the nearest vertex of each chosen finger part to the object's surface: E = Σ |v_i(θ) − X_i|², [T16] Eq. 16.
+    """Pull the nearest point of each chosen finger part to the object's surface: E = Σ |v_i(θ) − X_i|², [T16] Eq. 16.
 
     X_i is held fixed, so only the hand moves and the Jacobian is exact. With `moves_object` X_i(θ) follows the object
     and both give way: v_i and X_i are drawn to the point m between them with twice the weight. At the pose of the match
@@ -47,14 +47,14 @@ class Physics:
         pairs = [find_closest_point(posed, c.hand, c.part, c.object) for c in self.contacts]
         pairs = [pair for pair in pairs if pair.distance > 0.0]
         count = len(pairs)
-        ids = np.array([[pair.vertex] * 3 for pair in pairs], dtype=np.int32).reshape(count, 3)
-        shares = np.tile([1.0, 0.0, 0.0], (count, 1))
+        ids = np.array([pair.part_corners for pair in pairs], dtype=np.int32).reshape(count, 3)
+        shares = np.array([pair.part_shares for pair in pairs]).reshape(count, 3)
         targets = np.array([pair.point for pair in pairs]).reshape(count, 3)
         normals = np.array([pair.normal for pair in pairs]).reshape(count, 3)
         weights = np.full(count, self.weight)
         if self.moves_object:
             corners = np.array([pair.corners for pair in pairs], dtype=np.int32).reshape(count, 3)
-            middles = 0.5 * (targets + posed.vertices[ids[:, 0]])
+            middles = 0.5 * (targets + np.array([pair.part_point for pair in pairs]).reshape(count, 3))
             ids = np.concatenate([ids, corners])
             shares = np.concatenate([shares, np.array([pair.shares for pair in pairs]).reshape(count, 3)])
             targets, normals = np.tile(middles, (2, 1)), np.tile(normals, (2, 1))

@@ -10,11 +10,12 @@ import numpy.typing as npt
 from tracker.model.scene import PosedScene
 from tracker.terms.data_to_model import DataToModel
 from tracker.terms.data_to_surface import DataToSurface
-from tracker.terms.joint_prior import AnatomicalLimits, Regularization
+from tracker.terms.joint_prior import AnatomicalLimits, Bending, Regularization
 from tracker.terms.model_to_data import ModelToData
 from tracker.terms.normal_equations import NormalEquations
 from tracker.terms.residual import FrameContext, Residual, Term
 from tracker.terms.silhouette import Silhouette
+from tracker.terms.uncovered import Uncovered
 
 Array = npt.NDArray[np.float64]
 
@@ -27,6 +28,7 @@ class Objective:
         terms: Terms that find correspondences.
         anatomy: Joint limits, weighted by the number of correspondences.
         regularization: Pull towards the previous frame's angles, weighted likewise.
+        bending: Even bends of objects that are chains, weighted likewise.
     """
 
     terms: dict[str, Term] = field(
@@ -35,10 +37,12 @@ class Objective:
             "data_to_surface": DataToSurface(),
             "data_to_model": DataToModel(weight=0.02),
             "silhouette": Silhouette(weight=0.03),
+            "uncovered": Uncovered(),
         }
     )
     anatomy: AnatomicalLimits = field(default_factory=AnatomicalLimits)
     regularization: Regularization = field(default_factory=Regularization)
+    bending: Bending = field(default_factory=Bending)
 
     def find(self, posed: PosedScene, context: FrameContext) -> dict[str, Residual]:
         """Correspondences of every term at the current pose."""
@@ -73,4 +77,14 @@ class Objective:
             costs[name] = scale * float(cost)
             JtJ[dofs, dofs] += scale * curvature
             Jtr[dofs] += scale * gradient
+        if len(scene.bends):
+            own, before = scene.bends.T
+            scale = self.bending.weight * max(equations.count, 1)
+            cost, gradient, curvature = self.bending.linearize(posed.pose[own], posed.pose[before])
+            costs["bending"] = scale * cost
+            for rows, sign in ((own, scale), (before, -scale)):
+                np.add.at(Jtr, rows, sign * gradient)
+                np.add.at(JtJ, (rows, rows), scale * curvature)
+            JtJ[own, before] -= scale * curvature
+            JtJ[before, own] -= scale * curvature
         return JtJ, Jtr, costs

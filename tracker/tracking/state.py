@@ -41,10 +41,14 @@ class TrackState:
     def predict(self, scene: Scene) -> Array:
         """(D,) the pose if roots go on as they moved last; joint angles are kept.
 
-        Hidden fingers run away when their angles are extrapolated, roots do not.
+        Hidden fingers run away when their angles are extrapolated, roots do not. The root of a chain is its end: it
+        turns as the chain bends, and its turn would swing the other end aside. Chains start where they are.
         """
         predicted = self.pose.copy()
+        bent = {int(place) for place in scene.bends.ravel()}
         for where in scene.pose_slices:
+            if bent.intersection(range(where.start, where.stop)):
+                continue
             root = slice(where.start, where.start + 6)
             T_now, T_before = se3.exp(self.pose[root]), se3.exp(self.earlier_pose[root])
             predicted[root] = se3.log(T_now @ se3.inverse(T_before) @ T_now)

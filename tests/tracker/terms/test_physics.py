@@ -61,7 +61,10 @@ def test_with_both_giving_way_cost_and_gradient_are_those_of_the_distance_itself
 
     def energy(pose):
         vertices = 1e3 * scene.pose_at(pose).vertices
-        return sum(10.0 * np.sum((vertices[p.vertex] - p.shares @ vertices[p.corners]) ** 2) for p in pairs)
+        return sum(
+            10.0 * np.sum((p.part_shares @ vertices[p.part_corners] - p.shares @ vertices[p.corners]) ** 2)
+            for p in pairs
+        )
 
     block = Physics(CONTACTS, moves_object=True).find(posed).linearize(posed)
     assert block.cost == pytest.approx(energy(posed.pose), rel=1e-9)

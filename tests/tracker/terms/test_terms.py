@@ -11,6 +11,7 @@ from tracker.terms.data_to_surface import DataToSurface
 from tracker.terms.model_to_data import ModelToData
 from tracker.terms.normal_equations import NormalEquations
 from tracker.terms.silhouette import Silhouette
+from tracker.terms.uncovered import Uncovered
 
 TERMS = {
     "model_to_data": ModelToData(),
@@ -18,6 +19,7 @@ TERMS = {
     "data_to_surface": DataToSurface(),
     "data_to_model": DataToModel(weight=1.0),
     "silhouette": Silhouette(weight=1.0),
+    "uncovered": Uncovered(weight=1.0),
 }
 
 every_term = pytest.mark.parametrize("term", TERMS.values(), ids=TERMS.keys())
@@ -103,7 +105,7 @@ def test_nothing_in_sight_gives_an_empty_residual(term):
     away = drawn.scene.retract(drawn.pose, np.r_[0, 0, 3.0, 0, 0, 0, np.zeros(drawn.scene.num_dofs - 6)])
     posed = drawn.scene.pose_at(away)
     residual = term.find(posed, drawn.context(posed))
-    if not isinstance(term, Silhouette):
+    if not isinstance(term, Silhouette | Uncovered):
         assert residual.count == 0
     assert residual.linearize(posed).jacobian.shape[1] == drawn.scene.num_dofs
 

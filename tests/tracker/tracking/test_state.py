@@ -1,0 +1,20 @@
+"""What is predicted from the last two frames."""
+
+import numpy as np
+
+from tests.tracker.toys import tube
+from tracker.geometry import se3
+from tracker.model.default_hand import default_hand
+from tracker.model.scene import Scene
+from tracker.tracking.state import TrackState
+
+
+def test_hands_go_on_as_they_moved_and_chains_start_where_they_are(rng):
+    scene = Scene((default_hand("right"), tube(bones=5)))
+    before, now = (rng.normal(scale=0.1, size=scene.num_dofs) for _ in range(2))
+    predicted = TrackState(2, now, before).predict(scene)
+    hand, chain = scene.pose_slices
+    moved = se3.exp(now[hand][:6]) @ se3.inverse(se3.exp(before[hand][:6]))
+    np.testing.assert_allclose(se3.exp(predicted[hand][:6]), moved @ se3.exp(now[hand][:6]), atol=1e-12)
+    np.testing.assert_array_equal(predicted[hand][6:], now[hand][6:])
+    np.testing.assert_array_equal(predicted[chain], now[chain])

@@ -53,6 +53,7 @@ export function ViewerFrame({ viewer, layers, terms, onLayers, onTerms }: Viewer
             <Checkbox
               key={name}
               size="xs"
+              styles={{ label: { paddingInlineStart: 5 } }}
               title={HELP[name]}
               label={
                 <>

@@ -17,7 +17,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(name, "1")  # before numpy: every process measures one thread
 
 from benchmarks.studies.catalogue import STUDIES  # noqa: E402
-from benchmarks.studies.report import StudyRows, load_rows, write_report  # noqa: E402
+from benchmarks.studies.report import StudyRows, load_all_rows, write_report  # noqa: E402
 from benchmarks.studies.study import Extent, Study  # noqa: E402
 from benchmarks.studies.trial import ROOT, NotMeasured, Results, load_kept, run_trials  # noqa: E402
 
@@ -45,7 +45,9 @@ def main() -> int:
     parser.add_argument("--twins", type=Path, help="of rendered twins (twins in the cache)")
     parser.add_argument("--processes", type=int, default=2, help="trials at a time (2); those of time run alone")
     parser.add_argument("--keep", action="store_true", help="take results of older code, run only what is missing")
-    parser.add_argument("--report", action="store_true", help="run nothing, build the report from rows that are there")
+    parser.add_argument(
+        "--report", action="store_true", help="run nothing, build the report from rows in the cache or docs"
+    )
     parser.add_argument("--write", action="store_true", help="write the report and its rows into docs")
     args = parser.parse_args()
     chosen = [study for study in STUDIES if args.only is None or study.name in args.only]
@@ -61,7 +63,8 @@ def main() -> int:
             except NotMeasured as problem:
                 failed = True
                 print(f"{study.name}: {problem}", file=sys.stderr)
-    rows = {study.name: own for study in STUDIES if (own := load_rows(study.name, rows_folder))}
+    sources = (rows_folder, ROWS) if args.report else (rows_folder,)
+    rows = load_all_rows(STUDIES, *sources)
     if args.write:
         for own in rows.values():
             own.save(ROWS)

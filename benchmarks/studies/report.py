@@ -63,6 +63,18 @@ def load_rows(name: str, folder: Path) -> StudyRows | None:
     return StudyRows(**json.loads(path.read_text())) if path.is_file() else None
 
 
+def load_all_rows(studies: Sequence[Study], *folders: Path) -> dict[str, StudyRows]:
+    """The rows of every study from the first folder that has them."""
+    found = {}
+    for study in studies:
+        for folder in folders:
+            own = load_rows(study.name, folder)
+            if own is not None:
+                found[study.name] = own
+                break
+    return found
+
+
 def build_sections(studies: Sequence[Study], rows: dict[str, StudyRows]) -> list[Section]:
     """A section for each study; one without rows says so."""
     sections = []

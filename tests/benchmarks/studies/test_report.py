@@ -12,9 +12,9 @@ from benchmarks.studies.catalogue import STUDIES
 from benchmarks.studies.markdown import write_markdown
 from benchmarks.studies.page import write_page
 from benchmarks.studies.plots import Lines, Series, draw_plot
-from benchmarks.studies.report import StudyRows, build_sections, load_rows, write_report
+from benchmarks.studies.report import StudyRows, build_sections, load_all_rows, load_rows, write_report
 from benchmarks.studies.study import Extent, Study
-from benchmarks.studies.trial import Trial
+from benchmarks.studies.trial import ROOT, Trial
 
 
 def toy_study() -> Study:
@@ -118,3 +118,23 @@ def test_every_study_names_its_trials_and_says_what_is_comparable(study):
 def test_every_table_and_figure_that_was_asked_for_has_a_study():
     wanted = {f"table_{n:02d}" for n in (2, 3, 4, 5, 6, 7, 8, 11, 12, 13, 14)} | {"figure_13", "figure_16", "bars"}
     assert {study.name for study in STUDIES} == wanted
+
+
+def test_the_committed_report_is_what_its_rows_say(tmp_path):
+    """After a change of its words: `python -m benchmarks.studies DATA --report --write`."""
+    docs = ROOT / "docs"
+    rows = load_all_rows(STUDIES, docs / "studies" / "rows")
+    assert bool(rows) == (docs / "studies.md").exists(), "the report and its rows are committed together"
+    if rows:
+        for written in write_report(STUDIES, rows, tmp_path):
+            assert written.read_text() == (docs / written.relative_to(tmp_path)).read_text(), written.name
+        size = sum(path.stat().st_size for path in (docs / "studies").rglob("*") if path.is_file())
+        assert size < 1e6, "the report stays small"
+        assert not any(own.quick for own in rows.values()), "trial runs are not committed"
+
+
+def test_rows_come_from_the_first_folder_that_has_them(tmp_path):
+    rows_of()["toy"].save(tmp_path / "b")
+    rows_of(quick=True)["toy"].save(tmp_path / "a")
+    assert load_all_rows([toy_study()], tmp_path / "a", tmp_path / "b")["toy"].quick
+    assert not load_all_rows([toy_study()], tmp_path / "none", tmp_path / "b")["toy"].quick

@@ -2,7 +2,14 @@
 
 from tracker.physics.displacement import Displacement, measure_displacement, simulate
 from tracker.physics.protocol import SD_OBMAN, SD_SEED, SEARCH, Protocol, StaticPlane, find_down
-from tracker.physics.support import Contact, Support, SupportOptions, find_part_bones, find_support
+from tracker.physics.support import (
+    Contact,
+    Support,
+    SupportOptions,
+    find_part_bones,
+    find_settled_displacement,
+    find_support,
+)
 from tracker.physics.world import PhysicsWorld
 
 __all__ = [
@@ -18,6 +25,7 @@ __all__ = [
     "SupportOptions",
     "find_down",
     "find_part_bones",
+    "find_settled_displacement",
     "find_support",
     "measure_displacement",
     "simulate",

@@ -15,31 +15,43 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ClosestPoint:
-    """The vertex of a part that is nearest to an object, or deepest in it, and the point of the object nearest to it.
+    """The point of a part's skin nearest to an object, or deepest in it, and the point of the object nearest to that.
 
     Attributes:
-        vertex: Of the scene.
+        part_corners: (3,) vertices of the scene that span the part's point.
+        part_shares: (3,) their barycentric shares.
+        part_point: (3,) on the part, world, m.
         corners: (3,) vertices of the scene that span the object's point.
         shares: (3,) their barycentric shares.
         point: (3,) on the object, world, m.
         normal: (3,) unit, out of the object, world.
-        distance: m, below 0 when the vertex is inside the object.
+        distance: m, below 0 when the part is inside the object.
     """
 
-    vertex: int
+    part_corners: npt.NDArray[np.int32]
+    part_shares: Array
+    part_point: Array
     corners: npt.NDArray[np.int32]
     shares: Array
     point: Array
     normal: Array
     distance: float
 
+    @property
+    def vertex(self) -> int:
+        """Of the scene; the part's vertex nearest to its point."""
+        return int(self.part_corners[np.argmax(self.part_shares)])
+
 
 def find_closest_point(posed: PosedScene, hand: int, part: str, target: int) -> ClosestPoint:
-    """The nearest pair of a vertex of a finger part and a point of an object's surface, exact for a
-    closed object.
+    """The nearest pair of a point of a finger part and a point of an object's surface.
 
-    Inside is where the vertex lies behind the object's normals, interpolated at the nearest point. An object with holes
-    has an inside only near its surface.
+    Looked for are the part's vertices against the object's faces, exact for a closed object, and then the object's
+    vertices against the part's faces, since a flat pad touches a round thing between its vertices. Two edges that
+    cross in the air are the one case that is missed.
+
+    Inside is where a vertex of the part lies behind the object's normals, interpolated at the nearest point, or a
+    vertex of the object behind the part's. An object with holes has an inside only near its surface.
 
     Args:
         posed: The scene.
@@ -50,14 +62,93 @@ def find_closest_point(posed: PosedScene, hand: int, part: str, target: int) -> 
     scene = posed.scene
     parts = scene.models[hand].hand
     assert parts is not None and len(parts.finger_parts.get(part, ())), f"no finger part {part!r}"
-    ids = parts.finger_parts[part] + scene.vertex_slices[hand].start
-    faces = scene.models[target].faces.astype(np.int64) + scene.vertex_slices[target].start
-    shares = np.zeros(3)
-    place, face, distance = _find_into(shares, posed.vertices, posed.normals, ids.astype(np.int64), faces)
-    corners = faces[face]
-    point, normal = shares @ posed.vertices[corners], shares @ posed.normals[corners]
-    normal = normal / max(float(np.linalg.norm(normal)), 1e-12)
-    return ClosestPoint(int(ids[place]), corners.astype(np.int32), shares, point, normal, float(distance))
+    ids = parts.finger_parts[part].astype(np.int64) + scene.vertex_slices[hand].start
+    where = scene.vertex_slices[target]
+    faces = scene.models[target].faces.astype(np.int64) + where.start
+    shares, vertices, normals = np.zeros(3), posed.vertices, posed.normals
+    place, face, distance = _find_into(shares, vertices, normals, ids, faces)
+    part_corners, part_shares, corners = np.full(3, ids[place]), np.array([1.0, 0.0, 0.0]), faces[face]
+    if distance > 0.0:
+        skin = scene.models[hand].faces.astype(np.int64) + scene.vertex_slices[hand].start
+        on_part = np.zeros(3)
+        vertex, face, between = _find_on_part(
+            on_part,
+            vertices,
+            normals,
+            ids,
+            skin,
+            where.start,
+            where.start + len(scene.models[target].vertices),
+            distance,
+        )
+        if vertex >= 0:
+            distance, part_corners, part_shares = between, skin[face], on_part
+            corners, shares = np.full(3, vertex), np.array([1.0, 0.0, 0.0])
+    normal = shares @ normals[corners]
+    return ClosestPoint(
+        part_corners.astype(np.int32),
+        part_shares,
+        part_shares @ vertices[part_corners],
+        corners.astype(np.int32),
+        shares,
+        shares @ vertices[corners],
+        normal / max(float(np.linalg.norm(normal)), 1e-12),
+        float(distance),
+    )
+
+
+@njit(cache=True, nogil=True)
+def _find_on_part(shares, vertices, normals, ids, faces, first, last, limit):
+    """The vertex of an object nearer to a part's faces than `limit`, the face, their signed distance; or -1.
+
+    The barycentric shares (3,) on the face are filled.
+    """
+    center, radius = np.zeros(3), 0.0
+    is_part = np.zeros(ids.max() + 1, dtype=np.bool_)
+    for place in ids:
+        is_part[place] = True
+        for axis in range(3):
+            center[axis] += vertices[place, axis] / len(ids)
+    for place in ids:
+        squared = 0.0
+        for axis in range(3):
+            squared += (vertices[place, axis] - center[axis]) ** 2
+        radius = max(radius, np.sqrt(squared))
+    own = np.empty(len(faces), dtype=np.int64)
+    count = 0
+    for f in range(len(faces)):
+        inside = True
+        for corner in range(3):
+            v = faces[f, corner]
+            inside = inside and v < len(is_part) and is_part[v]
+        if inside:
+            own[count] = f
+            count += 1
+    trial = np.zeros(3)
+    best_vertex, best_face, best = -1, -1, limit
+    for vertex in range(first, last):
+        p = vertices[vertex]
+        squared = 0.0
+        for axis in range(3):
+            squared += (p[axis] - center[axis]) ** 2
+        if squared >= (radius + best) ** 2:
+            continue
+        for f in own[:count]:
+            a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+            distance = np.sqrt(_closest_on_triangle(trial, p, a, b, c))
+            if distance < best:
+                best_vertex, best_face, best = vertex, f, distance
+                shares[0], shares[1], shares[2] = trial[0], trial[1], trial[2]
+    if best_vertex < 0:
+        return best_vertex, best_face, best
+    side = 0.0
+    for axis in range(3):
+        point, normal = 0.0, 0.0
+        for corner in range(3):
+            point += shares[corner] * vertices[faces[best_face, corner], axis]
+            normal += shares[corner] * normals[faces[best_face, corner], axis]
+        side += (vertices[best_vertex, axis] - point) * normal
+    return best_vertex, best_face, -best if side < 0.0 else best
 
 
 @njit(cache=True, nogil=True)

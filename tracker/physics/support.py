@@ -104,15 +104,9 @@ def find_support(
         likely: Contacts to try first, such as those of the frame before.
     """
     options = options or SupportOptions()
-    world.place(posed, options.protocol, options.reach)
-    gaps = world.find_gaps(max(options.near, 2.0 * options.protocol.skin))
+    gaps, settled, displacement = _settle(world, posed, options)
     movable = _find_movable(world, gaps, options)
     candidates = tuple(contact for _, contact in movable)
-    if not gaps and not world.planes:
-        fall = options.protocol.free_fall
-        return Support(fall, False, candidates, (), fall, 0, 0)
-    settled = {gap.hull: -gap.distance * gap.normal for gap in gaps if gap.distance < 0.0}
-    displacement = world.run(settled, give_up=FALLEN, calm_below=options.stable_below)
     if displacement < options.stable_below or len(movable) < 2:
         is_stable = displacement < options.stable_below
         return Support(displacement, is_stable, candidates, (), displacement, 0, 0)
@@ -136,6 +130,23 @@ def find_support(
         best, best_displacement = (), displacement
     contacts = tuple(movable[i][1] for i in best)
     return Support(displacement, False, candidates, contacts, best_displacement, simulated, passed)
+
+
+def find_settled_displacement(world: PhysicsWorld, posed: PosedScene, options: SupportOptions | None = None) -> float:
+    """Distance that the object's centroid moves, m, once overlaps are resolved: what `find_support` starts with."""
+    return _settle(world, posed, options or SupportOptions())[2]
+
+
+def _settle(
+    world: PhysicsWorld, posed: PosedScene, options: SupportOptions
+) -> tuple[tuple[Gap, ...], dict[int, Array], float]:
+    """What is near, how far hulls are set back to where they just touch, and how far the object then moves, m."""
+    world.place(posed, options.protocol, options.reach)
+    gaps = world.find_gaps(max(options.near, 2.0 * options.protocol.skin))
+    if not gaps and not world.planes:
+        return gaps, {}, options.protocol.free_fall
+    settled = {gap.hull: -gap.distance * gap.normal for gap in gaps if gap.distance < 0.0}
+    return gaps, settled, world.run(settled, give_up=FALLEN, calm_below=options.stable_below)
 
 
 def rank_combinations(

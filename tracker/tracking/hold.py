@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from tracker.observation import Observation
+from tracker.physics import SupportOptions, find_settled_displacement, find_support
+from tracker.terms.physics import Physics
 from tracker.tracking.attempt import Attempt, attempt_fit
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.objective import Objective
@@ -12,8 +14,22 @@ from tracker.tracking.setup import TrackSetup
 from tracker.tracking.state import TrackState
 from tracker.tracking.tools import Tools
 
-HOLDING = 5
-"""Iterations with contacts, after the others."""
+
+@dataclass(frozen=True)
+class HoldOptions:
+    """How an object that would fall is held.
+
+    Attributes:
+        iterations: With contacts, after the others.
+        weight: γ_ph of Eq. 16.
+        score_drop: A held pose may explain any hand worse by this much, no more.
+        support: How contacts are looked for.
+    """
+
+    iterations: int = 5
+    weight: float = 10.0
+    score_drop: float = 0.01
+    support: SupportOptions = field(default_factory=SupportOptions)
 
 
 def hold_object(
@@ -24,8 +40,11 @@ def hold_object(
     state: TrackState,
     fitted: Attempt,
     options: FitOptions,
+    hold: HoldOptions | None = None,
 ) -> Attempt:
     """The fitted pose, or where its object would fall one that is drawn into contact with it.
+
+    The drawn pose is taken only if it explains the image as well and the object moves less from there.
 
     Args:
         setup: Models and options.
@@ -35,11 +54,21 @@ def hold_object(
         state: After the frame before.
         fitted: What the fit gave.
         options: Of the fit.
+        hold: How.
     """
-    if tools.world is None or fitted.quality.is_lost:
+    world, hold = tools.world, hold or HoldOptions()
+    if world is None or fitted.quality.is_lost:
         return fitted
-    held = tools.with_support(objective, setup, fitted.pose)
-    if held is None:
+    support = find_support(world, setup.scene.pose_at(fitted.pose), hold.support)
+    if support.is_stable or not support.contacts:
         return fitted
-    again = attempt_fit(setup, seen, fitted.pose, state.pose, held, replace(options, iterations=HOLDING))
-    return replace(again, fit=replace(again.fit, costs=fitted.fit.costs + again.fit.costs))
+    with_contacts = replace(
+        objective, terms={**objective.terms, "physics": Physics(support.contacts, weight=hold.weight)}
+    )
+    short = replace(options, iterations=hold.iterations)
+    held = attempt_fit(setup, seen, fitted.pose, state.pose, with_contacts, short)
+    for hand, quality in held.qualities.items():
+        if quality.score < fitted.qualities[hand].score - hold.score_drop:
+            return fitted
+    displacement = find_settled_displacement(world, setup.scene.pose_at(held.pose), hold.support)
+    return held if displacement < support.displacement else fitted

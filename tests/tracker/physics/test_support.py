@@ -48,7 +48,7 @@ def test_a_finger_that_overlaps_the_object_does_not_throw_it():
 def test_pruning_never_removes_the_best_combination(seed):
     rng = np.random.default_rng(seed)
     gaps = rng.uniform(0.002, 0.009, size=4)
-    posed = gripped(AROUND, gaps, cube(0.034) if seed % 2 else None)
+    posed = gripped(AROUND, gaps.tolist(), cube(0.034) if seed % 2 else None)
     options = SupportOptions(most_simulations=99)
     with PhysicsWorld(posed.scene) as world:
         world.place(posed, options.protocol, options.reach)

@@ -35,8 +35,8 @@ SCORED_PIXELS = 1500
 FAR_REACH, WIDE_REACH = 0.040, 0.025
 """Greatest distance of a correspondence, m: where a hand's place is in doubt, and where only its fingers are."""
 
-UNSETTLED = 4e-5
-"""A misfit above this area, m², is worth another try: a fingertip is about twice as large."""
+UNSETTLED = 1.2e-5
+"""A misfit above this area, m², is worth another try: where a hand is followed with its own model there is none."""
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,9 @@ too thick make rims, a finger that is elsewhere makes an area."""
 MISFIT = 1.1e-4
 """More than this area, m², where drawn and seen disagree means that some finger is elsewhere."""
 
+SHOWN = 1.2e-3
+"""Of a hand that is followed this much shows, m²; one that is not there hides within, or behind, the other."""
+
 ARM_LENGTH = 0.120
 """Fingers do not reach so far behind what is taken for the wrist, m."""
 
@@ -51,6 +54,7 @@ class Quality:
         coverage: Share of all hand pixels within reach, forearm and all, whose depth agrees with a drawn pixel.
         misfit: Area, m², without its rim, of hand pixels before the wrist that no model explains and of drawn pixels
             before the wrist where something farther away, or free space, is seen.
+        area: Of the drawn pixels whose depth agrees with a hand pixel, m², across the viewing rays.
     """
 
     depth_residual: float
@@ -60,6 +64,7 @@ class Quality:
     score: float
     coverage: float
     misfit: float
+    area: float
 
     @property
     def merit(self) -> float:
@@ -74,7 +79,7 @@ class Quality:
     @property
     def is_lost(self) -> bool:
         """Whether no one should believe this pose."""
-        return not self.agrees or self.misfit > MISFIT
+        return not self.agrees or self.misfit > MISFIT or self.area < SHOWN
 
 
 def measure_quality(view: View, observation: Observation, model: int = 0) -> Quality:
@@ -97,7 +102,7 @@ def measure_quality(view: View, observation: Observation, model: int = 0) -> Qua
         forward,
         0.5 * (wrist + middle),
     )
-    counts, residuals = _compare(
+    counts, area, residuals = _compare(
         view.inverse_depth,
         view.face,
         view.posed.scene.face_models == model,
@@ -117,6 +122,7 @@ def measure_quality(view: View, observation: Observation, model: int = 0) -> Qua
         silhouette_iou=both / union,
         coverage=seen_alike / max(reachable, 1.0),
         misfit=misfit,
+        area=float(area) / (observation.K[0, 0] * observation.K[1, 1]),
         score=1.0 - (float(np.minimum(residuals / CUT, 1.0).sum()) + union - both) / union,
     )
 
@@ -128,6 +134,7 @@ def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forwar
     residuals = np.zeros(height * width)
     number = 0
     drawn = drawn_alike = seen = seen_alike = both = reachable = 0
+    area = 0.0
     for row in range(height):
         for column in range(width):
             f = face[row, column]
@@ -148,13 +155,14 @@ def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forwar
                     number += 1
                     if difference < ALIKE:
                         drawn_alike += 1
+                        area += z * z
             if counts_seen:
                 seen += 1
                 if is_drawn:
                     both += 1
                     if difference < ALIKE:
                         seen_alike += 1
-    return (drawn, drawn_alike, seen, seen_alike, both, reachable), residuals[:number]
+    return (drawn, drawn_alike, seen, seen_alike, both, reachable), area, residuals[:number]
 
 
 @njit(cache=True, nogil=True)

@@ -1,4 +1,4 @@
-"""`handloom calibrate`: fit a hand's size and shape to the first second of a recording."""
+"""`handloom calibrate`: fit a hand's shape to the first two seconds of a recording."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from tracker.errors import TrackerError
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "calibrate",
-        help="fit a hand's size and shape to a recording",
-        description="Place a hand in the first frame of a recording folder, fit its size and shape to the first second "
-        "and write the model, to be used with `handloom track --hand SIDE=MODEL`.",
+        help="fit a hand's shape to a recording",
+        description="Place a hand in the first frame of a recording folder, fit its shape to the first two seconds and "
+        "its joints to the marks of the first frame, and write the model, for `handloom track --hand SIDE=MODEL`.",
     )
     parser.add_argument("recording", type=Path, metavar="PATH", help="a recording folder, with its sequence.json")
     parser.add_argument("--out", type=Path, required=True, metavar="MODEL", help="the model, an npz file")

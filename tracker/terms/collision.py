@@ -46,7 +46,7 @@ class Collision:
     - Fields and normals are held fixed when the correspondences are used.
     """
 
-    weight: float = 1.0
+    weight: float = 0.3
     """γ_c, of each intruding vertex. The paper's 10 (§4.1.3) belongs to sums over pairs, which grow with the mesh; here
     it would fight depth images in which flesh gives way, 5 mm where a pipe presses into the ball of a thumb."""
 

@@ -23,6 +23,9 @@ OPENING = 0.7
 LENGTH = 0.40
 """m."""
 
+CORE = 0.6
+"""What has its middle within this share of the cone is inside the forearm."""
+
 
 def leave_out_forearms(frame: Frame, camera: Camera, hands: list[Array]) -> Frame:
     """The frame with no depth behind the wrists of hands, given by their joints (21, 3) world, m: in a cone about the
@@ -35,10 +38,21 @@ def leave_out_forearms(frame: Frame, camera: Camera, hands: list[Array]) -> Fram
     points = se3.transform(camera.T_world_camera, np.stack([x, y, z], axis=1))
     depth = frame.depth.copy()
     for joints in hands:
-        wrist, knuckle = joints[HAND_JOINTS.index("wrist")], joints[HAND_JOINTS.index("middle_mcp")]
-        backwards = (wrist - knuckle) / max(float(np.linalg.norm(wrist - knuckle)), 1e-9)
-        behind = (points - wrist) @ backwards
-        aside = np.linalg.norm(points - wrist - behind[:, None] * backwards, axis=1)
-        is_arm = (behind > 0.0) & (behind < LENGTH) & (aside < RADIUS + OPENING * behind)
+        is_arm = _depth_in_cone(points, joints) < 1.0
         depth[rows[is_arm], columns[is_arm]] = 0.0
     return replace(frame, depth=depth)
+
+
+def is_in_forearm(point: Array, hands: list[Array]) -> bool:
+    """Whether a point (3,) world, m, lies in the forearm of a hand (21, 3): no object can have its middle there."""
+    return any(bool(_depth_in_cone(point[None], joints)[0] < CORE) for joints in hands)
+
+
+def _depth_in_cone(points: Array, joints: Array) -> Array:
+    """(N,) distance from the forearm's axis as a share of the cone's radius there; infinite before and behind it."""
+    wrist, knuckle = joints[HAND_JOINTS.index("wrist")], joints[HAND_JOINTS.index("middle_mcp")]
+    backwards = (wrist - knuckle) / max(float(np.linalg.norm(wrist - knuckle)), 1e-9)
+    behind = (points - wrist) @ backwards
+    aside = np.linalg.norm(points - wrist - behind[:, None] * backwards, axis=1)
+    share = aside / np.maximum(RADIUS + OPENING * behind, 1e-9)
+    return np.where((behind > 0.0) & (behind < LENGTH), share, np.inf)

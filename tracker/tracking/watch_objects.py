@@ -13,6 +13,7 @@ from tracker.capture.frame import Frame
 from tracker.model.scene import Scene
 from tracker.observation import observe
 from tracker.tracking.find_object import ObjectSearch
+from tracker.tracking.forearm import is_in_forearm
 from tracker.tracking.frame_fit import draw
 from tracker.tracking.look_for_object import look_for_object
 from tracker.tracking.object_quality import ObjectQuality, measure_object_quality
@@ -50,6 +51,9 @@ def watch_objects(
 ) -> tuple[Array, list[WatchedObject]]:
     """The pose (D,) with lost objects put where they were found again, and its objects, in order.
 
+    Sleeves and cuffs are no skin and look like many an object. So forearms are left out of the search, also those of
+    hands that are lost, where they were last; and an object that is in a forearm is lost, however well it fits.
+
     Args:
         frame: Undistorted.
         camera: Its camera.
@@ -61,22 +65,31 @@ def watch_objects(
     objects = [index for index, model in enumerate(setup.models) if not model.hand]
     if not objects or frame.depth is None:
         return pose, []
-    kept = objects if known is None else list(range(len(setup.models)))
-    pose = pose.copy()
+    pose, slices = pose.copy(), setup.scene.pose_slices
+    hands = [index for index in range(len(setup.models)) if index not in objects and np.any(pose[slices[index]])]
     watched = []
     for index in objects:
         quality = _measure(frame, camera, setup, pose, objects, index) if known is None else known[index]
-        status = "lost" if quality.is_lost else "hidden" if quality.is_hidden else "ok"
+        is_arm = known is not None and _is_in_forearm(setup, pose, index, hands)
+        status = "lost" if quality.is_lost or is_arm else "hidden" if quality.is_hidden else "ok"
         if status != "ok" and recover and frame.index % NEAR_EVERY == 0:
             search = ObjectSearch() if frame.index % FAR_EVERY == 0 else NEARBY
-            others = [(setup.models[i], pose[setup.scene.pose_slices[i]]) for i in kept if i != index]
-            last = pose[setup.scene.pose_slices[index]]
+            others = [(setup.models[i], pose[slices[i]]) for i in (*hands, *objects) if i != index]
+            last = pose[slices[index]]
             found = look_for_object(setup.models[index], frame, camera, setup.preprocessing, others, last, search)
-            if found is not None and found.is_believable and found.merit > quality.score + GAIN:
-                pose[setup.scene.pose_slices[index]] = found.pose
+            least = 0.0 if is_arm else quality.score + GAIN
+            if found is not None and found.is_believable and found.merit > least:
+                pose[slices[index]] = found.pose
                 status, quality = "recovered", found.quality
         watched.append(WatchedObject(status, quality))
     return pose, watched
+
+
+def _is_in_forearm(setup: TrackSetup, pose: Array, index: int, hands: list[int]) -> bool:
+    """Whether an object has been mistaken for a sleeve."""
+    posed = setup.scene.pose_at(pose)
+    middle = posed.vertices[setup.scene.vertex_slices[index]].mean(axis=0)
+    return is_in_forearm(middle, [posed.landmarks(hand) for hand in hands])
 
 
 def stop_unseen(setup: TrackSetup, pose: Array, earlier: Array, watched: Sequence[WatchedObject]) -> Array:

@@ -12,6 +12,9 @@ import viser
 
 Color = tuple[int, int, int]
 
+LIFT = 0.0004
+"""m; enough for a patch not to flicker with the mesh below it."""
+
 
 class SceneNodes:
     """Draws into one viser server. Call `begin` before a frame and `end` after it: what was not drawn is hidden."""
@@ -68,9 +71,11 @@ class SceneNodes:
         )
 
     def triangles(self, name: str, corners: npt.NDArray[np.float32], color: Color) -> None:
-        """Triangles (C, 3, 3), world, m, of one colour."""
+        """Triangles (C, 3, 3), world, m, of one colour, lifted off the mesh that they are part of."""
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
         faces = np.arange(3 * len(corners)).reshape(-1, 3)
-        self.mesh(name, corners.reshape(-1, 3), faces, color, opacity=None)
+        self.mesh(name, (corners + LIFT * normals[:, None]).reshape(-1, 3), faces, color, opacity=None)
 
     def colored_mesh(
         self, name: str, vertices: npt.NDArray[Any], faces: npt.NDArray[Any], colors: npt.NDArray[np.uint8]

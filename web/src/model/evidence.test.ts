@@ -12,8 +12,8 @@ test("a frame where nothing is found says so", () => {
 });
 
 test("an object is held, or falls for want of fingers, or would be held by those chosen", () => {
-  expect(describeContacts({ ...contacts, is_stable: true, displacement_mm: 0.82 })).toBe("pipe is held: simulated, it moves 0.8 mm (less than 3 mm).");
-  expect(describeContacts(contacts)).toBe("pipe falls: no finger part is within 10 mm of it.");
+  expect(describeContacts({ ...contacts, is_stable: true, displacement_mm: 0.82 })).toBe("The pipe is held: simulated, it moves 0.8 mm (less than 3 mm).");
+  expect(describeContacts(contacts)).toBe("The pipe falls: no finger part is within 10 mm of it.");
   expect(describeContacts({ ...contacts, displacement_mm: 7, parts: [part] })).toContain("slips by 7.0 mm, and no combination");
   expect(describeContacts({ ...contacts, held_displacement_mm: 0.4, parts: [{ ...part, is_chosen: true }] })).toContain("in contact it moves 0.4 mm");
 });

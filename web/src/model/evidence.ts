@@ -29,8 +29,9 @@ export function describeCollisions({ pairs, vertices, deepest_mm: deepest }: Col
 
 export function describeContacts({ object, is_stable: isStable, displacement_mm: moved, held_displacement_mm: held, parts }: Contacts): string {
   if (object === null) return "There is nothing to hold: physics needs an object and a hand.";
-  if (isStable) return `${object} is held: simulated, it moves ${mm(moved)} (less than ${STABLE_BELOW_MM} mm).`;
-  const falls = moved >= SIMULATION_ENDS_MM ? `${object} falls` : `${object} slips by ${mm(moved)}`;
+  const thing = `The ${object.replaceAll("_", " ")}`;
+  if (isStable) return `${thing} is held: simulated, it moves ${mm(moved)} (less than ${STABLE_BELOW_MM} mm).`;
+  const falls = moved >= SIMULATION_ENDS_MM ? `${thing} falls` : `${thing} slips by ${mm(moved)}`;
   if (parts.length === 0) return `${falls}: no finger part is within 10 mm of it.`;
   if (parts.some((part) => part.is_chosen)) return `${falls}; with the chosen parts in contact it moves ${mm(held)}.`;
   return `${falls}, and no combination of the parts near it would hold it.`;

@@ -22,8 +22,8 @@ class ShownContact:
         hand: Index of its hand among the scene's models.
         part: Such as "index_distal".
         is_chosen: Whether physics would draw it into contact.
-        distance: Of the nearest vertex of the part to the object's surface, m, below 0 inside.
-        segment: (2, 3) from that vertex to the object, world, m.
+        distance: Between the part's skin and the object's surface, m, below 0 inside.
+        segment: (2, 3) from the nearest point of the part to that of the object, world, m.
         triangles: (F, 3, 3) corners of the part's skin, world, m.
     """
 
@@ -81,6 +81,6 @@ def _show(posed: PosedScene, contact: Contact, is_chosen: bool) -> ShownContact:
         contact.part,
         is_chosen,
         nearest.distance,
-        np.stack([posed.vertices[nearest.vertex], nearest.point]).astype(np.float32),
+        np.stack([nearest.part_point, nearest.point]).astype(np.float32),
         posed.vertices[model.faces[of_part] + where.start].astype(np.float32),
     )

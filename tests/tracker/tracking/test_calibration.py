@@ -62,6 +62,7 @@ def test_another_persons_hand_is_found_from_depth_and_marks(tmp_path):
     performance = perform({"right": person}, "open-close", 60)
     sequence = write_recording(performance, tmp_path / "hand", RecordingOptions(range(0, 40, 4)), save_npz_model)
     truth = load_truth(tmp_path / "hand" / "truth.npz")
+    assert sequence.annotations_path is not None
     annotations = load_annotations(sequence.annotations_path)
     error = {}
     for calibrate in (False, True):

@@ -14,7 +14,7 @@ from tracker.capture.frame import Frame
 from tracker.errors import FrameError
 from tracker.observation.depth_edges import find_depth_edges_into
 from tracker.observation.normals import compute_points_and_normals_into
-from tracker.observation.skin import compute_skin_ratio
+from tracker.observation.skin import compute_skin_log_ratio
 
 HAND, OTHER = 1, 2
 """Bits of a pixel's label: may be hand, may be something else. Without colour a pixel is both."""
@@ -77,7 +77,7 @@ class Observation:
         labels: (H, W) uint8 bits HAND and OTHER; 0 where there is no depth.
         nearest_pixel: (2, H, W, 2) int16 row and column of the nearest pixel that may be hand, and may be other; pixels
             in the depth shadow of a hand that have the colour of skin may be hand.
-        nearest_edge: (2, H, W, 2) int16 the same for depth discontinuities of hand and other; -1 if there is none.
+        edges: (2, H, W) uint8 1 at depth discontinuities of hand, and of other.
     """
 
     region: Region
@@ -88,7 +88,7 @@ class Observation:
     depth: npt.NDArray[np.float32]
     labels: npt.NDArray[np.uint8]
     nearest_pixel: npt.NDArray[np.int16]
-    nearest_edge: npt.NDArray[np.int16]
+    edges: npt.NDArray[np.uint8]
 
     def thin(self, stride: int) -> Observation:
         """Every `stride`-th pixel, for scoring poses; nearest pixels are left out."""
@@ -105,7 +105,7 @@ class Observation:
             depth=np.ascontiguousarray(self.depth[every]),
             labels=labels,
             nearest_pixel=nowhere,
-            nearest_edge=nowhere,
+            edges=np.zeros((2, *labels.shape), dtype=np.uint8),
         )
 
     @property
@@ -183,7 +183,7 @@ def _label(
     if color is None:
         return np.where(inside, np.uint8(HAND | OTHER), np.uint8(0)), np.zeros_like(inside)
     weight = inside.astype(np.float32)
-    anywhere = np.clip(np.log(np.maximum(compute_skin_ratio(color), 1e-9)), -4.0, 2.0)
+    anywhere = compute_skin_log_ratio(color)
     log_ratio = anywhere * weight
     mean = cv2.blur(log_ratio, (9, 9)) / np.maximum(cv2.blur(weight, (9, 9)), 1e-3)
     is_hand = 0.5 * (mean + log_ratio) > threshold
@@ -197,8 +197,8 @@ def _nearest_of(
     depth: npt.NDArray[np.float32],
     jump: float,
     is_alike: npt.NDArray[np.bool_],
-) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.int16]]:
-    """Nearest pixel and nearest discontinuity of one label.
+) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.uint8]]:
+    """Nearest pixel and discontinuities of one label.
 
     Small holes between its pixels count as its own, and so do alike pixels without depth beside them: free space is
     only what was seen to be free.
@@ -210,12 +210,11 @@ def _nearest_of(
         beside = cv2.dilate(mask, np.ones((2 * SHADOW + 1, 2 * SHADOW + 1), np.uint8)) > 0
         mask[beside & is_alike] = 1
     closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
-    return _nearest(closed.astype(np.uint8)), _nearest(edges)
+    return _nearest(closed), edges
 
 
-def _nowhere(labels: npt.NDArray[np.uint8]) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.int16]]:
-    nothing = np.full((*labels.shape, 2), -1, dtype=np.int16)
-    return nothing, nothing
+def _nowhere(labels: npt.NDArray[np.uint8]) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.uint8]]:
+    return np.full((*labels.shape, 2), -1, dtype=np.int16), np.zeros_like(labels)
 
 
 def _nearest(mask: npt.NDArray[np.uint8]) -> npt.NDArray[np.int16]:

@@ -58,8 +58,12 @@ _OTHER = np.array(
 )
 
 
-def compute_skin_ratio(color: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
-    """Likelihood ratio skin : non-skin of each pixel of an RGB image (H, W, 3): (H, W)."""
+LEAST, MOST = -4.0, 2.0
+"""A single pixel says no more than this about its neighbours, log ratio."""
+
+
+def compute_skin_log_ratio(color: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
+    """Log likelihood ratio skin : non-skin of each pixel of an RGB image (H, W, 3), kept in LEAST..MOST: (H, W)."""
     assert color.ndim == 3 and color.shape[2] == 3
     ratio = np.zeros(color.shape[:2], dtype=np.float32)
     _look_up_into(ratio, np.ascontiguousarray(color), _table())
@@ -68,7 +72,7 @@ def compute_skin_ratio(color: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
 
 @cache
 def _table() -> npt.NDArray[np.float32]:
-    """(LEVELS, LEVELS, LEVELS) ratio at the centre of each cell of the quantised RGB cube."""
+    """(LEVELS, LEVELS, LEVELS) log ratio at the centre of each cell of the quantised RGB cube."""
     centers = (np.arange(LEVELS) + 0.5) * (256.0 / LEVELS) - 0.5
 
     def likelihood(mixture: np.ndarray) -> np.ndarray:
@@ -79,7 +83,8 @@ def _table() -> npt.NDArray[np.float32]:
             total += scale * r[:, None, None] * g[None, :, None] * b[None, None, :]
         return total
 
-    return (likelihood(_SKIN) / np.maximum(likelihood(_OTHER), 1e-30)).astype(np.float32)
+    ratio = likelihood(_SKIN) / np.maximum(likelihood(_OTHER), 1e-30)
+    return np.clip(np.log(np.maximum(ratio, 1e-9)), LEAST, MOST).astype(np.float32)
 
 
 @njit(cache=True, nogil=True)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
 from tracker.observation import HAND
+from tracker.terms.nearby_pixels import find_nearby_pixels
 from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -30,7 +31,7 @@ class DataToModel:
     max_distance: float = 0.030
     """m (30 mm, §3.2.3)."""
 
-    max_pixels: float = 8.0
+    max_pixels: int = 8
     """px."""
 
     stride: int = 2
@@ -38,6 +39,9 @@ class DataToModel:
 
     jump: float = 0.015
     """Depth step of a discontinuity, m."""
+
+    def coarse(self) -> DataToModel:
+        return replace(self, stride=2 * self.stride)
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToLine:
         """Match discontinuities of the drawn model to those of the image."""
@@ -59,12 +63,12 @@ class DataToModel:
             view.face,
             observation.depth,
             observation.labels,
-            observation.nearest_edge,
+            observation.edges,
             view.K,
             observation.T_world_camera,
             self.stride,
             self.jump,
-            self.max_pixels,
+            find_nearby_pixels(self.max_pixels),
             self.max_distance,
         )
         weights = np.full(count, self.weight)
@@ -84,12 +88,12 @@ def _find_into(
     face,
     depth,
     labels,
-    nearest_edge,
+    edges,
     K,
     T,
     stride,
     jump,
-    max_pixels,
+    nearby,
     max_distance,
 ):
     height, width = labels.shape
@@ -110,11 +114,13 @@ def _find_into(
             ):
                 continue
             kind = 0 if face_labels[f] & HAND != 0 else 1
-            to_row, to_column = nearest_edge[kind, row, column, 0], nearest_edge[kind, row, column, 1]
+            to_row, to_column = -1, -1
+            for step in range(len(nearby)):
+                r, c = row + nearby[step, 0], column + nearby[step, 1]
+                if r >= 0 and c >= 0 and r < height and c < width and edges[kind, r, c]:
+                    to_row, to_column = r, c
+                    break
             if to_row < 0 or labels[to_row, to_column] & face_labels[f] == 0:
-                continue
-            dr, dc = to_row - row, to_column - column
-            if dr * dr + dc * dc > max_pixels * max_pixels:
                 continue
             total, seen = 0.0, 0
             for r in range(max(0, to_row - 1), min(height, to_row + 2)):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -32,6 +32,9 @@ class DataToSurface:
 
     max_angle: float = 60.0
     """Between the normals of data and face, deg."""
+
+    def coarse(self) -> DataToSurface:
+        return replace(self, stride=2 * self.stride)
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane:
         """Match data pixels to the drawn surface."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -35,8 +35,14 @@ class ModelToData:
     to_plane: bool = True
     """Point-to-plane (Eq. 7) or point-to-point (Eq. 6)."""
 
+    stride: int = 1
+    """Every so many vertices."""
+
     visible_within: float = 0.003
     """A vertex is visible when it is at most this far behind the rendered surface, m."""
+
+    def coarse(self) -> ModelToData:
+        return replace(self, stride=4 * self.stride)
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane | PointToPoint:
         """Match visible vertices to the cloud."""
@@ -47,6 +53,7 @@ class ModelToData:
         count = _find_into(
             ids,
             targets,
+            self.stride,
             posed.vertices,
             posed.normals,
             context.vertex_labels,
@@ -74,6 +81,7 @@ class ModelToData:
 def _find_into(
     ids,
     targets,
+    stride,
     vertices,
     vertex_normals,
     vertex_labels,
@@ -89,7 +97,7 @@ def _find_into(
 ):
     height, width = labels.shape
     count = 0
-    for v in range(len(vertices)):
+    for v in range(0, len(vertices), stride):
         inverse = projected[v, 2]
         if inverse <= 0.0:
             continue

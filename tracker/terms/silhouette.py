@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -33,6 +33,9 @@ class Silhouette:
 
     max_distance: float = 0.040
     """A farther hand pixel pulls no harder than this, m."""
+
+    def coarse(self) -> Silhouette:
+        return replace(self, stride=2 * self.stride)
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane:
         """Look for drawn pixels in free space."""

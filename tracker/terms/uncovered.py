@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
+from tracker.terms.nearby_pixels import find_nearby_pixels
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -43,6 +44,9 @@ class Uncovered:
     max_distance: float = 0.040
     """To the nearest vertex in space, m."""
 
+    def coarse(self) -> Uncovered:
+        return replace(self, stride=2 * self.stride)
+
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane:
         """Look for data pixels that nothing covers."""
         view, observation = context.view, context.observation
@@ -72,7 +76,7 @@ class Uncovered:
             labels,
             view.K,
             observation.T_world_camera,
-            self.max_pixels,
+            find_nearby_pixels(self.max_pixels),
             self.within,
             self.far_stride,
             self.max_distance,
@@ -101,7 +105,7 @@ def _find_into(
     labels,
     K,
     T,
-    max_pixels,
+    nearby,
     within,
     far_stride,
     max_distance,
@@ -115,26 +119,14 @@ def _find_into(
             if label == 0 or _covers(face, face_labels, inverse_depth, row, column, label, depth[row, column], within):
                 continue
             z = depth[row, column]
-            best = max_pixels * max_pixels + 1
             to_row, to_column = -1, -1
-            ring = 1
-            while ring * ring < best and ring <= max_pixels:
-                for side in range(2 * ring + 1):
-                    for edge in range(4):
-                        if edge == 0:
-                            r, c = row - ring, column - ring + side
-                        elif edge == 1:
-                            r, c = row + ring, column - ring + side
-                        elif edge == 2:
-                            r, c = row - ring + side, column - ring
-                        else:
-                            r, c = row - ring + side, column + ring
-                        if r < 0 or c < 0 or r >= height or c >= width:
-                            continue
-                        apart = (r - row) ** 2 + (c - column) ** 2
-                        if apart < best and _covers(face, face_labels, inverse_depth, r, c, label, z, within):
-                            best, to_row, to_column = apart, r, c
-                ring += 1
+            for step in range(1, len(nearby)):
+                r, c = row + nearby[step, 0], column + nearby[step, 1]
+                if r < 0 or c < 0 or r >= height or c >= width:
+                    continue
+                if _covers(face, face_labels, inverse_depth, r, c, label, z, within):
+                    to_row, to_column = r, c
+                    break
             if to_row >= 0:
                 corners = faces[face[to_row, to_column]]
                 if is_palm[corners[0]] or is_palm[corners[1]] or is_palm[corners[2]]:

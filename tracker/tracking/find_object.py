@@ -189,7 +189,7 @@ def _wide_objective(reach: float) -> Objective:
         terms={
             "model_to_data": ModelToData(max_distance=reach, max_angle=60.0),
             "data_to_surface": DataToSurface(max_distance=reach, stride=2),
-            "data_to_model": DataToModel(max_pixels=6.0),
+            "data_to_model": DataToModel(max_pixels=6),
             "silhouette": Silhouette(weight=0.5, stride=1),
         },
         regularization=Regularization(2.0),

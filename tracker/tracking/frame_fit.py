@@ -27,6 +27,7 @@ class FitOptions:
         damping: Levenberg-Marquardt share of the diagonal.
         max_turn: Largest change of an angle in one iteration, rad.
         max_shift: Largest change of a root's position in one iteration, m.
+        fine: So many last iterations use every match, those before about every fourth.
         stop_below: Stop when the mean joint moves less, m; 0 never stops early ([T16] §4.1.1 uses 0.2 mm).
     """
 
@@ -35,6 +36,7 @@ class FitOptions:
     max_turn: float = 0.4
     max_shift: float = 0.05
     stop_below: float = 0.0
+    fine: int = 4
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,9 @@ def fit_frame(
     pose, history = start, []
     stages = dict.fromkeys(("posing", "rendering", *objective.terms, "solving"), 0.0)
     joints = None
-    for _ in range(options.iterations):
+    coarse = objective.coarse()
+    for iteration in range(options.iterations):
+        current = coarse if iteration < options.iterations - options.fine else objective
         t0 = perf_counter()
         posed = scene.pose_at(pose)
         t1 = perf_counter()
@@ -103,12 +107,12 @@ def fit_frame(
         stages["posing"] += t1 - t0
         stages["rendering"] += t2 - t1
         residuals: dict[str, Residual] = {}
-        for name, term in objective.terms.items():
+        for name, term in current.terms.items():
             t0 = perf_counter()
             residuals[name] = term.find(posed, context)
             stages[name] += perf_counter() - t0
         t0 = perf_counter()
-        JtJ, Jtr, costs = objective.linearize(posed, residuals, previous)
+        JtJ, Jtr, costs = current.linearize(posed, residuals, previous)
         history.append(costs)
         pose = scene.retract(pose, compute_damped_step(JtJ, Jtr, options.damping, limits))
         stages["solving"] += perf_counter() - t0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -43,6 +43,12 @@ class Objective:
     anatomy: AnatomicalLimits = field(default_factory=AnatomicalLimits)
     regularization: Regularization = field(default_factory=Regularization)
     bending: Bending = field(default_factory=Bending)
+
+    def coarse(self) -> Objective:
+        """The same with fewer matches where terms can do with fewer, for iterations that only have to come near."""
+        return replace(
+            self, terms={name: getattr(term, "coarse", lambda t=term: t)() for name, term in self.terms.items()}
+        )
 
     def find(self, posed: PosedScene, context: FrameContext) -> dict[str, Residual]:
         """Correspondences of every term at the current pose."""

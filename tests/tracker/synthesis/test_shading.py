@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tracker.observation.skin import compute_skin_ratio
+from tracker.observation.skin import compute_skin_log_ratio
 from tracker.synthesis.performance import Performance, render_moment
 from tracker.synthesis.shading import OBJECT_COLORS, SKIN, compute_cosines, shade
 
@@ -18,7 +18,7 @@ def test_only_hands_have_the_colour_of_skin(performance, albedo):
     performance = Performance("one colour", 30.0, performance.camera, (replace(actor, albedo=albedo),))
     moment = render_moment(performance, 0)
     color = shade(performance, moment, compute_cosines(performance, moment), np.random.default_rng(0))
-    is_skin = compute_skin_ratio(color) > 1.0
+    is_skin = compute_skin_log_ratio(color) > 0.0
     assert not is_skin[moment.face < 0].any(), "the background is not skin"
     share = is_skin[moment.face >= 0].mean()
     assert share > 0.995 if albedo == SKIN else share == 0.0

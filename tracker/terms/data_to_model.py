@@ -41,6 +41,7 @@ class DataToModel:
     """Depth step of a discontinuity, m."""
 
     def coarse(self) -> DataToModel:
+        """The same term with fewer matches."""
         return replace(self, stride=2 * self.stride)
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToLine:

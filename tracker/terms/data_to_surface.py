@@ -34,6 +34,7 @@ class DataToSurface:
     """Between the normals of data and face, deg."""
 
     def coarse(self) -> DataToSurface:
+        """The same term with fewer matches."""
         return replace(self, stride=2 * self.stride)
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane:

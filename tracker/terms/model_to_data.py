@@ -42,6 +42,7 @@ class ModelToData:
     """A vertex is visible when it is at most this far behind the rendered surface, m."""
 
     def coarse(self) -> ModelToData:
+        """The same term with fewer matches."""
         return replace(self, stride=4 * self.stride)
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane | PointToPoint:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -84,4 +84,13 @@ class Term(Protocol):
 
     def find(self, posed: PosedScene, context: FrameContext) -> Residual:
         """Look for correspondences at the current pose."""
+        ...
+
+
+@runtime_checkable
+class Thinnable(Protocol):
+    """A term that can do with fewer matches."""
+
+    def coarse(self) -> Term:
+        """The same term with about a quarter of its matches."""
         ...

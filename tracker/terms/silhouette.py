@@ -35,6 +35,7 @@ class Silhouette:
     """A farther hand pixel pulls no harder than this, m."""
 
     def coarse(self) -> Silhouette:
+        """The same term with fewer matches."""
         return replace(self, stride=2 * self.stride)
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane:

@@ -45,6 +45,7 @@ class Uncovered:
     """To the nearest vertex in space, m."""
 
     def coarse(self) -> Uncovered:
+        """The same term with fewer matches."""
         return replace(self, stride=2 * self.stride)
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane:

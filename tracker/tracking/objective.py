@@ -13,7 +13,7 @@ from tracker.terms.data_to_surface import DataToSurface
 from tracker.terms.joint_prior import AnatomicalLimits, Bending, Regularization
 from tracker.terms.model_to_data import ModelToData
 from tracker.terms.normal_equations import NormalEquations
-from tracker.terms.residual import FrameContext, Residual, Term
+from tracker.terms.residual import FrameContext, Residual, Term, Thinnable
 from tracker.terms.silhouette import Silhouette
 from tracker.terms.uncovered import Uncovered
 
@@ -46,9 +46,8 @@ class Objective:
 
     def coarse(self) -> Objective:
         """The same with fewer matches where terms can do with fewer, for iterations that only have to come near."""
-        return replace(
-            self, terms={name: getattr(term, "coarse", lambda t=term: t)() for name, term in self.terms.items()}
-        )
+        thinned = {n: term.coarse() if isinstance(term, Thinnable) else term for n, term in self.terms.items()}
+        return replace(self, terms=thinned)
 
     def find(self, posed: PosedScene, context: FrameContext) -> dict[str, Residual]:
         """Correspondences of every term at the current pose."""

@@ -122,3 +122,14 @@ def test_matches_of_model_to_data_are_the_nearest_points_allowed(rng):
         allowed = normals @ normal >= np.cos(np.deg2rad(term.max_angle))
         distances = np.linalg.norm(cloud[allowed] - posed.vertices[corner], axis=1)
         assert np.linalg.norm(target - posed.vertices[corner]) <= distances.min() + 2e-4  # the ring bound is lateral
+
+
+@every_term
+def test_a_coarse_term_has_some_of_the_matches_and_no_others(term, rng):
+    drawn = drawn_tube()
+    posed = drawn.scene.pose_at(drawn.disturbed(rng))
+    context = drawn.context(posed)
+    whole, some = (t.find(posed, context).segments(posed) for t in (term, term.coarse()))
+    assert 0 < len(some) < 0.7 * len(whole)
+    if not isinstance(term, DataToSurface | Silhouette | Uncovered):  # their grids of pixels are shifted
+        assert {tuple(s) for s in some.reshape(-1, 6)} <= {tuple(s) for s in whole.reshape(-1, 6)}

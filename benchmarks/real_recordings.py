@@ -1,4 +1,4 @@
-"""How well real recordings are tracked: `python benchmarks/real_recordings.py FOLDER [--pictures DIR]`.
+"""How well real recordings are tracked: `python benchmarks/real_recordings.py FOLDER [--ball] [--pictures DIR]`.
 
 FOLDER holds `uvr_sphere_green` (a hand turning a ball, with colour) and `sr305_depth` (an open hand, depth alone).
 There is no truth; what is measured is whether the fitted surface lies on the depth image, and pictures are made to look
@@ -13,6 +13,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from real_ball import add_ball, describe_ball, measure_radius
 
 from tracker.capture.annotations import Annotations, load_annotations
 from tracker.capture.import_options import ImportOptions
@@ -115,6 +116,7 @@ def main() -> None:
     parser.add_argument("--annotations", type=Path, help="of uvr_sphere_green; it starts by itself otherwise")
     parser.add_argument("--pictures", type=Path, help="write four frames of each recording here")
     parser.add_argument("--outlines", type=Path, help="write one picture a recording here, outlines in place of images")
+    parser.add_argument("--ball", action="store_true", help="track uvr_sphere_green again with its ball as an object")
     args = parser.parse_args()
     print("| recording | frames | ok | recovered | lost | median mm | worst | % within 10 mm | worst | median ms |")
     print("|---|---|---|---|---|---|---|---|---|---|")
@@ -124,18 +126,31 @@ def main() -> None:
             run_import(args.folder / name, folder, "rgbd_folder", RECORDINGS[name])
             sequence = load_sequence(folder)
             marked = args.annotations if name == "uvr_sphere_green" else None
-            found = track(sequence, load_annotations(marked) if marked else None)
+            annotations = load_annotations(marked) if marked else None
+            found = track(sequence, annotations)
             print(measure(name, sequence, found), flush=True)
-            if args.outlines:
-                args.outlines.mkdir(parents=True, exist_ok=True)
-                places = np.linspace(0, len(found.frame) - 1, 6).astype(int)[1:5]
-                tiles = [outline(sequence, found, int(place)) for place in places]
-                cv2.imwrite(str(args.outlines / f"{name.replace('/', '_')}.png"), np.hstack(tiles))
-            if args.pictures:
-                args.pictures.mkdir(parents=True, exist_ok=True)
-                for place in np.linspace(0, len(found.frame) - 1, 4).astype(int):
-                    file = f"{name.replace('/', '_')}_{int(found.frame[place]):03d}.png"
-                    cv2.imwrite(str(args.pictures / file), draw(sequence, found, int(place)))
+            show(args, name, sequence, found)
+            if args.ball and name == "uvr_sphere_green":
+                radius = measure_radius(sequence, found)
+                sequence = add_ball(sequence, radius)
+                found = track(sequence, annotations)
+                print(measure(f"{name}, with its ball", sequence, found), flush=True)
+                print(f"radius {1e3 * radius:.1f} mm; {describe_ball(sequence, found)}", flush=True)
+                show(args, f"{name}_with_ball", sequence, found)
+
+
+def show(args: argparse.Namespace, name: str, sequence: Sequence, found: Track) -> None:
+    """Write the pictures that were asked for."""
+    if args.outlines:
+        args.outlines.mkdir(parents=True, exist_ok=True)
+        places = np.linspace(0, len(found.frame) - 1, 6).astype(int)[1:5]
+        tiles = [outline(sequence, found, int(place)) for place in places]
+        cv2.imwrite(str(args.outlines / f"{name.replace('/', '_')}.png"), np.hstack(tiles))
+    if args.pictures:
+        args.pictures.mkdir(parents=True, exist_ok=True)
+        for place in np.linspace(0, len(found.frame) - 1, 4).astype(int):
+            file = f"{name.replace('/', '_')}_{int(found.frame[place]):03d}.png"
+            cv2.imwrite(str(args.pictures / file), draw(sequence, found, int(place)))
 
 
 if __name__ == "__main__":

@@ -78,12 +78,16 @@ def test_a_preset_stands_for_its_options_and_what_is_given_besides_wins(recordin
         assert (options["terms"], options["iterations"]) == wanted
 
 
-def test_bench_prints_the_time_of_a_frame_and_its_floor(capsys):
+def test_bench_prints_the_time_of_a_frame_and_its_floor_for_every_case(capsys):
     assert main(["bench", "tracking", "--frames", "10", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)["one_hand"]
-    assert {"median_ms", "floor_ms", "stages_ms"} <= set(found)
-    assert found["floor_ms"] > 0
-    assert found["lost"] == 0
+    result = json.loads(capsys.readouterr().out)
+    assert list(result) == ["one_hand", "two_hands", "two_hands_object_physics"]
+    for found in result.values():
+        assert {"median_ms", "floor_ms", "stages_ms"} <= set(found)
+        assert 0 < found["floor_ms"] < 10 * found["median_ms"]
+        assert found["lost"] == 0
+    assert result["two_hands_object_physics"]["floor_stages_ms"]["physics"] > 0
+    assert "collision" in result["one_hand"]["floor_stages_ms"]
 
 
 @pytest.mark.parametrize(

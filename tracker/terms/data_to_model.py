@@ -48,10 +48,10 @@ class DataToModel:
         """Match discontinuities of the drawn model to those of the image."""
         view, observation = context.view, context.observation
         room = max(1, int(np.count_nonzero(view.face >= 0)))
-        ids = np.zeros((room, 3), dtype=np.int32)
-        barycentric = np.zeros((room, 3))
-        directions = np.zeros((room, 3))
-        moments = np.zeros((room, 3))
+        ids = np.empty((room, 3), dtype=np.int32)
+        barycentric = np.empty((room, 3))
+        directions = np.empty((room, 3))
+        moments = np.empty((room, 3))
         count = _find_into(
             ids,
             barycentric,

@@ -49,8 +49,8 @@ class ModelToData:
         """Match visible vertices to the cloud."""
         view, observation = context.view, context.observation
         vertices = len(posed.vertices)
-        ids = np.zeros(vertices, dtype=np.int32)
-        targets = np.zeros((vertices, 3))
+        ids = np.empty(vertices, dtype=np.int32)
+        targets = np.empty((vertices, 3))
         count = _find_into(
             ids,
             targets,

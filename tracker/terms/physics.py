@@ -46,7 +46,7 @@ class Physics:
     """Whether a part that is inside the object is drawn out to its surface, instead of being left alone."""
 
     def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToPoint | PointToPlane:
-        """The nearest pair of each contact that is still apart, or with `draws_out` of each; the image plays no part."""
+        """The nearest pair of each contact that is apart, or with `draws_out` of each; the image plays no part."""
         pairs = [find_closest_point(posed, c.hand, c.part, c.object) for c in self.contacts]
         pairs = [pair for pair in pairs if self.draws_out or pair.distance > 0.0]
         count = len(pairs)

@@ -43,10 +43,10 @@ class Silhouette:
         view, observation = context.view, context.observation
         height, width = observation.labels.shape
         room = ((height + self.stride - 1) // self.stride) * ((width + self.stride - 1) // self.stride)
-        ids = np.zeros((room, 3), dtype=np.int32)
-        barycentric = np.zeros((room, 3))
-        targets = np.zeros((room, 3))
-        normals = np.zeros((room, 3))
+        ids = np.empty((room, 3), dtype=np.int32)
+        barycentric = np.empty((room, 3))
+        targets = np.empty((room, 3))
+        normals = np.empty((room, 3))
         count = _find_into(
             ids,
             barycentric,

@@ -54,10 +54,10 @@ class Uncovered:
         faces, labels = posed.scene.arrays.faces, observation.labels
         is_palm = posed.scene.is_palm
         room = (labels.shape[0] // self.stride + 1) * (labels.shape[1] // self.stride + 1)
-        ids = np.zeros((room, 3), dtype=np.int32)
-        barycentric = np.zeros((room, 3))
-        targets = np.zeros((room, 3))
-        normals = np.zeros((room, 3))
+        ids = np.empty((room, 3), dtype=np.int32)
+        barycentric = np.empty((room, 3))
+        targets = np.empty((room, 3))
+        normals = np.empty((room, 3))
         count = _find_into(
             ids,
             barycentric,

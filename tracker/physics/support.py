@@ -67,6 +67,7 @@ class Support:
         is_stable: Whether that is little.
         candidates: Parts near enough to be moved, nearest first.
         contacts: The parts that hold the object best; none when it is held as it is, or nothing can hold it.
+        touching: The other candidates that touch it as things are, and help.
         held_displacement: With these parts in contact, m; `displacement` when there are none.
         simulated: Combinations simulated.
         passed: Combinations that the wrench test let pass.
@@ -79,15 +80,14 @@ class Support:
     held_displacement: float
     simulated: int
     passed: int
+    touching: tuple[Contact, ...] = ()
 
 
 FALLEN = 0.030
 """m; an object that has moved so far is not coming back, and the simulation of a combination ends."""
 
 
-def find_support(
-    world: PhysicsWorld, posed: PosedScene, options: SupportOptions | None = None, likely: Sequence[Contact] = ()
-) -> Support:
+def find_support(world: PhysicsWorld, posed: PosedScene, options: SupportOptions | None = None) -> Support:
     """Simulate the pose; if the object falls, try the finger parts near it and keep what holds it best.
 
     Overlaps of hulls are resolved before anything is simulated (a hull is set back until it just touches), because
@@ -101,7 +101,6 @@ def find_support(
         world: Hulls of the scene.
         posed: The scene.
         options: How to look.
-        likely: Contacts to try first, such as those of the frame before.
     """
     options = options or SupportOptions()
     gaps, settled, displacement = _settle(world, posed, options)
@@ -111,10 +110,6 @@ def find_support(
         is_stable = displacement < options.stable_below
         return Support(displacement, is_stable, candidates, (), displacement, 0, 0)
     ranked, passed = rank_combinations(world, gaps, [gap for gap, _ in movable], options)
-    first = tuple(place for place, (_, contact) in enumerate(movable) if contact in likely)
-    if first in ranked[:passed]:
-        ranked.remove(first)
-        ranked.insert(0, first)
     best: tuple[int, ...] = ()
     best_displacement, simulated = displacement, 0
     for combination in ranked[: min(passed, options.most_simulations)]:
@@ -129,7 +124,9 @@ def find_support(
     if best_displacement >= FALLEN:
         best, best_displacement = (), displacement
     contacts = tuple(movable[i][1] for i in best)
-    return Support(displacement, False, candidates, contacts, best_displacement, simulated, passed)
+    touched = [contact for gap, contact in movable if gap.distance <= 2.0 * options.protocol.skin]
+    touching = tuple(contact for contact in touched if contact not in contacts)
+    return Support(displacement, False, candidates, contacts, best_displacement, simulated, passed, touching)
 
 
 def find_settled_displacement(world: PhysicsWorld, posed: PosedScene, options: SupportOptions | None = None) -> float:

@@ -99,6 +99,7 @@ def test_the_hand_moves_and_the_object_does_not_unless_asked():
 def test_parts_in_contact_and_no_contacts_ask_for_nothing(term):
     sunken = gripped(PINCH, (-0.002, -0.002))
     assert term.find(sunken).count == 0
+    assert Physics(CONTACTS, draws_out=True).find(sunken).count == 2
     posed = apart()
     block = Physics((), to_plane=term.to_plane, moves_object=term.moves_object).find(posed).linearize(posed)
     assert block.residual.shape == (0,) and block.jacobian.shape == (0, posed.scene.num_dofs)
@@ -121,3 +122,16 @@ def test_support_found_and_term_together_bring_parts_5_mm_away_into_contact():
         after = [find_closest_point(posed, c.hand, c.part, c.object).distance for c in support.contacts]
         assert min(before) > 0.004 and max(after) < 0.0003
         assert find_support(world, posed).is_stable
+
+
+def test_sunken_parts_come_back_to_the_surface_where_they_are_to_be_drawn_out():
+    posed = gripped(PINCH, (-0.003, -0.002))
+    scene, term = posed.scene, Physics(CONTACTS, draws_out=True)
+    for _ in range(10):
+        residual, equations = term.find(posed), NormalEquations.at(posed)
+        residual.add_to(equations)
+        JtJ, Jtr = equations.assemble()
+        step = compute_damped_step(JtJ + 1e-3 * np.eye(len(JtJ)), Jtr, 1e-3, np.full(scene.num_dofs, 0.2))
+        posed = scene.pose_at(scene.retract(posed.pose, step))
+    after = [find_closest_point(posed, c.hand, c.part, c.object).distance for c in CONTACTS]
+    assert np.abs(after).max() < 0.0005

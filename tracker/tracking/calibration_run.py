@@ -35,6 +35,10 @@ WHOLE = 0.9
 """Share of a hand's own movement that is left out when poses are compared; what remains tells views apart."""
 
 
+FEWEST_PIXELS = 200
+"""A frame with fewer hand pixels says nothing of a hand's shape."""
+
+
 @dataclass(frozen=True)
 class Pass:
     """One time through the beginning of the recording.
@@ -82,7 +86,7 @@ def calibrate_hands(
         chosen = _choose(setup, poses, each.frames)
         seen = [_look(sequence, setup, frames, place, poses[place]) for place in chosen]
         known = [frame for frame in seen if frame is not None]
-        if not known:
+        if not known or seen[0] is None:
             break
         found = calibrate_shapes(
             setup.scene, known, each.options, lambda share, s=stage: tell(f"fitting the shape {s}", share)
@@ -137,10 +141,13 @@ def _look(sequence: Sequence, setup: TrackSetup, frames: range, place: int, pose
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
         return None
+    seen = observe(frame, camera, region, setup.preprocessing)
+    if seen.hand_count < FEWEST_PIXELS:
+        return None
     marks = {} if place > 0 else setup.marks
     joints = {
         model: mark_joints(setup.scene, model, marks[name], camera)
         for model, name in enumerate(setup.names)
         if name in marks
     }
-    return CalibrationFrame(observe(frame, camera, region, setup.preprocessing), pose, joints)
+    return CalibrationFrame(seen, pose, joints)

@@ -123,8 +123,8 @@ def _show_case(name: str, found: dict[str, Any]) -> str:
     ratio = found["median_ms"] / found["floor_ms"]
     lines = [
         f"{name}: median {found['median_ms']:.1f} ms a frame (p95 {found['p95_ms']:.1f}), "
-        f"floor {found['floor_ms']:.1f} ms, ratio {ratio:.2f}; {found['terms']}, {found['iterations']} iterations, {found['frames']} frames, "
-        f"{found['lost']} lost",
+        f"floor {found['floor_ms']:.1f} ms, ratio {ratio:.2f}; {found['terms']}, "
+        f"{found['iterations']} iterations, {found['frames']} frames, {found['lost']} lost",
         f"  {'stage':<16} {'in the frame':>12} {'alone':>8}   ms",
     ]
     alone = found["floor_stages_ms"]

@@ -47,7 +47,7 @@ class TrackOptions:
     """
 
     terms: str = _option(
-        "LO",
+        "LO+SC",
         "LO fits depth both ways; C collision, S fingertips, P physics.",
         label="Terms",
         choices=TERMS,

@@ -20,6 +20,9 @@ from tracker.tracking.objective import Objective
 
 Array = npt.NDArray[np.float64]
 
+FLOOR = 1e-8
+"""Share of the largest diagonal entry that is added to all."""
+
 
 @dataclass(frozen=True)
 class ShapeEquations:
@@ -102,7 +105,9 @@ def reduce_equations(
     moves = shape_derivative(posed, directions)
     size = directions.joints.shape[2]
     A_pp, b_p, _ = objective.linearize(posed, residuals, pose)
-    A_pp[np.diag_indices_from(A_pp)] *= 1.0 + damping
+    diagonal = np.diagonal(A_pp).copy()
+    # What nothing observes, the turn of a pipe about its axis, stays where it is.
+    A_pp[np.diag_indices_from(A_pp)] += damping * diagonal + FLOOR * max(float(diagonal.max()), 1e-12)
     A_ss, b_s, A_ps = np.zeros((size, size)), np.zeros(size), np.zeros((scene.num_dofs, size))
     count = 0
     for residual in residuals.values():

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import trimesh
 
-from tracker.model.articulated import ArticulatedModel
+from tracker.model.ball import make_ball
 from tracker.model.joints import HAND_JOINTS
-from tracker.model.skeleton import Skeleton
 from tracker.synthesis.actor import Actor
 from tracker.synthesis.performance import Performance
 from tracker.synthesis.shading import OBJECT_COLORS
@@ -19,25 +17,6 @@ RADIUS = 0.032
 
 ABOVE_PALM = 0.016
 """Between the bones of the palm and the ball's surface, m: about the flesh there."""
-
-
-def make_ball(radius: float = RADIUS) -> ArticulatedModel:
-    """A rigid sphere about its centre, radius in m."""
-    mesh = trimesh.creation.icosphere(subdivisions=3, radius=radius)
-    nothing = np.zeros(0)
-    skeleton = Skeleton(
-        bone_names=("ball",),
-        parents=np.array([-1]),
-        Ts_model_bone=np.eye(4)[None],
-        dof_bones=np.zeros(0, dtype=np.int64),
-        dof_axes=np.zeros((0, 3)),
-        lower=nothing,
-        upper=nothing,
-    )
-    vertices = np.asarray(mesh.vertices, dtype=np.float64)
-    return ArticulatedModel(
-        "ball", vertices, np.asarray(mesh.faces, dtype=np.int32), np.ones((len(vertices), 1)), skeleton
-    )
 
 
 def with_ball(performance: Performance, radius: float = RADIUS) -> Performance:

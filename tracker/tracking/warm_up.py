@@ -11,15 +11,22 @@ from tracker.capture.frame import Frame
 from tracker.detection import default_detector, find_fingertips
 from tracker.geometry import se3
 from tracker.kernel_cache import remove_old_caches
+from tracker.model.ball import make_ball
 from tracker.model.default_hand import default_hand
 from tracker.model.scene import Scene
 from tracker.observation import Preprocessing, observe
+from tracker.physics import PhysicsWorld, find_down, find_support
 from tracker.rendering import render_depth
 from tracker.terms.collision import Collision
+from tracker.terms.physics import Physics
 from tracker.terms.salient import Salient
-from tracker.tracking.frame_fit import FitOptions, fit_frame
+from tracker.tracking.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
+from tracker.tracking.find_object import ObjectSearch, find_object
+from tracker.tracking.frame_fit import FitOptions, draw, fit_frame
+from tracker.tracking.object_quality import measure_object_quality
 from tracker.tracking.objective import Objective
 from tracker.tracking.region import region_around
+from tracker.tracking.start_annotated import mark_joints
 from tracker.tracking.start_automatic import Search, find_hand
 
 
@@ -49,6 +56,22 @@ def warm_up(progress: Callable[[str, float], None] | None = None) -> None:
     start = scene.rest_pose()
     start[:6] = se3.log(T)
     fit_frame(scene, seen, start, start, Objective(terms=terms), FitOptions(iterations=2))
+    tell("compiling the searches", 0.4)
     find_hand(frame, camera, model, Preprocessing(), 0.1, 1.0, Search(candidates=1, turns=4, rough=1, bent=1, fine=1))
+    ball = make_ball()
+    few = ObjectSearch(places=2, rotations=2, hypotheses=2, rough=1, fine=1)
+    find_object(frame, camera, ball, Preprocessing(objects=True), 0.1, 1.0, search=few)
+    tell("compiling the calibration", 0.6)
+    joints = camera.project(scene.pose_at(start).landmarks(0))
+    marks = mark_joints(scene, 0, np.column_stack([joints, np.full(len(joints), 2.0)]), camera)
+    once = CalibrationOptions(rounds=1, coarse_rounds=0, iterations=1)
+    calibrate_shapes(scene, [CalibrationFrame(seen, start, {0: marks})], once)
+    tell("compiling the physics", 0.8)
+    held = Scene((model, ball))
+    beside = np.r_[start, T[:3, 3] - np.array([0.0, 0.0, 0.06]), np.zeros(3)]
+    with PhysicsWorld(held, down=find_down(np.eye(4))) as world:
+        support = find_support(world, held.pose_at(beside))
+    Physics(support.candidates).find(held.pose_at(beside))
+    measure_object_quality(draw(held.pose_at(beside), seen), seen, 1)
     remove_old_caches()
     tell("kernels are compiled", 1.0)

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from tracker.model.ball import make_ball
 from tracker.model.default_hand import default_hand
-from tracker.synthesis.ball import RADIUS, make_ball, with_ball
+from tracker.synthesis.ball import RADIUS, with_ball
 from tracker.synthesis.motion import perform
 
 

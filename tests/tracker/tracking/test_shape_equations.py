@@ -3,11 +3,11 @@
 import numpy as np
 
 from tests.tracker.scenes import drawn_hand
+from tracker.model.ball import make_ball
 from tracker.model.default_hand import default_hand
 from tracker.model.hand_directions import HandDirections
 from tracker.model.local_directions import local_directions, mark_directions
 from tracker.model.scene import Scene
-from tracker.synthesis.ball import make_ball
 from tracker.tracking.objective import Objective
 from tracker.tracking.shape_equations import SceneDirections, reduce_equations, shape_derivative
 

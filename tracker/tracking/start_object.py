@@ -83,8 +83,9 @@ def start_object(
 def _describe(found: FoundObject) -> str:
     quality = found.quality
     return (
-        f"{100.0 * quality.inside:.0f} % of what would be in sight is there, {1e3 * quality.depth_residual:.1f} mm off "
-        f"at the median, {100.0 * quality.outline_iou:.0f} % of the outline as seen, score {quality.score:.2f}"
+        f"{100.0 * found.in_sight:.0f} % in sight, {100.0 * quality.inside:.0f} % of that there, "
+        f"{1e3 * quality.depth_residual:.1f} mm off at the median, {100.0 * quality.outline_iou:.0f} % of the outline "
+        f"as seen, score {quality.score:.2f}"
     )
 
 

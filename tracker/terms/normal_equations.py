@@ -50,6 +50,14 @@ class NormalEquations:
         pairs, pair_index = _pairs(posed.scene)
         return cls(posed, pairs, pair_index, np.zeros((len(pairs), 6, 6)), np.zeros((len(pair_index), 6)))
 
+    def add(self, other: NormalEquations) -> None:
+        """Add another sum at the same posed scene."""
+        assert other.posed is self.posed
+        self.blocks += other.blocks
+        self.gradients += other.gradients
+        self.cost += other.cost
+        self.count += other.count
+
     def assemble(self) -> tuple[Array, Array]:
         """JᵀJ (D, D) and Jᵀr (D,) of all that was added."""
         dofs = self.posed.scene.num_dofs

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from time import perf_counter
 
 import numpy as np
@@ -12,7 +14,8 @@ from tracker.model.scene import PosedScene, Scene
 from tracker.observation import HAND, OTHER, Observation
 from tracker.rendering import View, render_view
 from tracker.solver.damped_step import compute_damped_step
-from tracker.terms.residual import FrameContext, Residual
+from tracker.terms.normal_equations import NormalEquations
+from tracker.terms.residual import FrameContext, Residual, Term
 from tracker.tracking.objective import Objective
 
 Array = npt.NDArray[np.float64]
@@ -28,6 +31,7 @@ class FitOptions:
         max_turn: Largest change of an angle in one iteration, rad.
         max_shift: Largest change of a root's position in one iteration, m.
         fine: So many last iterations use every match, those before about every fourth.
+        threads: 1, or 2 to look for every other term's correspondences in a second thread.
         stop_below: Stop when the mean joint moves less, m; 0 never stops early ([T16] §4.1.1 uses 0.2 mm).
     """
 
@@ -37,6 +41,7 @@ class FitOptions:
     max_shift: float = 0.05
     stop_below: float = 0.0
     fine: int = 4
+    threads: int = 1
 
 
 @dataclass(frozen=True)
@@ -46,7 +51,7 @@ class Fit:
     Attributes:
         pose: (D,).
         costs: One per iteration, cost of each term, mm².
-        stages: Seconds by stage: "posing", "rendering", each term's name, "solving".
+        stages: Seconds by stage: "posing", "rendering", each term's name, "solving"; of two threads together.
     """
 
     pose: Array
@@ -106,13 +111,9 @@ def fit_frame(
         t2 = perf_counter()
         stages["posing"] += t1 - t0
         stages["rendering"] += t2 - t1
-        residuals: dict[str, Residual] = {}
-        for name, term in current.terms.items():
-            t0 = perf_counter()
-            residuals[name] = term.find(posed, context)
-            stages[name] += perf_counter() - t0
+        equations, costs = _gather(posed, context, current.terms, stages, options.threads)
         t0 = perf_counter()
-        JtJ, Jtr, costs = current.linearize(posed, residuals, previous)
+        JtJ, Jtr, costs = current.complete(equations, costs, previous)
         history.append(costs)
         pose = scene.retract(pose, compute_damped_step(JtJ, Jtr, options.damping, limits))
         stages["solving"] += perf_counter() - t0
@@ -122,3 +123,42 @@ def fit_frame(
                 break
             joints = moved
     return Fit(pose, tuple(history), stages)
+
+
+def _gather(
+    posed: PosedScene, context: FrameContext, terms: dict[str, Term], stages: dict[str, float], threads: int
+) -> tuple[NormalEquations, dict[str, float]]:
+    """Sum of all terms' correspondences and the cost of each; bit by bit the same for the same number of threads."""
+    names = list(terms)
+    if threads == 1 or len(names) < 2:
+        return _gather_some(posed, context, terms, names, stages)
+    beside = dict.fromkeys(stages, 0.0)
+    second = _second_thread().submit(_gather_some, posed, context, terms, names[1::2], beside)
+    equations, costs = _gather_some(posed, context, terms, names[::2], stages)
+    others, other_costs = second.result()
+    equations.add(others)
+    for name, seconds in beside.items():
+        stages[name] += seconds
+    return equations, {name: {**costs, **other_costs}[name] for name in names}
+
+
+def _gather_some(
+    posed: PosedScene, context: FrameContext, terms: dict[str, Term], names: list[str], stages: dict[str, float]
+) -> tuple[NormalEquations, dict[str, float]]:
+    equations = NormalEquations.at(posed)
+    costs: dict[str, float] = {}
+    for name in names:
+        t0 = perf_counter()
+        residual = terms[name].find(posed, context)
+        t1 = perf_counter()
+        before = equations.cost
+        residual.add_to(equations)
+        costs[name] = equations.cost - before
+        stages[name] += t1 - t0
+        stages["solving"] += perf_counter() - t1
+    return equations, costs
+
+
+@cache
+def _second_thread() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(1, "terms")

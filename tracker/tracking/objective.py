@@ -63,7 +63,21 @@ class Objective:
             before = equations.cost
             residual.add_to(equations)
             costs[name] = equations.cost - before
+        return self.complete(equations, costs, previous_pose)
+
+    def complete(
+        self, equations: NormalEquations, costs: dict[str, float], previous_pose: Array
+    ) -> tuple[Array, Array, dict[str, float]]:
+        """The same of a sum of the terms' correspondences, with limits, regularisation and bends added to it.
+
+        Args:
+            equations: The sum.
+            costs: Of the terms in it.
+            previous_pose: (D,).
+        """
+        posed = equations.posed
         JtJ, Jtr = equations.assemble()
+        costs = dict(costs)
         scene, dofs = posed.scene, posed.scene.angle_dofs
         angles = posed.pose[dofs]
         for name, weight, (cost, gradient, curvature) in (

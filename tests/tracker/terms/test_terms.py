@@ -12,6 +12,8 @@ from tracker.terms.model_to_data import ModelToData
 from tracker.terms.normal_equations import NormalEquations
 from tracker.terms.silhouette import Silhouette
 from tracker.terms.uncovered import Uncovered
+from tracker.tracking.frame_fit import FitOptions, fit_frame
+from tracker.tracking.objective import Objective
 
 TERMS = {
     "model_to_data": ModelToData(),
@@ -97,6 +99,18 @@ def test_the_order_of_terms_does_not_matter(rng):
             residual.add_to(equations)
         sums.append(np.concatenate([part.ravel() for part in equations.assemble()]))
     np.testing.assert_allclose(sums[0], sums[1], rtol=1e-10, atol=1e-6)
+
+
+def test_a_second_thread_changes_nothing_but_the_last_digits(rng):
+    drawn = drawn_tube()
+    start = drawn.disturbed(rng)
+    fits = [
+        fit_frame(drawn.scene, drawn.observation, start, start, Objective(), FitOptions(threads=threads))
+        for threads in (1, 2, 2)
+    ]
+    np.testing.assert_allclose(fits[0].pose, fits[1].pose, atol=1e-9)
+    np.testing.assert_array_equal(fits[1].pose, fits[2].pose)
+    assert [list(costs) for costs in fits[0].costs] == [list(costs) for costs in fits[1].costs]
 
 
 @every_term

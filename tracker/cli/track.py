@@ -126,4 +126,6 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
 
 def show(result: dict[str, Any]) -> str:
     counts = f"{result['frames']} frames, {result['lost']} lost"
+    for name, found in result["objects"].items():
+        counts += f", {name} lost in {found['lost']}"
     return f"{counts}, median {result['median_ms']:.1f} ms a frame: {result['out']}"

@@ -17,6 +17,7 @@ from tracker.tracking.arrays_file import load_arrays, save_arrays
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.frame_result import STATUSES
 from tracker.tracking.setup import TrackSetup
+from tracker.tracking.watch_objects import OBJECT_STATUSES
 
 Array = npt.NDArray[np.float64]
 
@@ -65,6 +66,11 @@ class Track:
         """(T,) of `ok`, `lost`, `recovered`."""
         return np.array(STATUSES, dtype=np.str_)[self.chunk.status]
 
+    @property
+    def object_status(self) -> npt.NDArray[np.str_]:
+        """(T, O) of `ok`, `lost`, `recovered`, `hidden`; O is 0 in tracks made before it was recorded."""
+        return np.array(OBJECT_STATUSES, dtype=np.str_)[self.chunk.object_status]
+
     def summary(self) -> dict[str, Any]:
         """The content of `summary.json`."""
         chunk = self.chunk
@@ -84,6 +90,10 @@ class Track:
             "depth_residual_mm": _median(chunk.depth_residual_mm[ok]),
             "silhouette_iou": _median(chunk.silhouette_iou[ok]),
             "threads": self.setup.options.threads,
+            "objects": {
+                name: {status: int(np.count_nonzero(found == status)) for status in OBJECT_STATUSES}
+                for name, found in zip(self.setup.object_names, self.object_status.T, strict=False)
+            },
         }
 
     def arrays(self) -> dict[str, np.ndarray]:
@@ -96,6 +106,7 @@ class Track:
             "camera_ids": np.array(self.camera_ids, dtype=np.str_),
             "object_names": np.array(self.setup.object_names, dtype=np.str_),
             "T_world_object": self.T_world_object,
+            "object_status": self.object_status,
             "pose": self.pose,
             "status": self.status,
             "seconds": self.seconds,

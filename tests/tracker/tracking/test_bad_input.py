@@ -243,6 +243,9 @@ def test_an_object_is_found_where_nobody_placed_it(tmp_path):
     assert statuses(recording) == ["ok"] * 3
     with np.load(tmp_path / "track" / "track.npz") as arrays:
         assert np.linalg.norm(arrays["T_world_object"][:, 0, :3, 3] - motion[:3, :3, 3], axis=1).max() < 2e-3  # m
+        assert arrays["object_status"].tolist() == [["ok"]] * 3
+    summary = json.loads((tmp_path / "track" / "summary.json").read_text())
+    assert summary["objects"] == {"thing": {"ok": 3, "lost": 0, "recovered": 0, "hidden": 0}}
 
 
 def test_an_object_that_is_nowhere_is_an_error_that_says_what_to_do(recording, capsys):

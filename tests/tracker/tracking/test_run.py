@@ -79,6 +79,7 @@ def test_a_saved_track_holds_what_the_contract_says(recorded, run, tmp_path: Pat
         "joints_2d": (12, 1, 21, 2),
         "object_names": (0,),
         "T_world_object": (12, 0, 4, 4),
+        "object_status": (12, 0),
         "pose": (12, 37),
         "status": (12,),
         "seconds": (12,),

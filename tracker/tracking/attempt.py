@@ -39,9 +39,20 @@ UNSETTLED = 1.2e-5
 """A misfit above this area, m², is worth another try: where a hand is followed with its own model there is none."""
 
 
+MISFIT_LOSS = 1000.0
+"""Worth lost per m² of misfit: a finger on another's place may agree with more pixels and leave its own."""
+
+
 @dataclass(frozen=True)
 class Attempt:
-    """A fitted pose and how well it explains each hand, and each object, of the scene."""
+    """A fitted pose and how well it explains each hand, and each object, of the scene.
+
+    Attributes:
+        pose: (D,).
+        qualities: Of each hand.
+        fit: How it came about.
+        objects: Quality of each object.
+    """
 
     pose: Array
     qualities: dict[int, Quality]
@@ -59,14 +70,19 @@ class Attempt:
         return self.qualities[self.worst]
 
     @property
+    def gone(self) -> tuple[int, ...]:
+        """Hands that are not in their place."""
+        return tuple(hand for hand, quality in self.qualities.items() if quality.is_gone)
+
+    @property
     def lost(self) -> tuple[int, ...]:
-        """Hands that nobody should believe."""
-        return tuple(index for index, quality in self.qualities.items() if quality.is_lost)
+        """Hands that nobody should believe: those, and those of which some finger is elsewhere."""
+        return tuple(hand for hand, quality in self.qualities.items() if quality.is_lost)
 
     @property
     def worth(self) -> float:
-        """To compare attempts at the same scene by: the score of all hands."""
-        return sum(quality.score for quality in self.qualities.values())
+        """To compare attempts at the same scene by: the score of all hands, less for what is misfit."""
+        return sum(quality.score - MISFIT_LOSS * quality.misfit for quality in self.qualities.values())
 
     @property
     def misfit(self) -> float:

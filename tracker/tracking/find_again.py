@@ -52,7 +52,7 @@ def find_again(
         if len(still) == len(lost):
             break
         attempt = _settle(frame, camera, setup, tools, found_pose, still)
-        if attempt is not None and not attempt.lost:
+        if attempt is not None and not (attempt.gone if still else attempt.lost):
             return attempt, still
     return None
 

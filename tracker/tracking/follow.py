@@ -104,6 +104,8 @@ def follow_frame(
         longer = 0 if is_better else min(max(FIRST_IMAGE_REST, 2 * rest[2]), LAST_IMAGE_REST)
         rest = (rest[0], longer, longer, rest[3])
         stages["searching the image"] = perf_counter() - searched_at
+    if attempt is not None and not falling and attempt.lost:
+        status = "lost"  # in its place, some finger elsewhere: followed on, not to be believed
     pose = state.pose if attempt is None else attempt.pose
     pose, objects = watch_objects(frame, camera, setup, pose, _known_objects(attempt, falling), recover)
     seconds = perf_counter() - started
@@ -139,8 +141,8 @@ def _lost_before(setup: TrackSetup, state: TrackState) -> tuple[int, ...]:
 
 
 def _fallen(setup: TrackSetup, attempt: Attempt | None, lost: tuple[int, ...]) -> tuple[int, ...]:
-    """Hands that are lost now: those that were, and those that nobody should believe."""
-    return _hands(setup) if attempt is None else tuple(sorted({*lost, *attempt.lost}))
+    """Hands that are gone now: those that were, and those that are not in their place."""
+    return _hands(setup) if attempt is None else tuple(sorted({*lost, *attempt.gone}))
 
 
 def _catch(
@@ -154,7 +156,7 @@ def _catch(
     recover: bool,
 ) -> tuple[Attempt | None, str, tuple[int, ...]]:
     """Follow the rest of the scene without hands that are lost, and look for them: attempt, status, still lost."""
-    if attempt is not None and attempt.lost:  # a hand that is not there has pulled at the others
+    if attempt is not None and attempt.gone:  # a hand that is not there has pulled at the others
         attempt = _follow(frame, camera, Part.without(setup, falling), tools, state)[0]
         falling = _fallen(setup, attempt, falling)
     if recover:
@@ -181,7 +183,7 @@ def _earlier(setup: TrackSetup, state: TrackState, pose: Array, status: str, los
 
 def _is_doubtful(quality: Quality, state: TrackState) -> bool:
     """Whether the hand may well be elsewhere: worse than it was, or much is left unexplained."""
-    return quality.score < state.score - SCORE_DROP or quality.explained < 1.0 - DOUBTFUL
+    return quality.is_lost or quality.score < state.score - SCORE_DROP or quality.explained < 1.0 - DOUBTFUL
 
 
 def _running_score(state: TrackState, attempt: Attempt | None, status: str) -> float:
@@ -209,15 +211,18 @@ def _follow(
         return None, rest, stages
     is_first = state.next_frame == setup.options.first_frame
     iterations = setup.options.first_iterations if is_first else setup.options.iterations
-    options = FitOptions(iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm)
+    options = FitOptions(
+        iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm, threads=min(setup.options.threads, 2)
+    )
     objective = tools.objective
     if is_first:
         objective = with_marks(objective, setup.scene, setup.names, setup.marks, camera)
     best = attempt_fit(setup, seen, predicted, previous, objective, options)
     stages |= best.fit.stages
+    is_whole = setup is part.whole  # otherwise what nobody explains may be of a hand that is left out
     if best.qualities:
-        is_falling = bool(best.lost) or best.quality.score < state.score - SCORE_DROP
-        is_unsettled = best.quality.explained < 1.0 - UNEXPLAINED or best.misfit > UNSETTLED
+        is_falling = bool(best.lost if is_whole else best.gone) or best.quality.score < state.score - SCORE_DROP
+        is_unsettled = is_whole and (best.quality.explained < 1.0 - UNEXPLAINED or best.misfit > UNSETTLED)
         if is_falling or (is_unsettled and rest[0] == 0):
             started = perf_counter()
             first = best
@@ -231,7 +236,7 @@ def _follow(
             longer = 0 if is_better else min(max(FIRST_FINGER_REST, 2 * rest[3]), LAST_FINGER_REST)
             rest = (longer, *rest[1:3], longer)
             stages["second try"] = perf_counter() - started
-        if tools.world is not None and setup is part.whole:
+        if tools.world is not None and is_whole:
             started = perf_counter()
             best = hold_object(setup, tools, seen, objective, state, best, options)
             stages["physics"] = perf_counter() - started

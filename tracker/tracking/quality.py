@@ -52,8 +52,9 @@ class Quality:
         score: 0 to 1, to compare poses by: one minus the mean over that union of |drawn − seen| cut off at 20 mm, in
             units of the cut; a pixel that is only drawn or only seen counts as cut off.
         coverage: Share of all hand pixels within reach, forearm and all, whose depth agrees with a drawn pixel.
-        misfit: Area, m², without its rim, of hand pixels before the wrist that no model explains and of drawn pixels
-            before the wrist where something farther away, or free space, is seen.
+        misfit: Area, m², without its rim, of hand pixels before the wrist that no model explains, of skin in a depth
+            shadow that none covers, and of drawn pixels before the wrist where something farther away, or free space,
+            is seen.
         area: Of the drawn pixels whose depth agrees with a hand pixel, m², across the viewing rays.
     """
 
@@ -77,9 +78,14 @@ class Quality:
         return self.score >= 0.45 and self.inside >= 0.6 and self.explained >= 0.65 and self.depth_residual <= 0.010
 
     @property
+    def is_gone(self) -> bool:
+        """Whether the hand is not in its place, or nothing shows of it; pixels of another hand do not tell."""
+        return not self.agrees or self.area < SHOWN
+
+    @property
     def is_lost(self) -> bool:
         """Whether no one should believe this pose."""
-        return not self.agrees or self.misfit > MISFIT or self.area < SHOWN
+        return self.is_gone or self.misfit > MISFIT
 
 
 def measure_quality(view: View, observation: Observation, model: int = 0) -> Quality:
@@ -171,19 +177,24 @@ def _measure_misfit(inverse_depth, face, is_model, depth, labels, nearest, point
     height, width = labels.shape
     kind = np.zeros((height, width), dtype=np.uint8)
     f = 0.5 * (K[0, 0] + K[1, 1])
+    palm_depth = 0.0
+    for i in range(3):
+        palm_depth += T[i, 2] * (palm[i] - T[i, 3])
     for row in range(height):
         for column in range(width):
             drawn = face[row, column]
             z = 1.0 / inverse_depth[row, column] if drawn >= 0 else 0.0
             seen = depth[row, column]
+            is_own_nearest = nearest[row, column, 0] == row and nearest[row, column, 1] == column
+            in_shadow = labels[row, column] == 0 and is_own_nearest
+            if in_shadow and drawn < 0:
+                kind[row, column] = 1
             if labels[row, column] & HAND and (drawn < 0 or abs(seen - z) >= ALIKE):
                 point = points[row, column]
                 if _is_near(point, palm) and not _is_behind(point, wrist, forward):
                     kind[row, column] = 1
-            if drawn >= 0 and is_model[drawn] and (labels[row, column] == 0 or seen > z + ALIKE):
-                may_be_hand = nearest[row, column, 0] == row and nearest[row, column, 1] == column
-                if labels[row, column] == 0 and may_be_hand:
-                    continue  # in a depth shadow
+            is_before_all = not in_shadow and (labels[row, column] == 0 or seen > z + ALIKE)
+            if drawn >= 0 and is_model[drawn] and is_before_all:
                 x, y = (column - K[0, 2]) / K[0, 0] * z, (row - K[1, 2]) / K[1, 1] * z
                 before = 0.0
                 for i in range(3):
@@ -195,7 +206,11 @@ def _measure_misfit(inverse_depth, face, is_model, depth, labels, nearest, point
         for column in range(width):
             if kind[row, column] == 0:
                 continue
-            z = depth[row, column] if labels[row, column] != 0 else 1.0 / inverse_depth[row, column]
+            z = palm_depth
+            if labels[row, column] != 0:
+                z = depth[row, column]
+            elif face[row, column] >= 0:
+                z = 1.0 / inverse_depth[row, column]
             rim = max(1, round(RIM * f / z))
             if _is_inner(kind, row, column, rim):
                 area += z * z / (K[0, 0] * K[1, 1])

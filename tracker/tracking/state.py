@@ -24,7 +24,7 @@ class TrackState:
         pose: (D,) of the last frame.
         earlier_pose: (D,) of the frame before; equal to `pose` where there is none.
         score: Running quality score of good frames.
-        is_lost: Whether a hand was lost in the last frame.
+        is_lost: Whether a hand was nowhere in the last frame.
         lost_hands: Which, indices of the scene's models; none though one is lost means all.
         rest: Frames until fingers, and until the whole image, are searched again after a search in vain, how long the
             last rest from searching the image was, and the last from searching fingers.

@@ -94,7 +94,7 @@ def find_support(world: PhysicsWorld, posed: PosedScene, options: SupportOptions
     they would throw the object. A candidate is set forward until it touches.
 
     Differs from the paper: combinations must pass a wrench test, and at most `most_simulations` of those that do are
-    simulated; the search ends early at one that moves the object less than a third of `stable_below`. An object that
+    simulated; the search ends early at one that moves the object less than two thirds of `stable_below`. An object that
     nothing is near is not simulated: it falls.
 
     Args:
@@ -115,7 +115,7 @@ def find_support(world: PhysicsWorld, posed: PosedScene, options: SupportOptions
     for combination in ranked[: min(passed, options.most_simulations)]:
         moved = settled | {movable[i][0].hull: -movable[i][0].distance * movable[i][0].normal for i in combination}
         simulated += 1
-        enough = options.stable_below / 3.0
+        enough = 2.0 * options.stable_below / 3.0
         trial = world.run(moved, give_up=min(FALLEN, best_displacement), calm_below=enough)
         if trial < best_displacement:
             best, best_displacement = combination, trial

@@ -19,14 +19,15 @@ from tracker.physics import (
     simulate,
 )
 
+GENTLE = Protocol("gentle", time_step=1.0 / 240.0, skin=0.0005)
 FREE_FALL = 0.5 * 9.81 * (35 / 240) ** 2
 
 
 def test_a_ball_between_two_opposing_tips_is_held():
     posed = gripped(PINCH, (0.0, 0.0))
     with PhysicsWorld(posed.scene) as world:
-        assert simulate(world, posed, SEARCH) < 0.001
-        assert simulate(world, posed, SD_OBMAN) < 0.002
+        for protocol in (SEARCH, SD_OBMAN, GENTLE):
+            assert simulate(world, posed, protocol) < 2.0 * protocol.skin  # as far as it is squeezed
 
 
 def test_a_ball_that_nothing_holds_falls_as_galileo_says():
@@ -131,7 +132,7 @@ def test_a_rope_that_hangs_on_a_fingertip_moves_the_same_whether_its_far_bones_h
             assert near == pytest.approx(every, rel=0.01) and near < 0.9 * short.free_fall
 
 
-@pytest.mark.parametrize("protocol", [SD_OBMAN, SEARCH], ids=lambda p: p.name)
+@pytest.mark.parametrize("protocol", [SD_OBMAN, GENTLE], ids=lambda p: p.name)
 def test_every_bone_of_an_object_has_the_materials_of_the_protocol(protocol):
     scene = Scene((gripped(PINCH, (0.1, 0.1)).scene.models[0], tube(bones=4, rings=17)))
     posed = scene.pose_at(scene.rest_pose())

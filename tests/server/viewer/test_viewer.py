@@ -100,11 +100,11 @@ def test_one_term_can_be_hidden(client: TestClient, view) -> None:
     assert f"/correspondences/{terms[1]}" not in nodes
 
 
-def test_evidence_is_worked_out_when_it_is_asked_for_though_the_run_did_without(client: TestClient, view) -> None:
+def test_evidence_is_worked_out_when_it_is_asked_for_also_where_the_run_did_without(client: TestClient, view) -> None:
     layers = ("detections", "collisions", "contacts", "distances")
     assert all(view[layer] is None for layer in layers)
     answer = show(client, view, frame=2, show=dict.fromkeys(layers, True))
-    assert not any(answer[layer]["is_of_run"] for layer in layers[:3]), "the run had depth alone"
+    assert [answer[layer]["is_of_run"] for layer in layers[:3]] == [True, True, False], "the run had no physics"
     items = answer["detections"]["items"]
     assert len(items) >= 3
     assert all(item["hand"] == "right" and item["distance_mm"] < 15.0 for item in items if item["finger"])

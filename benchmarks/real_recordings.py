@@ -101,12 +101,12 @@ def outline(sequence: Sequence, found: Track, place: int) -> np.ndarray:
         mask = cv2.resize(((seen.labels & label) > 0).astype(np.uint8), None, fx=scale, fy=scale)
         contours, _ = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
         cv2.drawContours(image, [c for c in contours if len(c) > 12 * scale], -1, colour, 1, cv2.LINE_AA)
-    text = f"frame {index}: {found.status[place]}"
-    cv2.putText(image, text, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (255, 255, 255), 1, cv2.LINE_AA)
-    rows, columns = np.nonzero(image.any(axis=2))
-    middle = int(np.median(columns[rows > 30]))
+    middle = int(np.median(np.nonzero(image.any(axis=2))[1]))
     left = int(np.clip(middle - 200, 0, image.shape[1] - 400))
-    return image[:440, left : left + 400]
+    tile = image[:440, left : left + 400].copy()
+    text = f"frame {index}: {found.status[place]}"
+    cv2.putText(tile, text, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (255, 255, 255), 1, cv2.LINE_AA)
+    return tile
 
 
 def main() -> None:

@@ -27,7 +27,7 @@ class HoldOptions:
         support: How contacts are looked for.
     """
 
-    iterations: int = 5
+    iterations: int = 3
     weight: float = 50.0
     score_drop: float = 0.01
     gain: float = 0.5

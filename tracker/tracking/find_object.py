@@ -13,6 +13,7 @@ from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import Scene
 from tracker.observation import Observation, Preprocessing, observe
+from tracker.rendering import View
 from tracker.terms.data_to_model import DataToModel
 from tracker.terms.data_to_surface import DataToSurface
 from tracker.terms.joint_prior import Regularization
@@ -29,6 +30,9 @@ Array = npt.NDArray[np.float64]
 
 LEAST_IN_SIGHT = 0.4
 """With less than this share in sight an object is not found, only guessed."""
+
+BEHIND = 0.005
+"""A vertex so far behind the drawn surface is hidden by it, m."""
 
 LEAST_SCORE = 0.45
 """So it is with a lower score: another thing of about the size reaches 0.4 to 0.7, the thing itself 0.9 in clean depth
@@ -63,7 +67,7 @@ class FoundObject:
     Attributes:
         pose: (D,) of a scene of the object alone.
         quality: How well it explains the image.
-        in_sight: Share of it, as the camera would see it alone, that is in the image and not hidden.
+        in_sight: Share of its side towards the camera that is in the image and hidden by nothing, itself included.
     """
 
     pose: Array
@@ -169,12 +173,27 @@ def _judge(scene: Scene, seen: Observation, camera: Camera, pose: Array) -> Foun
     posed = scene.pose_at(pose)
     view = draw(posed, seen)
     quality = measure_object_quality(view, seen, 0)
-    x, y, z = se3.transform(camera.T_camera_world, posed.vertices).T
+    not_hidden = min(1.0, quality.visible / max(np.count_nonzero(view.face >= 0), 1))
+    return FoundObject(pose, quality, _share_in_sight(view, camera) * not_hidden)
+
+
+def _share_in_sight(view: View, camera: Camera) -> float:
+    """Share of the vertices facing the camera that lie in the image, and not behind other parts of the object."""
+    posed = view.posed
+    used = np.unique(posed.scene.arrays.faces)
+    vertices, normals = posed.vertices[used], posed.normals[used]
+    is_facing = np.einsum("vi,vi->v", normals, vertices - camera.T_world_camera[:3, 3]) < 0.0
+    x, y, z = se3.transform(camera.T_camera_world, vertices[is_facing]).T
     z = np.where(z > 0.0, z, np.nan)
     columns, rows = camera.K[0, 0] * x / z + camera.K[0, 2], camera.K[1, 1] * y / z + camera.K[1, 2]
-    in_image = np.mean((columns > 0) & (columns < camera.width) & (rows > 0) & (rows < camera.height))
-    not_hidden = min(1.0, quality.visible / max(np.count_nonzero(view.face >= 0), 1))
-    return FoundObject(pose, quality, float(in_image) * not_hidden)
+    in_image = (columns > 0) & (columns < camera.width) & (rows > 0) & (rows < camera.height)
+    height, width = view.face.shape
+    at_column = np.rint(np.nan_to_num(view.projected[used[is_facing], 0], nan=-1.0)).astype(np.int64)
+    at_row = np.rint(np.nan_to_num(view.projected[used[is_facing], 1], nan=-1.0)).astype(np.int64)
+    is_drawn = (at_column >= 0) & (at_column < width) & (at_row >= 0) & (at_row < height)
+    nearest = view.depth[np.clip(at_row, 0, height - 1), np.clip(at_column, 0, width - 1)]
+    is_behind = is_drawn & (nearest > 0.0) & (z > nearest + BEHIND)
+    return float(np.mean(in_image & ~is_behind)) if len(z) else 0.0
 
 
 def _best(found: list[FoundObject], count: int) -> list[FoundObject]:

@@ -30,7 +30,8 @@ Array = npt.NDArray[np.float64]
 ITERATIONS = 60
 
 CLEAR = 0.75
-"""An object found with a lower score may be another thing of about its size, or badly seen: a warning says so."""
+"""An object found with a lower score may be another thing of about its size, or badly seen: a warning says so, as
+it does where joints may have been bent to explain a part only."""
 
 
 def start_object(
@@ -68,7 +69,8 @@ def start_object(
         guess = guess or found
         if not found.is_believable:
             continue
-        level = logging.INFO if found.quality.score >= CLEAR else logging.WARNING
+        is_clear = found.quality.score >= CLEAR and model.skeleton.num_bones == 1
+        level = logging.INFO if is_clear else logging.WARNING
         log.log(level, "%s: found in frame %d, %s", item.name, frame.index, _describe(found))
         if guess is not found:
             log.warning("%s: frame %d shows it too badly: %s", item.name, looked_at[0], _describe(guess))

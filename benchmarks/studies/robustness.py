@@ -32,6 +32,8 @@ TRACKED = 0.005
 """A hand whose joints are this near on average is tracked again, m."""
 HIDDEN = range(40, 60)
 """Frames in which the hands are out of sight."""
+AFTER = 40
+"""Frames that are followed after them."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,8 @@ class OutOfSight:
     def __call__(self, data: Path, cache: Path) -> dict[str, Any]:
         """Blank, track, measure."""
         twin = blank_twin(render_twin(data, cache, self.sequence, None, 1, 0), HIDDEN, self.gone)
-        setup, state = start_twin(twin, TrackOptions(terms=self.terms, calibrate=False))
+        last = min(HIDDEN.stop + AFTER, twin.sequence.frame_count) - 1
+        setup, state = start_twin(twin, TrackOptions(terms=self.terms, calibrate=False, last_frame=last))
         track = run_twin(twin, setup, state)
         error = evaluate_against_truth(track, twin.truth)
         is_right = (error.hand_mean < TRACKED).all(axis=1) & (track.status != "lost")

@@ -107,7 +107,9 @@ def follow_frame(
     if attempt is not None and not falling and attempt.lost:
         status = "lost"  # in its place, some finger elsewhere: followed on, not to be believed
     pose = state.pose if attempt is None else attempt.pose
-    pose, objects = watch_objects(frame, camera, setup, pose, _known_objects(attempt, falling), recover)
+    # Before a hand that is lost nobody can tell a hidden object from a lost one: it is followed on, not looked for.
+    look_for_objects = recover and not falling
+    pose, objects = watch_objects(frame, camera, setup, pose, _known_objects(attempt, falling), look_for_objects)
     seconds = perf_counter() - started
     stages["reading"] = started - read_at
     next_state = TrackState(

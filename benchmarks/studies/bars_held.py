@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import product
 
 from benchmarks.studies.bar import Bar, Verdict
 from benchmarks.studies.held import Held
@@ -20,14 +21,14 @@ NOTE = (
 
 
 def list_held_bars(extent: Extent) -> list[Bar]:
-    """One for each sequence."""
+    """One for each sequence, with the rendered hand and with our own."""
     bars = []
-    for name in NAMES:
-        pair = Held(name, WITHOUT, extent.frames), Held(name, WITH, extent.frames)
+    for name, own in product(NAMES, (False, True)):
+        pair = Held(name, WITHOUT, extent.frames, own), Held(name, WITH, extent.frames, own)
         bars.append(
             Bar(
                 "displacement after simulation, frames where the truth's own is at most 3 mm",
-                f"{name}: with P ({WITH}) at most half of that without ({WITHOUT})",
+                f"{name}, {'our own hand' if own else 'same model'}: {WITH} at most half of {WITHOUT}",
                 pair,
                 partial(_judge, *pair),
             )

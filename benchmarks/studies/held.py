@@ -29,11 +29,12 @@ class Held:
     sequence: str
     terms: str
     frames: int | None = None
+    own_hand: bool = False
 
     def __call__(self, data: Path, twins: Path) -> dict[str, Any]:
         """Track and let go."""
         twin = render_twin(data, twins, self.sequence, self.frames, 1, 0)
-        setup, state = start_twin(twin, TrackOptions(terms=self.terms, calibrate=False))
+        setup, state = start_twin(twin, TrackOptions(terms=self.terms, calibrate=self.own_hand), self.own_hand)
         track = run_twin(twin, setup, state)
         down = find_down(twin.sequence.camera(setup.camera_id).T_world_camera)
         own, own_seed, true = [], [], []

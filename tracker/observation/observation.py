@@ -210,7 +210,7 @@ def _nearest_of(
         beside = cv2.dilate(mask, np.ones((2 * SHADOW + 1, 2 * SHADOW + 1), np.uint8)) > 0
         mask[beside & is_alike] = 1
     closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
-    return _nearest(closed), edges
+    return _nearest(closed.astype(np.uint8, copy=False)), edges
 
 
 def _nowhere(labels: npt.NDArray[np.uint8]) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.uint8]]:

@@ -16,8 +16,10 @@ from tracker.geometry import se3
 from tracker.model.joints import HAND_EDGES
 from tracker.model.scene import PosedScene
 from tracker.observation import Observation, observe
+from tracker.physics import find_support
 from tracker.rendering import View, render_view
 from tracker.tracking.frame_fit import draw, find_residuals
+from tracker.tracking.hold import HoldOptions, with_contacts
 from tracker.tracking.region import region_around
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.shown_collisions import ShownCollisions, show_collisions
@@ -103,9 +105,11 @@ class FrameView:
         """Name of each term of the run to its (M, 2, 3) segments from model to data, world, m."""
         if self._seen is None:
             return {}
-        tools, setup = self.aids.tools, self.aids.setup
+        tools = self.aids.tools
         objective = tools.with_fingertips(self._seen)
-        objective = tools.with_support(objective, setup, self._posed.pose) or objective
+        if tools.world is not None:
+            support = find_support(tools.world, self._posed, HoldOptions().support)
+            objective = objective if support.is_stable else with_contacts(objective, support)
         found = find_residuals(self._posed, self._seen, objective)
         return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from tracker.observation import Observation
-from tracker.physics import SupportOptions, find_settled_displacement, find_support
+from tracker.physics import Support, SupportOptions, find_settled_displacement, find_support
 from tracker.terms.physics import Physics
 from tracker.tracking.attempt import Attempt, attempt_fit
 from tracker.tracking.frame_fit import FitOptions
@@ -66,10 +66,8 @@ def hold_object(
     enough = hold.gain * support.displacement
     if support.is_stable or not support.contacts or support.held_displacement > enough:
         return fitted
-    contacts = Physics(support.contacts + support.touching, hold.weight, draws_out=True)
-    with_contacts = replace(objective, terms={**objective.terms, "physics": contacts})
     short = replace(options, iterations=hold.iterations)
-    held = attempt_fit(setup, seen, fitted.pose, state.pose, with_contacts, short)
+    held = attempt_fit(setup, seen, fitted.pose, state.pose, with_contacts(objective, support, hold), short)
     for hand, quality in held.qualities.items():
         if quality.score < fitted.qualities[hand].score - hold.score_drop:
             return fitted
@@ -77,3 +75,10 @@ def hold_object(
     if displacement > enough:
         return fitted
     return replace(held, fit=replace(held.fit, costs=fitted.fit.costs + held.fit.costs))
+
+
+def with_contacts(objective: Objective, support: Support, hold: HoldOptions | None = None) -> Objective:
+    """The objective that draws the chosen finger parts, and those that touch already, to the object's surface."""
+    hold = hold or HoldOptions()
+    contacts = Physics(support.contacts + support.touching, hold.weight, draws_out=True)
+    return replace(objective, terms={**objective.terms, "physics": contacts})

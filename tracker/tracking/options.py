@@ -95,7 +95,13 @@ class TrackOptions:
         about="recording",
     )
     threads: int = _option(
-        1, "Threads; with two, every other term is worked out in the second.", label="Threads", low=1, high=64, is_advanced=True, about="machine"
+        1,
+        "Threads; with two, every other term is worked out in the second.",
+        label="Threads",
+        low=1,
+        high=64,
+        is_advanced=True,
+        about="machine",
     )
 
     def __post_init__(self) -> None:

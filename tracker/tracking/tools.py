@@ -11,9 +11,8 @@ import numpy.typing as npt
 
 from tracker.detection import Forest, default_detector, find_fingertips
 from tracker.observation import Observation
-from tracker.physics import PhysicsWorld, find_down, find_support
+from tracker.physics import PhysicsWorld, find_down
 from tracker.terms.collision import Collision
-from tracker.terms.physics import Physics
 from tracker.terms.salient import Salient
 from tracker.tracking.objective import Objective
 from tracker.tracking.setup import TrackSetup
@@ -44,15 +43,6 @@ class Tools:
             return self.objective
         detections = find_fingertips(self.detector, seen)
         return replace(self.objective, terms={**self.objective.terms, "salient": Salient(detections)})
-
-    def with_support(self, objective: Objective, setup: TrackSetup, pose: npt.NDArray[np.float64]) -> Objective | None:
-        """The objective with contacts that keep the object from falling, or None if it does not fall, [T16] §3.2.6."""
-        if self.world is None:
-            return None
-        support = find_support(self.world, setup.scene.pose_at(pose))
-        if support.is_stable or not support.contacts:
-            return None
-        return replace(objective, terms={**objective.terms, "physics": Physics(support.contacts)})
 
 
 @contextmanager

@@ -39,7 +39,7 @@ from tracker.tracking.start_annotated import with_marks
 from tracker.tracking.state import TrackState
 from tracker.tracking.track import join_chunks
 
-PAPER_REACH = 60
+PAPER_REACH = 40
 """px; more than the 30 mm of [T16] §3.2.3 are at the distances of these recordings, so only those limit contours."""
 
 HOLDING = 5

@@ -24,5 +24,5 @@ def make_ball(radius: float = 0.032) -> ArticulatedModel:
     )
     vertices = np.asarray(mesh.vertices, dtype=np.float64)
     return ArticulatedModel(
-        "ball", vertices, np.asarray(mesh.faces, dtype=np.int32), np.ones((len(vertices), 1)), skeleton
+        "ball", vertices, np.asarray(mesh.faces, dtype=np.int64), np.ones((len(vertices), 1)), skeleton
     )

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
+from tracker.observation import Observation
 from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look, try_again
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.find_again import find_again
@@ -20,8 +21,10 @@ from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.frame_result import FrameResult
 from tracker.tracking.hold import hold_object
 from tracker.tracking.object_quality import ObjectQuality
+from tracker.tracking.objective import Objective
 from tracker.tracking.part import Part
 from tracker.tracking.quality import Quality
+from tracker.tracking.region import is_outgrown, region_around
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.start_annotated import with_marks
 from tracker.tracking.state import TrackState
@@ -51,6 +54,10 @@ SCORE_MEMORY = 0.9
 """Share of the running score kept from frame to frame."""
 
 Rest = tuple[int, int, int, int]
+
+
+WIDER = 3
+"""So often at most the region follows a fit that went beyond it."""
 
 
 def track_frames(
@@ -221,6 +228,7 @@ def _follow(
         objective = with_marks(objective, setup.scene, setup.names, setup.marks, camera)
     best = attempt_fit(setup, seen, predicted, previous, objective, options)
     stages |= best.fit.stages
+    seen, best = _look_wider(frame, camera, setup, seen, best, previous, objective, options)
     is_whole = setup is part.whole  # otherwise what nobody explains may be of a hand that is left out
     if best.qualities:
         is_falling = bool(best.lost if is_whole else best.gone) or best.quality.score < state.score - SCORE_DROP
@@ -237,9 +245,32 @@ def _follow(
             is_better = best.misfit < UNSETTLED or best.worth > first.worth + SCORE_GAIN
             longer = 0 if is_better else min(max(FIRST_FINGER_REST, 2 * rest[3]), LAST_FINGER_REST)
             rest = (longer, *rest[1:3], longer)
+            seen, best = _look_wider(frame, camera, setup, seen, best, previous, objective, again)
             stages["second try"] = perf_counter() - started
         if tools.world is not None and is_whole:
             started = perf_counter()
             best = hold_object(setup, tools, seen, objective, state, best, options)
             stages["physics"] = perf_counter() - started
     return part.widen(best, state.pose), rest, stages
+
+
+def _look_wider(
+    frame: Frame,
+    camera: Camera,
+    setup: TrackSetup,
+    seen: Observation,
+    best: Attempt,
+    previous: Array,
+    objective: Objective,
+    options: FitOptions,
+) -> tuple[Observation, Attempt]:
+    """What is seen around the pose that was found, and a fit to that, if it went so far that part of it was cut off."""
+    for _ in range(WIDER):
+        needed = region_around(setup.scene.pose_at(best.pose).vertices, camera)
+        if needed is None or not is_outgrown(seen.region, needed, camera):
+            break
+        wider = look(frame, camera, setup, best.pose)
+        if wider is None:
+            break
+        seen, best = wider, attempt_fit(setup, wider, best.pose, previous, objective, options)
+    return seen, best

@@ -40,6 +40,21 @@ def region_around(vertices: npt.NDArray[np.float64], camera: Camera) -> Region |
     )
 
 
+def is_outgrown(region: Region, needed: Region, camera: Camera) -> bool:
+    """Whether a region that something was looked for in leaves out half of the room around the one that it needs.
+
+    Then only part of it was seen, and nothing can be said about the rest.
+    """
+    room = 0.5 * MARGIN * camera.K[0, 0] / (0.5 * (needed.near + needed.far))
+    missing = (
+        region.row - needed.row,
+        region.column - needed.column,
+        needed.row + needed.height - region.row - region.height,
+        needed.column + needed.width - region.column - region.width,
+    )
+    return max(missing) > room or max(region.near - needed.near, needed.far - region.far) > 0.5 * DEPTH_MARGIN
+
+
 def whole_image(camera: Camera, near: float, far: float) -> Region:
     """The whole image between two depths, m."""
     return Region(0, 0, camera.height, camera.width, near, far)

@@ -128,3 +128,14 @@ def test_the_state_remembers_which_hand_is_lost(two_hands, tmp_path):
     lost.save(tmp_path / "state.npz")
     again = TrackState.load(tmp_path / "state.npz")
     assert (again.is_lost, again.lost_hands, again.rest) == (True, (1,), (1, 2, 3, 4))
+
+
+@pytest.mark.parametrize("shift", [-0.12, -0.08, -0.05, 0.05, 0.08, 0.12])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_hand_that_moved_out_of_its_region_is_followed_or_said_to_be_lost(recorded, run, shift: float, axis: int):
+    setup, _, _, chunk = run
+    aside = chunk.pose[3].copy()
+    aside[axis] += shift
+    _, result = follow_frame(recorded.sequence, setup, TOOLS, TrackState(3, aside, aside, score=0.9), recover=False)
+    error = np.linalg.norm(setup.scene.pose_at(result.pose).landmarks(0) - recorded.truth.joints_3d[3], axis=1).mean()
+    assert result.status == "lost" or error < 3e-3  # m

@@ -9,10 +9,12 @@ from __future__ import annotations
 import dataclasses
 import json
 import shutil
+import threading
 import uuid
 from datetime import timedelta
 from pathlib import Path, PurePosixPath
 from typing import Any
+from weakref import WeakValueDictionary
 
 from sqlalchemy import delete, select, update
 
@@ -117,8 +119,20 @@ def check_again(desk: ImportDesk, import_id: uuid.UUID, options: dict[str, Any])
     return get_import(desk, import_id)
 
 
+_GUARD = threading.Lock()
+_CONFIRMING: WeakValueDictionary[uuid.UUID, threading.Lock] = WeakValueDictionary()
+"""Of the uploads that are being confirmed; who comes second would read files that the first one drops."""
+
+
 def confirm_import(desk: ImportDesk, import_id: uuid.UUID, name: str | None, account_id: uuid.UUID) -> SequenceRow:
-    """Make an upload a recording. Asked again, it gives the same recording."""
+    """Make an upload a recording. Asked again, it gives the same recording; asked twice at once, one waits."""
+    with _GUARD:
+        lock = _CONFIRMING.setdefault(import_id, threading.Lock())
+    with lock:
+        return _confirm(desk, import_id, name, account_id)
+
+
+def _confirm(desk: ImportDesk, import_id: uuid.UUID, name: str | None, account_id: uuid.UUID) -> SequenceRow:
     row = get_import(desk, import_id)
     if row.state == "refused":
         raise ConflictError("The upload was refused; its report says why. Check it again with other options.")

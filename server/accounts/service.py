@@ -10,8 +10,9 @@ from fastapi import Depends
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from server.accounts.models import LOCAL_ACCOUNT_ID, Account
+from server.accounts.models import LOCAL_ACCOUNT_ID, ROLES, Account, Role
 from server.database import SessionDep
+from server.errors import ForbiddenError
 
 
 def get_current_account(session: SessionDep) -> Account:
@@ -22,6 +23,31 @@ def get_current_account(session: SessionDep) -> Account:
 
 
 CurrentAccount = Annotated[Account, Depends(get_current_account)]
+
+
+def has_role(account: Account, role: Role) -> bool:
+    """Whether an account may do what this role may."""
+    return ROLES.index(account.role) >= ROLES.index(role)
+
+
+class RequireRole:
+    """Dependency: the account of a request, which must have this role or a higher one."""
+
+    def __init__(self, role: Role) -> None:
+        self.role: Role = role
+
+    def __call__(self, account: CurrentAccount) -> Account:
+        if not has_role(account, self.role):
+            raise ForbiddenError(
+                f"{account.name} is {account.role}; this needs {self.role} or higher. Ask a lead to do it or to change "
+                "your role."
+            )
+        return account
+
+
+ReviewerAccount = Annotated[Account, Depends(RequireRole("reviewer"))]
+LeadAccount = Annotated[Account, Depends(RequireRole("lead"))]
+AdminAccount = Annotated[Account, Depends(RequireRole("admin"))]
 
 
 def get_current_account_id() -> uuid.UUID:

@@ -19,12 +19,14 @@ class AnnotationRow(Base):
 
     __tablename__ = "annotations"
     __table_args__ = (
-        UniqueConstraint("sequence_id", "camera", "frame", "hand"),
+        UniqueConstraint("sequence_id", "replica", "camera", "frame", "hand"),
         CheckConstraint("hand IN ('right', 'left')", name="hand"),
         CheckConstraint("frame >= 0", name="frame"),
     )
 
     sequence_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("sequences.id"))
+    replica: Mapped[str] = mapped_column(String(36), default="")
+    """Empty for the annotations that everybody sees; else the assignment whose annotator marks the frame blindly."""
     camera: Mapped[str] = mapped_column(String(64))
     frame: Mapped[int]
     hand: Mapped[str] = mapped_column(String(5))

@@ -22,12 +22,13 @@ from tracker import Annotation, Annotations
 
 @dataclass(frozen=True)
 class Place:
-    """Where an annotation belongs: one hand in one image."""
+    """Where an annotation belongs: one hand in one image, in a blind replica or (empty) for everybody."""
 
     sequence_id: uuid.UUID
     camera: str
     frame: int
     hand: str
+    replica: str = ""
 
     def __str__(self) -> str:
         return f"the {self.hand} hand in frame {self.frame} of {self.camera}"
@@ -87,6 +88,7 @@ def find_annotation(session: Session, place: Place, *, for_update: bool = False)
     """The annotation at a place, a deleted one too."""
     query = select(AnnotationRow).where(
         AnnotationRow.sequence_id == place.sequence_id,
+        AnnotationRow.replica == place.replica,
         AnnotationRow.camera == place.camera,
         AnnotationRow.frame == place.frame,
         AnnotationRow.hand == place.hand,
@@ -188,10 +190,15 @@ def list_annotations(
     frames: tuple[int | None, int | None] = (None, None),
     cursor: str | None = None,
     limit: int | None = None,
+    replica: str = "",
 ) -> tuple[Sequence[AnnotationRow], str | None]:
     """Annotations of a recording by frame, camera, hand; `frames` are the first and the last, both taken in."""
     order = (AnnotationRow.frame, AnnotationRow.camera, AnnotationRow.hand)
-    query = select(AnnotationRow).where(AnnotationRow.sequence_id == sequence_id, AnnotationRow.points.is_not(null()))
+    query = select(AnnotationRow).where(
+        AnnotationRow.sequence_id == sequence_id,
+        AnnotationRow.replica == replica,
+        AnnotationRow.points.is_not(null()),
+    )
     if camera is not None:
         query = query.where(AnnotationRow.camera == camera)
     if frames[0] is not None:
@@ -208,9 +215,9 @@ def list_annotations(
     return rows[:limit], write_cursor(last.frame, last.camera, last.hand)
 
 
-def load_annotations(session: Session, sequence_id: uuid.UUID) -> Annotations:
-    """All annotations of a recording as they are now."""
-    rows, _ = list_annotations(session, sequence_id)
+def load_annotations(session: Session, sequence_id: uuid.UUID, replica: str = "") -> Annotations:
+    """All annotations of a recording, or of a blind replica, as they are now."""
+    rows, _ = list_annotations(session, sequence_id, replica=replica)
     return Annotations(
         tuple(Annotation(row.frame, row.camera, row.hand, np.array(row.points, dtype=np.float64)) for row in rows)
     )
@@ -239,7 +246,9 @@ def find_annotated_frames(session: Session, ids: Sequence[uuid.UUID]) -> dict[uu
     """How many frames of some recordings are annotated."""
     query = (
         select(AnnotationRow.sequence_id, func.count(distinct(AnnotationRow.frame)))
-        .where(and_(AnnotationRow.sequence_id.in_(ids), AnnotationRow.points.is_not(null())))
+        .where(
+            and_(AnnotationRow.sequence_id.in_(ids), AnnotationRow.replica == "", AnnotationRow.points.is_not(null()))
+        )
         .group_by(AnnotationRow.sequence_id)
     )
     return {id_: {"annotated_frames": count} for id_, count in session.execute(query)}

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from typing import Any
 
 from alembic import command
 from alembic.config import Config
@@ -49,8 +51,28 @@ def _config() -> Config:
 
 def _run(database: Database, migrate: Callable[[Config], None]) -> None:
     config = _config()
-    with database.engine.connect().execution_options(is_writing=True) as connection, connection.begin():
+    with (
+        database.engine.connect().execution_options(is_writing=True) as connection,
+        _without_foreign_keys(connection) if database.is_sqlite else nullcontext(),
+        connection.begin(),
+    ):
         if not database.is_sqlite:
             connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": LOCK})
         config.attributes["connection"] = connection
         migrate(config)
+        if database.is_sqlite and (broken := connection.execute(text("PRAGMA foreign_key_check")).first()):
+            raise RuntimeError(f"The migration would leave a row that names a missing one: {tuple(broken)}.")
+
+
+@contextmanager
+def _without_foreign_keys(connection: Connection) -> Iterator[None]:
+    """SQLite changes a table by making another in its place, which would take the rows that name it for orphans.
+
+    The switch does nothing inside a transaction.
+    """
+    raw: Any = connection.connection.dbapi_connection
+    raw.execute("PRAGMA foreign_keys = OFF")
+    try:
+        yield
+    finally:
+        raw.execute("PRAGMA foreign_keys = ON")

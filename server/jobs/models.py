@@ -26,6 +26,7 @@ class JobRow(Base):
         Index(None, "state"),
         Index(None, "sequence_id"),
         Index(None, "updated_at"),
+        Index(None, "batch_id"),
         CheckConstraint("state IN ('queued', 'running', 'succeeded', 'failed', 'cancelled')", name="state"),
     )
 
@@ -51,6 +52,9 @@ class JobRow(Base):
     version: Mapped[int] = mapped_column(default=1)
     """Grows with every change of the row; the number of its events."""
     retry_of: Mapped[uuid.UUID | None]
+    batch_id: Mapped[uuid.UUID | None]
+    """Shared by the jobs that one request started."""
+    created_by: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     updated_at: Mapped[datetime] = mapped_column(default=utc_now)
     started_at: Mapped[datetime | None]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import uuid
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
@@ -12,6 +13,7 @@ from alembic.runtime.migration import MigrationContext
 from sqlalchemy import inspect, select
 
 from server.accounts.models import LOCAL_ACCOUNT_ID, Account
+from server.annotations.models import AnnotationRow
 from server.database import Base, Database
 from server.database.migrate import SCRIPTS, downgrade, find_current, find_head, upgrade
 from server.settings import Settings
@@ -71,3 +73,26 @@ def test_a_migration_that_fails_leaves_the_tables_as_they_were(empty_database: D
     with pytest.raises(Exception, match="already exists"):
         upgrade(empty_database)
     assert own_tables(empty_database) == {"annotations"}
+
+
+def test_what_was_stored_before_survives_the_newest_migrations(empty_database: Database) -> None:
+    upgrade(empty_database, "0002")
+    now = "2026-01-01 00:00:00+00:00"
+    with empty_database.writing() as session:
+        run = session.connection().exec_driver_sql
+        ids = [f"'{uuid.UUID(int=n).hex}'" for n in range(4)]
+        local = f"'{LOCAL_ACCOUNT_ID.hex}'"
+        run(
+            f"INSERT INTO sequences VALUES ({ids[0]}, 'ball', 30, 9, '[]', '[]', '[]', NULL, 'key', 1,"
+            f" '{now}', '{now}', NULL, {local})"
+        )
+        run(f"INSERT INTO annotations VALUES ({ids[1]}, {ids[0]}, 'cam0', 3, 'right', '[]', 2, '{now}', {local})")
+        run(f"INSERT INTO annotation_revisions VALUES ({ids[2]}, {ids[1]}, 2, {ids[3]}, 'put', '[]', '{now}', {local})")
+    upgrade(empty_database)
+    downgrade(empty_database, "0002")
+    upgrade(empty_database)
+    with empty_database.reading() as session:
+        kept = session.scalars(select(AnnotationRow)).one()
+        assert (kept.frame, kept.replica, kept.author_id) == (3, "", LOCAL_ACCOUNT_ID)
+        account = session.get(Account, LOCAL_ACCOUNT_ID)
+        assert account is not None and account.role == "admin" and account.preferences == {}

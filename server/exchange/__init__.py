@@ -1,0 +1,1 @@
+"""Labels in the formats of others, and snapshots of them that never change."""

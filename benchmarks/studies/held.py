@@ -34,13 +34,17 @@ class Held:
     def __call__(self, data: Path, twins: Path) -> dict[str, Any]:
         """Track and let go."""
         twin = render_twin(data, twins, self.sequence, self.frames, 1, 0)
+        true_setup, _ = start_twin(twin, TrackOptions(calibrate=False))
         setup, state = start_twin(twin, TrackOptions(terms=self.terms, calibrate=self.own_hand), self.own_hand)
         track = run_twin(twin, setup, state)
         down = find_down(twin.sequence.camera(setup.camera_id).T_world_camera)
         own, own_seed, true = [], [], []
-        with PhysicsWorld(setup.scene, down=down) as world:
+        with (
+            PhysicsWorld(setup.scene, down=down) as world,
+            PhysicsWorld(true_setup.scene, down=down) as true_world,  # truth has the hand that was rendered
+        ):
             for frame, pose in zip(track.frame, track.pose, strict=True):
-                truth = simulate(world, pose_truth(twin, setup, int(frame)), SD_OBMAN)
+                truth = simulate(true_world, pose_truth(twin, true_setup, int(frame)), SD_OBMAN)
                 if truth <= HELD:
                     moved = measure_displacement(world, setup.scene.pose_at(pose))
                     own.append(1e3 * moved.obman)

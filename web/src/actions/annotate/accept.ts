@@ -1,0 +1,34 @@
+import { HANDS } from "../../model/joints";
+import { keyText, nextOpenJoint } from "../../model/pose";
+import { withAccepted } from "../../model/suggestion";
+import { activeKey, activePose, withActivePose, type Action } from "../../state/annotator";
+import { openJointsAt, type SuggestionsState } from "../../state/suggestions";
+
+/** Take over what is suggested for the active joint, and go on to the next open one. */
+export const acceptJoint: Action<SuggestionsState> = (state, suggestions) => {
+  const open = openJointsAt(suggestions, state, activeKey(state));
+  if (!open[state.joint]) return state;
+  const pose = withAccepted(activePose(state), open, state.joint);
+  return { ...withActivePose(state, pose), joint: nextOpenJoint(pose, state.joint) };
+};
+
+/** Take over what is suggested for the open joints of the active hand. */
+export const acceptHand: Action<SuggestionsState> = (state, suggestions) => {
+  const open = openJointsAt(suggestions, state, activeKey(state));
+  if (open.every((joint) => joint === null)) return state;
+  const pose = withAccepted(activePose(state), open);
+  return { ...withActivePose(state, pose), joint: nextOpenJoint(pose, state.joint) };
+};
+
+/** Take over what is suggested for both hands of the image: one step for undo, one save a hand. */
+export const acceptFrame: Action<SuggestionsState> = (state, suggestions) => {
+  const poses = { ...state.poses };
+  for (const hand of HANDS) {
+    const place = { ...activeKey(state), hand };
+    const open = openJointsAt(suggestions, state, place);
+    if (open.some((joint) => joint !== null)) poses[keyText(place)] = withAccepted(poses[keyText(place)], open);
+  }
+  if (Object.keys(poses).every((key) => poses[key] === state.poses[key])) return state;
+  const next = { ...state, poses, draft: null };
+  return { ...next, joint: nextOpenJoint(activePose(next), state.joint) };
+};

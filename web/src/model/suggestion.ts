@@ -1,0 +1,66 @@
+/** What a machine proposes for one hand in one image. Never a `Pose`: only a person's gesture makes one of it. */
+
+import { JOINT_COUNT } from "./joints";
+import { emptyPose, keyText, statusOf, type JointPoint, type Pose, type PoseKey } from "./pose";
+
+/** Where suggestions come from; where several have a joint, the first of these is shown. */
+export const SOURCES = ["triangulation", "interpolation", "fit", "track"] as const;
+export type Source = (typeof SOURCES)[number];
+
+export const SOURCE_NAMES: Record<Source, string> = {
+  triangulation: "Other cameras",
+  interpolation: "Key frames",
+  fit: "Model fit",
+  track: "Track",
+};
+
+/** A proposed joint. Its visibility is a guess, and is named so: no `JointPoint` by accident. */
+export interface SuggestedJoint {
+  /** px, (0, 0) is the centre of the top-left pixel */
+  readonly px: readonly [number, number];
+  readonly guess: "occluded" | "visible";
+}
+
+export interface Suggestion {
+  readonly source: Source;
+  /** For people, after "Suggested by": "Track 2", "model fit of 7 joints". */
+  readonly label: string;
+  readonly place: PoseKey;
+  /** 21; null where nothing is proposed. */
+  readonly joints: readonly (SuggestedJoint | null)[];
+}
+
+/** The suggestions of one hand that are in play, by source. */
+export type SuggestionsOfHand = Readonly<Partial<Record<Source, Suggestion>>>;
+
+/** What is drawn and can be accepted: for each joint that nobody has decided about the proposal of the first source that has one. */
+export interface OpenJoint extends SuggestedJoint {
+  readonly source: Source;
+}
+
+export function openJoints(suggestions: SuggestionsOfHand | undefined, pose: Pose | undefined, hidden: ReadonlySet<Source>): (OpenJoint | null)[] {
+  const shown = suggestions ? SOURCES.filter((source) => !hidden.has(source)).flatMap((source) => suggestions[source] ?? []) : [];
+  return Array.from({ length: JOINT_COUNT }, (_, joint) => {
+    if (statusOf(pose?.[joint]) !== "unset") return null;
+    for (const { source, joints } of shown) {
+      const found = joints[joint];
+      if (found) return { ...found, source };
+    }
+    return null;
+  });
+}
+
+/** The one place where a proposal becomes a label: a person asked for it. */
+const accept = ({ px: [x, y], guess }: SuggestedJoint): JointPoint => ({ x, y, v: guess === "occluded" ? 1 : 2 });
+
+/** The pose with some proposals taken over; what somebody decided before stays as it is. */
+export const withAccepted = (pose: Pose | undefined, open: readonly (SuggestedJoint | null)[], only?: number): Pose =>
+  (pose ?? emptyPose()).map((point, joint) => {
+    const proposed = open[joint];
+    return proposed && statusOf(point) === "unset" && (only === undefined || only === joint) ? accept(proposed) : point;
+  });
+
+/** The proposals as a shape to draw; absent joints are unset. */
+export const asShape = (open: readonly (SuggestedJoint | null)[]): Pose => emptyPose().map((unset, joint) => (open[joint] ? accept(open[joint]) : unset));
+
+export const placeText = (suggestion: Suggestion): string => keyText(suggestion.place);

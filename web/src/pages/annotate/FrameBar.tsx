@@ -2,36 +2,29 @@ import { ActionIcon, Group, NumberInput, SegmentedControl, Select, Text, Tooltip
 import { IconChevronLeft, IconChevronRight, IconPlayerPause, IconPlayerPlay } from "@tabler/icons-react";
 import type { RefObject } from "react";
 import { Link } from "react-router";
-import type { Recording } from "../../api/types";
+import { goToFrame, selectCamera } from "../../actions/annotate/select";
 import { arrangementsOf, type Arrangement } from "../../state/viewOptions";
+import { useAnnotating } from "./annotating";
 import classes from "./Annotator.module.css";
+import { FRAME_TOOLS } from "./mounts";
 
 interface FrameBarProps {
-  recording: Recording;
-  camera: string;
-  frame: number;
-  isPlaying: boolean;
-  arrangement: Arrangement;
   frameField: RefObject<HTMLInputElement | null>;
-  run: (action: string) => void;
-  onFrame: (frame: number) => void;
-  onCamera: (camera: string) => void;
-  onArrangement: (arrangement: Arrangement) => void;
 }
 
 const NAMES: Record<Arrangement, string> = { color: "Colour", depth: "Depth", side: "Side by side", over: "Depth over colour" };
 
 /** Which recording, camera and frame, and which pictures of it. */
-export function FrameBar({ recording, camera, frame, isPlaying, arrangement, frameField, run, onFrame, onCamera, onArrangement }: FrameBarProps) {
-  const here = recording.cameras.find((one) => one.id === camera);
-  const arrangements = here ? arrangementsOf(here) : [];
+export function FrameBar({ frameField }: FrameBarProps) {
+  const { recording, camera, state, isPlaying, arrangement, setOptions, act, run } = useAnnotating();
+  const arrangements = arrangementsOf(camera);
   return (
     <div className={classes.bar}>
       <Link to={`/recordings/${recording.id}`} className={`${classes.title} one-line`} title={recording.name}>
         {recording.name}
       </Link>
       {recording.cameras.length > 1 && (
-        <Select size="xs" w={136} aria-label="Camera" allowDeselect={false} data={recording.cameras.map((one) => one.id)} value={camera} onChange={(id) => id && onCamera(id)} />
+        <Select size="xs" w={136} aria-label="Camera" allowDeselect={false} data={recording.cameras.map((one) => one.id)} value={camera.id} onChange={(id) => id && act(selectCamera, id)} />
       )}
       {arrangements.length > 1 && (
         <SegmentedControl
@@ -39,9 +32,12 @@ export function FrameBar({ recording, camera, frame, isPlaying, arrangement, fra
           aria-label="Pictures"
           data={arrangements.map((value) => ({ value, label: NAMES[value] }))}
           value={arrangement}
-          onChange={(value) => onArrangement(value as Arrangement)}
+          onChange={(value) => setOptions({ arrangement: value as Arrangement })}
         />
       )}
+      {FRAME_TOOLS.map((FrameTool, index) => (
+        <FrameTool key={index} />
+      ))}
       <Group gap={4} ml="auto" wrap="nowrap">
         <Tooltip label={isPlaying ? "Pause (Space)" : "Play (Space)"}>
           <ActionIcon aria-label={isPlaying ? "Pause" : "Play"} onClick={() => run("play")}>
@@ -63,8 +59,8 @@ export function FrameBar({ recording, camera, frame, isPlaying, arrangement, fra
           allowDecimal={false}
           allowNegative={false}
           max={recording.frame_count - 1}
-          value={frame}
-          onChange={(value) => typeof value === "number" && onFrame(value)}
+          value={state.frame}
+          onChange={(value) => typeof value === "number" && act(goToFrame, value)}
           onKeyDown={(event) => (event.key === "Enter" || event.key === "Escape") && event.currentTarget.blur()}
         />
         <Text size="xs" className="quiet" style={{ whiteSpace: "nowrap" }}>

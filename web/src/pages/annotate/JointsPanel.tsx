@@ -1,18 +1,11 @@
 import { ScrollArea, Text, Tooltip } from "@mantine/core";
 import { useEffect, useRef } from "react";
-import type { Side } from "../../api/types";
+import { selectJoint, switchHand } from "../../actions/annotate/select";
 import { HANDS, JOINTS, jointColor, jointLabel } from "../../model/joints";
-import { decidedCount, keyText, statusOf, type JointStatus, type Pose } from "../../model/pose";
-import type { AnnotatorState } from "../../state/annotator";
+import { decidedCount, keyText, statusOf, type JointStatus } from "../../model/pose";
 import { HandMark } from "../parts/HandBadge";
+import { useAnnotating } from "./annotating";
 import classes from "./JointsPanel.module.css";
-
-interface JointsPanelProps {
-  state: AnnotatorState;
-  pose: Pose;
-  onHand: (hand: Side) => void;
-  onJoint: (joint: number) => void;
-}
 
 const STATUS: Record<JointStatus, { text: string; help: string }> = {
   unset: { text: "", help: "not marked yet" },
@@ -34,17 +27,18 @@ function StatusMark({ status, color }: { status: JointStatus; color: string }) {
 }
 
 /** The joints of the active hand, what is known about each, and which comes next. */
-export function JointsPanel({ state, pose, onHand, onJoint }: JointsPanelProps) {
+export function JointsPanel() {
+  const { state, pose, act } = useAnnotating();
   const active = useRef<HTMLButtonElement>(null);
   useEffect(() => void active.current?.scrollIntoView({ block: "nearest" }), [state.joint]);
   return (
-    <aside className={classes.panel} aria-label="Joints">
+    <div className={classes.panel} role="group" aria-label="Joints">
       <div className={classes.hands} role="tablist" aria-label="Hand">
         {HANDS.map((hand) => {
           const count = decidedCount(hand === state.hand ? pose : state.poses[keyText({ camera: state.camera, frame: state.frame, hand })]);
           return (
             <Tooltip key={hand} label={`${hand} hand (G switches)`}>
-              <button type="button" role="tab" aria-selected={hand === state.hand} className={classes.hand} data-hand={hand} onClick={() => onHand(hand)}>
+              <button type="button" role="tab" aria-selected={hand === state.hand} className={classes.hand} data-hand={hand} onClick={() => hand !== state.hand && act(switchHand, undefined)}>
                 <HandMark hand={hand} size={12} />
                 {hand}
                 <span className={classes.count}>{count}/21</span>
@@ -69,7 +63,7 @@ export function JointsPanel({ state, pose, onHand, onJoint }: JointsPanelProps) 
               data-status={status}
               aria-current={isActive ? "step" : undefined}
               aria-label={`${jointLabel(joint)}, ${STATUS[status].help}`}
-              onClick={() => onJoint(joint)}
+              onClick={() => act(selectJoint, joint)}
             >
               <StatusMark status={status} color={jointColor(joint)} />
               <span className="one-line">{jointLabel(joint)}</span>
@@ -80,6 +74,6 @@ export function JointsPanel({ state, pose, onHand, onJoint }: JointsPanelProps) 
           );
         })}
       </ScrollArea>
-    </aside>
+    </div>
   );
 }

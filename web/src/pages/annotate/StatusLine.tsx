@@ -8,6 +8,7 @@ import { statusOf, type Pose } from "../../model/pose";
 import type { AnnotatorState } from "../../state/annotator";
 import { usePointer, type PointerStore } from "../../state/pointer";
 import type { SaveStatus } from "../../state/saveQueue";
+import { useAnnotating } from "./annotating";
 import classes from "./StatusLine.module.css";
 
 function describeSaving(status: SaveStatus): { text: string; tone: "good" | "busy" | "bad"; icon: typeof IconCheck } {
@@ -44,21 +45,13 @@ function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | n
   );
 }
 
-interface StatusLineProps {
-  state: AnnotatorState;
-  pose: Pose;
-  saving: SaveStatus;
-  pointer: PointerStore;
-  depth: DepthImage | null;
-  onFlush: () => void;
-}
-
-export function StatusLine({ state, pose, saving, pointer, depth, onFlush }: StatusLineProps) {
+export function StatusLine() {
+  const { state, pose, saving, pointer, pictures, lock, session } = useAnnotating();
   const { text, tone, icon: Icon } = describeSaving(saving);
   return (
     <div className={classes.line}>
       <Tooltip label={saving.isOffline ? "Kept in this browser; try now (Ctrl+S)" : "Every gesture is saved by itself"}>
-        <button type="button" className={classes.saving} data-tone={tone} onClick={onFlush} aria-live="polite" data-testid="save-state">
+        <button type="button" className={classes.saving} data-tone={tone} onClick={() => session.queue.flush()} aria-live="polite" data-testid="save-state">
           <Icon size={15} aria-hidden />
           {text}
         </button>
@@ -69,10 +62,10 @@ export function StatusLine({ state, pose, saving, pointer, depth, onFlush }: Sta
         </Text>
       )}
       <span className={classes.next} data-testid="next-click">
-        Next click {describeClick(state, pose)}
+        {lock ?? `Next click ${describeClick(state, pose)}`}
       </span>
       <span className={classes.here}>
-        <Here pointer={pointer} depth={depth} />
+        <Here pointer={pointer} depth={pictures.depthImage} />
       </span>
     </div>
   );

@@ -15,54 +15,21 @@ import {
   IconTrash,
   IconX,
 } from "@tabler/icons-react";
-import type { ReactNode } from "react";
-import { keyOf } from "../../model/keymap";
-import { clampFactor, type ViewOptions } from "../../state/viewOptions";
+import { annotatedFrames } from "../../actions/annotate/bring";
+import { placedCount } from "../../model/pose";
+import { arrangementsOf, clampFactor } from "../../state/viewOptions";
+import { useAnnotating } from "./annotating";
+import { TOOLS } from "./mounts";
+import { Tool } from "./Tool";
 import classes from "./ToolRail.module.css";
 
-interface ToolProps {
-  label: string;
-  action: string;
-  icon: ReactNode;
-  isOn?: boolean;
-  isDisabled?: boolean;
-  onClick: () => void;
-}
-
-function Tool({ label, action, icon, isOn, isDisabled = false, onClick }: ToolProps) {
-  const key = keyOf(action);
-  return (
-    <Tooltip label={key ? `${label} (${key})` : label} position="right">
-      <ActionIcon
-        size={32}
-        variant={isOn ? "light" : "subtle"}
-        color={isOn ? "teal" : "gray"}
-        aria-label={label}
-        aria-pressed={isOn}
-        aria-disabled={isDisabled}
-        data-disabled={isDisabled || undefined}
-        onClick={isDisabled ? undefined : onClick}
-      >
-        {icon}
-      </ActionIcon>
-    </Tooltip>
-  );
-}
-
-interface ToolRailProps {
-  /** Runs an action of the key map. */
-  run: (action: string) => void;
-  canUndo: boolean;
-  canRedo: boolean;
-  canBring: boolean;
-  hasPose: boolean;
-  hasSeveralPictures: boolean;
-  options: ViewOptions;
-  onOptions: (change: Partial<ViewOptions>) => void;
-}
-
 /** The things one does, as buttons; each says its key. */
-export function ToolRail({ run, canUndo, canRedo, canBring, hasPose, hasSeveralPictures, options, onOptions }: ToolRailProps) {
+export function ToolRail() {
+  const { state, session, camera, pose, options, setOptions: onOptions, run } = useAnnotating();
+  const [canUndo, canRedo] = [session.undo.canUndo(), session.undo.canRedo()];
+  const canBring = annotatedFrames(state, state.hand).some((frame) => frame < state.frame);
+  const hasPose = placedCount(pose) > 0;
+  const hasSeveralPictures = arrangementsOf(camera).length > 1;
   const size = 18;
   const isAdjusted = options.brightness !== 1 || options.contrast !== 1;
   return (
@@ -112,6 +79,9 @@ export function ToolRail({ run, canUndo, canRedo, canBring, hasPose, hasSeveralP
         onClick={() => run("view.hands")}
       />
       <Tool label="Joint names" action="view.names" icon={options.areNamesShown ? <IconEye size={size} /> : <IconLabel size={size} />} isOn={options.areNamesShown} onClick={() => run("view.names")} />
+      {TOOLS.map((Extra, index) => (
+        <Extra key={index} />
+      ))}
     </div>
   );
 }

@@ -7,6 +7,7 @@ import { toggleOccluded, toggleOutside } from "../../actions/annotate/visibility
 import type { Recording } from "../../api/types";
 import type { Action, AnnotatorState } from "../../state/annotator";
 import type { Session } from "../../state/session";
+import type { Actions, Annotating } from "./annotating";
 
 const NUDGES = {
   "nudge.left": { x: -0.5, y: 0 },
@@ -25,9 +26,8 @@ const FINGER_KEYS = ["wrist", "thumb", "index", "middle", "ring", "little"] as c
 export const stepFor = (repeats: number): number => (repeats < 12 ? 1 : repeats < 40 ? 2 : 4);
 
 /** Everything of the key map that only changes the annotator's state, by its id. */
-export function annotateActions(session: Session, recording: Recording): Record<string, (repeats?: number) => void> {
+export function annotateActions(session: Session, recording: Recording, act: Annotating["act"]): Actions {
   const { store } = session;
-  const act = <I>(action: Action<I>, input: I): void => store.set(action(store.get(), input), "person");
   const simple = (action: Action) => () => act(action, undefined);
   const toFrame = (pick: (state: AnnotatorState) => number | undefined) => () => {
     const frame = pick(store.get());

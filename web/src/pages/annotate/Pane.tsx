@@ -1,0 +1,68 @@
+import { dragHand, dragJoint, endDrag } from "../../actions/annotate/move";
+import { placeJoint } from "../../actions/annotate/place";
+import { selectCamera, selectJoint } from "../../actions/annotate/select";
+import { cycleVisibility } from "../../actions/annotate/visibility";
+import type { Camera } from "../../api/types";
+import { jointAt } from "../../canvas/hit";
+import { ImagePane, type PaneLayer } from "../../canvas/ImagePane";
+import { jointLabel } from "../../model/joints";
+import { emptyPose, keyText } from "../../model/pose";
+import { useAnnotating } from "./annotating";
+import classes from "./Annotator.module.css";
+import { LAYERS } from "./mounts";
+
+interface PaneProps {
+  camera: Camera;
+  /** "Colour" */
+  label: string;
+  layers: readonly PaneLayer[];
+  isBusy: boolean;
+}
+
+/** One picture of one camera, to be annotated; a gesture on a camera that is not the active one makes it so first. */
+export function Pane({ camera, label, layers, isBusy }: PaneProps) {
+  const { state, pose, options, viewOf, setView, pointer, isMagnified, act } = useAnnotating();
+  const isActive = camera.id === state.camera;
+  const shown = isActive ? pose : (state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })] ?? emptyPose());
+  const here = (): void => act(selectCamera, camera.id);
+  return (
+    <ImagePane
+      label={`${label} of frame ${state.frame}, ${camera.id}. Next click places ${jointLabel(state.joint)}.`}
+      camera={camera}
+      layers={layers}
+      view={viewOf(camera.id)}
+      onView={(view) => setView(camera.id, view)}
+      brightness={options.brightness}
+      contrast={options.contrast}
+      pointer={pointer}
+      cursorLabel={jointLabel(state.joint)}
+      isMagnified={isMagnified}
+      isBusy={isBusy}
+      hitJoint={(view, screen) => (options.areHandsShown ? jointAt(shown, view, screen, isActive ? state.joint : -1) : -1)}
+      onPlace={(pixel) => {
+        here();
+        act(placeJoint, pixel);
+      }}
+      onSelect={(joint) => {
+        here();
+        act(selectJoint, joint);
+      }}
+      onDragJoint={(joint, to) => {
+        here();
+        act(dragJoint, { joint, to });
+      }}
+      onDragHand={(by) => {
+        here();
+        act(dragHand, by);
+      }}
+      onDragEnd={() => act(endDrag, undefined)}
+      onCycle={(joint) => {
+        here();
+        act(cycleVisibility, joint);
+      }}
+      overlay={<span className={classes.paneLabel}>{label}</span>}
+    >
+      {(view) => LAYERS.map((Layer, index) => <Layer key={index} view={view} camera={camera} />)}
+    </ImagePane>
+  );
+}

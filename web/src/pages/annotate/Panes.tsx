@@ -1,0 +1,22 @@
+import { useAnnotating } from "./annotating";
+import { Pane } from "./Pane";
+
+/** The pictures of the active camera in the chosen arrangement. */
+export function Panes() {
+  const { camera, pictures, arrangement } = useAnnotating();
+  const color = { picture: pictures.color, opacity: 1 };
+  const depth = { picture: pictures.depth, opacity: 1 };
+  const show = (label: string, layers: readonly (typeof color)[]) => (
+    <Pane key={label} camera={camera} label={label} layers={layers} isBusy={pictures.isStale || layers.every((layer) => layer.picture === null)} />
+  );
+  switch (arrangement) {
+    case "color":
+      return show("Colour", [color]);
+    case "depth":
+      return show("Depth", [depth]);
+    case "over":
+      return show("Depth over colour", [color, { ...depth, opacity: 0.55 }]);
+    case "side":
+      return [show("Colour", [color]), show("Depth", [depth])];
+  }
+}

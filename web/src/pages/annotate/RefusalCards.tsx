@@ -1,0 +1,22 @@
+import { Button, Text } from "@mantine/core";
+import { parseKey } from "../../model/pose";
+import { useAnnotating } from "./annotating";
+import classes from "./Annotator.module.css";
+
+/** What the server refuses to take, and what one can do about it. */
+export function RefusalCards() {
+  const { saving, session } = useAnnotating();
+  return [...saving.refusals].map(([key, reason]) => (
+    <div key={key} className={`card ${classes.notice}`} role="alert">
+      <Text size="sm" fw={600}>
+        The server does not take the {parseKey(key).hand} hand of frame {parseKey(key).frame}
+      </Text>
+      <Text size="xs" my={8}>
+        {reason} Your version is kept in this browser; change it, or drop it.
+      </Text>
+      <Button size="xs" variant="default" onClick={() => session.queue.discard(key)}>
+        Drop my version
+      </Button>
+    </div>
+  ));
+}

@@ -1,0 +1,47 @@
+/**
+ * Where the annotator's parts stand, each mounted by one line. A part reads and acts through `useAnnotating()`, and
+ * answers keys with `useActions()`; the key itself is a line of `model/keymap.ts`.
+ */
+
+import type { ComponentType } from "react";
+import type { Camera } from "../../api/types";
+import type { View } from "../../canvas/view";
+import type { FrameMarks } from "../../model/frameMarks";
+import { ConflictCards } from "./ConflictCards";
+import { HandsLayer } from "./HandsLayer";
+import { JointsPanel } from "./JointsPanel";
+import { PictureFailure } from "./PictureFailure";
+import { RefusalCards } from "./RefusalCards";
+
+/** Something drawn on a picture (Konva), in screen coordinates of the view. */
+export interface LayerProps {
+  view: View;
+  camera: Camera;
+}
+
+export interface Panel {
+  readonly id: string;
+  readonly label: string;
+  readonly Component: ComponentType;
+}
+
+/** Drawn on every picture, in order, the last one on top. */
+export const LAYERS: readonly ComponentType<LayerProps>[] = [HandsLayer];
+
+/** Tabs of the panel on the right. */
+export const PANELS: readonly Panel[] = [{ id: "joints", label: "Joints", Component: JointsPanel }];
+
+/** In the picture's upper right corner, one below the other; each draws nothing when it has nothing to say. */
+export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, PictureFailure];
+
+/** Across the page, below the frame bar. */
+export const BARS: readonly ComponentType[] = [];
+
+/** Buttons at the end of the frame bar. */
+export const FRAME_TOOLS: readonly ComponentType[] = [];
+
+/** Buttons at the end of the tool rail. */
+export const TOOLS: readonly ComponentType[] = [];
+
+/** Hooks that say which frames the timeline has to mark. */
+export const MARKS: readonly (() => FrameMarks)[] = [];

@@ -1,0 +1,166 @@
+/** The annotator's own state beside the session: pictures, views, keys, playback. */
+
+import { useCallback, useEffect, useMemo, useRef, useState, type RefObject } from "react";
+import { useSearchParams } from "react-router";
+import { goToFrame } from "../../actions/annotate/select";
+import { useKeymap } from "../../actions/useKeymap";
+import type { Recording } from "../../api/types";
+import { scaleRange, type DepthRange } from "../../canvas/depth";
+import { usePictures } from "../../canvas/usePictures";
+import type { View } from "../../canvas/view";
+import { KEYMAP } from "../../model/keymap";
+import type { Pose } from "../../model/pose";
+import { activePose, type Action } from "../../state/annotator";
+import { keepPlace } from "../../state/lastPlace";
+import { createPointerStore } from "../../state/pointer";
+import type { Session } from "../../state/session";
+import { arrangementFor, arrangementsOf, clampFactor, useViewOptions } from "../../state/viewOptions";
+import type { Actions, Annotating } from "./annotating";
+import { annotateActions } from "./useAnnotateActions";
+import { usePlayback } from "./usePlayback";
+import { useAnnotatorState, useSaveStatus } from "./useSession";
+
+const KEYS = KEYMAP.filter((binding) => binding.scope === "annotate" || binding.id === "undo" || binding.id === "redo").map((binding) => binding.id);
+
+/** Keys that mean something only when pressed, not when held. */
+const ONCE: ReadonlySet<string> = new Set(["play", "view.magnifier"]);
+
+export function useAnnotatorParts(recording: Recording, session: Session, frameField: RefObject<HTMLInputElement | null>): Annotating {
+  const state = useAnnotatorState(session);
+  const saving = useSaveStatus(session);
+  const [options, setOptions] = useViewOptions();
+  const [views, setViews] = useState<Readonly<Record<string, View | null>>>({});
+  const [range, setRange] = useState<DepthRange | null>(null);
+  const [isMagnified, setMagnified] = useState(false);
+  const [preview, setPreview] = useState<Pose | null>(null);
+  const [lock, setLock] = useState<string | null>(null);
+  const [pointer] = useState(createPointerStore);
+  const [, setAddress] = useSearchParams();
+
+  const camera = recording.cameras.find((one) => one.id === state.camera) ?? recording.cameras[0];
+  if (!camera) throw new Error("This recording has no camera.");
+  const arrangement = arrangementFor(camera, options.arrangement);
+  // Depth is fetched whenever there is any: the value under the cursor is wanted beside the colour image, too.
+  const pictures = usePictures(recording, camera, state.frame, { color: arrangement !== "depth", depth: camera.has_depth }, range);
+
+  const isLocked = useRef(false);
+  isLocked.current = lock !== null;
+  const act = useCallback(
+    <I>(action: Action<I>, input: I) => {
+      const before = session.store.get();
+      const next = action(before, input);
+      if (isLocked.current && (next.poses !== before.poses || next.draft !== null)) return;
+      session.store.set(next, "person");
+    },
+    [session],
+  );
+  const [isPlaying, setPlaying] = usePlayback(recording.fps, () => {
+    const { frame, frameCount } = session.store.get();
+    act(goToFrame, frame + 1);
+    return frame + 1 < frameCount - 1;
+  });
+
+  useEffect(() => {
+    const timer = setTimeout(() => {
+      const address = new URLSearchParams({ camera: state.camera, frame: String(state.frame), hand: state.hand });
+      setAddress(address, { replace: true });
+      keepPlace(`/recordings/${recording.id}/annotate?${address}`);
+    }, 120);
+    return () => clearTimeout(timer);
+  }, [state.camera, state.frame, state.hand, recording.id, setAddress]);
+
+  useEffect(() => setRange(null), [camera.id]);
+  useEffect(() => setViews({}), [arrangement]);
+  useEffect(() => setPreview(null), [state.camera, state.frame, state.hand]);
+
+  const setView = useCallback((id: string, view: View | null) => setViews((now) => ({ ...now, [id]: view })), []);
+
+  const others = useRef<(() => Actions)[]>([]);
+  const register = useCallback((actions: () => Actions) => {
+    others.current = [actions, ...others.current];
+    return () => {
+      others.current = others.current.filter((one) => one !== actions);
+    };
+  }, []);
+
+  const actions = useMemo(() => annotateActions(session, recording, act), [session, recording, act]);
+  const contrast = (factor: number): void => {
+    if (arrangement === "color" || !pictures.range) setOptions({ contrast: clampFactor(options.contrast * factor) });
+    else setRange(scaleRange(pictures.range, 1 / factor));
+  };
+  const pageActions: Actions = {
+    "frame.goto": () => frameField.current?.select(),
+    play: () => setPlaying(!isPlaying),
+    "view.fit": () => setViews({}),
+    "view.magnifier": () => setMagnified(true),
+    "view.depth": () => {
+      const all = arrangementsOf(camera);
+      setOptions({ arrangement: all[(all.indexOf(arrangement) + 1) % all.length] ?? "color" });
+    },
+    "view.hands": () => setOptions({ areHandsShown: !options.areHandsShown }),
+    "view.names": () => setOptions({ areNamesShown: !options.areNamesShown }),
+    "view.brighter": () => setOptions({ brightness: clampFactor(options.brightness * 1.1) }),
+    "view.darker": () => setOptions({ brightness: clampFactor(options.brightness / 1.1) }),
+    "view.contrastUp": () => contrast(1.1),
+    "view.contrastDown": () => contrast(1 / 1.1),
+    "drag.cancel": () => {
+      if (state.draft) actions["drag.cancel"]?.();
+      else document.querySelector<HTMLElement>('[role="toolbar"] button')?.focus();
+    },
+  };
+  const answers = useRef<(id: string) => ((repeats?: number) => void) | undefined>(() => undefined);
+  answers.current = (id) => others.current.map((part) => part()[id]).find(Boolean) ?? pageActions[id] ?? actions[id];
+  const run = useCallback((id: string, repeats = 0) => {
+    if (isLocked.current && (id === "undo" || id === "redo")) return;
+    answers.current(id)?.(repeats);
+  }, []);
+
+  const repeats = useRef(0);
+  const held = useRef<string | null>(null);
+  const answer = (id: string) => (event: KeyboardEvent) => {
+    repeats.current = event.repeat ? repeats.current + 1 : 0;
+    if (id === "view.magnifier") held.current = event.code;
+    if (event.repeat && ONCE.has(id)) return;
+    run(id, repeats.current);
+  };
+  useKeymap("annotate", Object.fromEntries(KEYS.flatMap((id) => (answers.current(id) ? [[id, answer(id)]] : []))));
+  useEffect(() => {
+    const release = (event: KeyboardEvent): void => {
+      if (event.code === held.current) setMagnified(false);
+    };
+    const lose = (): void => setMagnified(false);
+    window.addEventListener("keyup", release);
+    window.addEventListener("blur", lose);
+    return () => {
+      window.removeEventListener("keyup", release);
+      window.removeEventListener("blur", lose);
+    };
+  }, []);
+
+  return {
+    recording,
+    session,
+    state,
+    camera,
+    pose: activePose(state),
+    saving,
+    pictures,
+    range,
+    setRange,
+    arrangement,
+    options,
+    setOptions,
+    viewOf: (id) => views[id] ?? null,
+    setView,
+    pointer,
+    isMagnified,
+    isPlaying,
+    preview,
+    setPreview,
+    lock,
+    setLock,
+    act,
+    run,
+    register,
+  };
+}

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tracker.capture.import_run import run_import
     from tracker.capture.relative_path import find_path_fault
     from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
+    from tracker.capture.triangulation import Triangulation, triangulate
     from tracker.cli import add_commands
     from tracker.errors import (
         AnnotationError,
@@ -79,6 +80,7 @@ _HOMES = {
     "TrackState": "tracker.tracking.state",
     "TrackerError": "tracker.errors",
     "TrackingError": "tracker.errors",
+    "Triangulation": "tracker.capture.triangulation",
     "USUAL_PRESET": "tracker.tracking.presets",
     "ViewAids": "tracker.tracking.view_aids",
     "add_commands": "tracker.cli",
@@ -99,6 +101,7 @@ _HOMES = {
     "save_sequence_json": "tracker.capture.sequence",
     "start_tracking": "tracker.tracking.start",
     "track_frames": "tracker.tracking.follow",
+    "triangulate": "tracker.capture.triangulation",
     "warm_up": "tracker.tracking.warm_up",
 }
 
@@ -134,6 +137,7 @@ __all__ = [
     "TrackState",
     "TrackerError",
     "TrackingError",
+    "Triangulation",
     "ViewAids",
     "add_commands",
     "check_import",
@@ -153,6 +157,7 @@ __all__ = [
     "save_sequence_json",
     "start_tracking",
     "track_frames",
+    "triangulate",
     "warm_up",
 ]
 

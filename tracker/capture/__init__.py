@@ -21,4 +21,6 @@ from tracker.capture.relative_path import find_path_fault as find_path_fault
 from tracker.capture.sequence import Sequence as Sequence
 from tracker.capture.sequence import load_sequence as load_sequence
 from tracker.capture.sequence import save_sequence_json as save_sequence_json
+from tracker.capture.triangulation import Triangulation as Triangulation
+from tracker.capture.triangulation import triangulate as triangulate
 from tracker.capture.workplace import clean_leftovers as clean_leftovers

@@ -10,6 +10,15 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
+UNDISTORTION_STEPS = 8
+"""Of Newton's method; three are enough inside an ordinary image."""
+
+STEP = 1e-7
+"""Of the finite differences, in a plane at distance 1."""
+
+MEETING_PX = 1e-4
+"""A ray meets its pixel if it comes so near."""
+
 
 @dataclass(frozen=True, eq=False)
 class Camera:
@@ -56,3 +65,44 @@ class Camera:
         )[0][:, 0, :].astype(np.float64)
         pixels[points_camera[:, 2] <= 0] = np.nan
         return pixels
+
+    def unproject(self, pixels: Array) -> Array:
+        """Rays (N, 3) camera, with z = 1, that `project` sends to (N, 2) px.
+
+        OpenCV's guess is refined until the ray meets its pixel again. A pixel that no ray meets, beyond where the
+        distortion folds over, comes out as NaN.
+        """
+        assert pixels.ndim == 2 and pixels.shape[1] == 2
+        if self.distortion.size == 0 or len(pixels) == 0:
+            K = self.K
+            return np.column_stack([(pixels - K[:2, 2]) / [K[0, 0], K[1, 1]], np.ones(len(pixels))])
+        guess = cv2.undistortPoints(pixels[:, None, :].astype(np.float64), self.K, self.distortion)[:, 0, :]
+        flat = guess.astype(np.float64)
+        for _ in range(UNDISTORTION_STEPS):
+            here = self._distort(flat)
+            J = np.stack([(self._distort(flat + step) - here) / STEP for step in STEP * np.eye(2)], axis=2)
+            is_regular = J[:, 0, 0] * J[:, 1, 1] - J[:, 0, 1] * J[:, 1, 0] > 0.0
+            move = np.linalg.solve(np.where(is_regular[:, None, None], J, np.eye(2)), (pixels - here)[:, :, None])
+            flat = np.where(is_regular[:, None], flat + move[:, :, 0], np.nan)
+        with np.errstate(invalid="ignore"):
+            meets = np.linalg.norm(self._distort(flat) - pixels, axis=1) < MEETING_PX
+        rays = np.column_stack([flat, np.ones(len(flat))])
+        rays[~meets] = np.nan
+        return rays
+
+    def can_see(self, points_world: Array) -> npt.NDArray[np.bool_]:
+        """Whether (N, 3) world, m, are in the image (N,): the pixel lies in it, and its ray leads back to the point."""
+        pixels = self.project(points_world)
+        with np.errstate(invalid="ignore"):
+            is_inside = np.all((pixels >= -0.5) & (pixels < np.array([self.width, self.height]) - 0.5), axis=1)
+        T = self.T_camera_world
+        points_camera = points_world[is_inside] @ T[:3, :3].T + T[:3, 3]
+        rays = self.unproject(pixels[is_inside])
+        with np.errstate(invalid="ignore"):
+            is_inside[is_inside] = np.all(np.abs(rays - points_camera / points_camera[:, 2:]) < 1e-3, axis=1)
+        return is_inside
+
+    def _distort(self, flat: Array) -> Array:
+        """Pixels (N, 2) of rays (x, y, 1), camera, given as (N, 2)."""
+        points = np.column_stack([flat, np.ones(len(flat))])[:, None, :]
+        return cv2.projectPoints(points, np.zeros(3), np.zeros(3), self.K, self.distortion)[0][:, 0, :]

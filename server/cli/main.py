@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from server.cli import demo, export_command, import_command, serve, worker_command
+from server.cli import bench_server, demo, export_command, import_command, serve, worker_command
 from tracker import add_commands
 
 COMMANDS = (serve, worker_command, demo, import_command, export_command)
@@ -20,7 +20,7 @@ def main(arguments: list[str] | None = None) -> int:
     subparsers = parser.add_subparsers(required=True, metavar="COMMAND")
     for command in COMMANDS:
         command.add_command(subparsers)
-    add_commands(subparsers)
+    bench_server.add_subject(add_commands(subparsers))
     args = parser.parse_args(arguments)
     try:
         return args.run(args)

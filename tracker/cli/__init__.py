@@ -6,10 +6,15 @@ import argparse
 
 from tracker.cli import bench, calibrate, evaluate, synthesize, track, train_detector, warm_up
 
-COMMANDS = (track, calibrate, evaluate, synthesize, train_detector, bench, warm_up)
+COMMANDS = (track, calibrate, evaluate, synthesize, train_detector, warm_up)
 
 
-def add_commands(subparsers: argparse._SubParsersAction) -> None:
-    """Add every command; after parsing, `args.run(args)` runs the one chosen and returns the exit code."""
+def add_commands(subparsers: argparse._SubParsersAction) -> argparse._SubParsersAction:
+    """Add every command; after parsing, `args.run(args)` runs the one chosen and returns the exit code.
+
+    Returns:
+        What further subjects of `bench` are added to.
+    """
     for command in COMMANDS:
         command.add_command(subparsers)
+    return bench.add_command(subparsers)

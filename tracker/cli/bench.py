@@ -24,15 +24,22 @@ CASES = {
 """Name to the twin that stands for it, and its terms."""
 
 
-def add_command(subparsers: argparse._SubParsersAction) -> None:
-    parser = subparsers.add_parser(
-        "bench",
+def add_command(subparsers: argparse._SubParsersAction) -> argparse._SubParsersAction:
+    """Add `bench`; gives what further subjects are added to."""
+    parser = subparsers.add_parser("bench", help="where the time goes", description="Measure speed on this machine.")
+    subjects = parser.add_subparsers(required=True, metavar="SUBJECT")
+    _add_tracking(subjects)
+    return subjects
+
+
+def _add_tracking(subjects: argparse._SubParsersAction) -> None:
+    parser = subjects.add_parser(
+        "tracking",
         help="where the time of a frame goes",
         description="Track rendered recordings of one hand, two hands, and two hands with an object and physics on "
         "every frame, and print the median time of a frame, of its stages, and the floor: the sum of its kernels run "
         "alone on the same inputs.",
     )
-    parser.add_argument("subject", choices=("tracking",))
     parser.add_argument(
         "--twin", type=Path, metavar="FOLDER", help="render twins of T16's data (default hands and a ball otherwise)"
     )

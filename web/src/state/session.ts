@@ -5,12 +5,15 @@ import { firstOpenJoint, fromWire, keyText, toWire, type Pose } from "../model/p
 import { changedKeys, type AnnotatorState } from "./annotator";
 import type { SaveQueue } from "./saveQueue";
 import { createStore, type Store } from "./store";
+import { createSuggestionStore, type SuggestionStore } from "./suggestions";
 import { createUndoStack, type UndoStack } from "./undo";
 
 export interface Session {
   readonly store: Store<AnnotatorState>;
   readonly undo: UndoStack;
   readonly queue: SaveQueue;
+  /** What machines propose: never saved, until a person accepts it. */
+  readonly suggestions: SuggestionStore;
   close(): void;
 }
 
@@ -56,6 +59,7 @@ export function openSession(recording: Recording, annotations: readonly Annotati
     store,
     undo,
     queue,
+    suggestions: createSuggestionStore(),
     close() {
       stopSaving();
       undo.stop();

@@ -7,6 +7,7 @@ import type { Recording } from "../../api/types";
 import type { AnnotatorState } from "../../state/annotator";
 import { queueOf } from "../../state/saving";
 import type { SaveStatus } from "../../state/saveQueue";
+import type { SuggestionsState } from "../../state/suggestions";
 import { openSession, revisionsOf, type Session, type Start } from "../../state/session";
 
 interface Opened {
@@ -69,3 +70,6 @@ export const useAnnotatorState = (session: Session): AnnotatorState =>
 
 export const useSaveStatus = (session: Session): SaveStatus =>
   useSyncExternalStore(useCallback((tell) => session.queue.watch(tell), [session]), session.queue.status);
+
+export const useSuggestions = (session: Session): SuggestionsState =>
+  useSyncExternalStore(useCallback((tell) => session.suggestions.watch(tell), [session]), session.suggestions.get);

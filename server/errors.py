@@ -38,6 +38,12 @@ class NotFoundError(StudioError):
     status_code = 404
 
 
+class LoginNeededError(StudioError):
+    """Nobody is logged in, or no longer."""
+
+    status_code = 401
+
+
 class ForbiddenError(StudioError):
     """The request comes from where it must not come."""
 
@@ -60,6 +66,12 @@ class TooLargeError(StudioError):
     """More was sent than the settings allow."""
 
     status_code = 413
+
+
+class TooManyTriesError(StudioError):
+    """Wait before trying again; `Retry-After` says how long."""
+
+    status_code = 429
 
 
 class PreconditionMissingError(StudioError):

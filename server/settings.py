@@ -40,6 +40,13 @@ class Settings(BaseSettings):
     allowed_origins: Names = Field(
         default=(), description="Further origins (`http://localhost:5173`), separated by commas, whose pages may write."
     )
+    login: Literal["auto", "required"] = Field(
+        default="auto",
+        description="`auto`: people log in unless only this machine can reach the studio; `required`: here too.",
+    )
+    login_days: float = Field(
+        default=14.0, gt=0, le=400, description="Days after which a browser that was not used must log in again."
+    )
     web_dist: Path | None = Field(
         default=None, description="Folder of the built browser app; without it the one that came with the server."
     )
@@ -68,6 +75,12 @@ class Settings(BaseSettings):
     def is_loopback(self) -> bool:
         """Whether only this machine can reach the address."""
         return self.host in LOOPBACK_HOSTS
+
+    @property
+    def is_login_needed(self) -> bool:
+        """Whether people must log in: always when the address, or a name for a proxy, is not this machine's own."""
+        names = {self.host.lower(), *(host.lower() for host in self.allowed_hosts)}
+        return self.login == "required" or not names <= {*LOOPBACK_HOSTS}
 
     @property
     def sqlalchemy_url(self) -> str:

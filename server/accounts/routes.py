@@ -1,18 +1,54 @@
-"""`/account`."""
+"""`/account`: who I am."""
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body, Request, Response
 
 from server.accounts.models import Account
-from server.accounts.schemas import AccountOut
-from server.accounts.service import CurrentAccount
+from server.accounts.preferences import store_preferences
+from server.accounts.schemas import MyAccount
+from server.accounts.service import VisitorDep
+from server.accounts.visitor import Visitor
+from server.database import SessionDep
+from server.database.revision import IfMatch, read_if_match, write_etag
 from server.errors import error_responses
 
 router = APIRouter(tags=["accounts"], responses=error_responses())
 
 
-@router.get("/account", response_model=AccountOut)
-def get_account(account: CurrentAccount) -> Account:
-    """Who I am."""
-    return account
+def describe_me(account: Account, visitor: Visitor, request: Request, response: Response) -> MyAccount:
+    response.headers["ETag"] = write_etag(account.revision)
+    return MyAccount(
+        id=account.id,
+        name=account.name,
+        role=visitor.role,
+        revision=account.revision,
+        preferences=account.preferences,
+        is_login_needed=request.app.state.settings.is_login_needed,
+        may_write=visitor.may_write,
+        by_token=visitor.token_id is not None,
+    )
+
+
+@router.get("/account")
+def get_account(visitor: VisitorDep, session: SessionDep, request: Request, response: Response) -> MyAccount:
+    """Who I am, with my preferences."""
+    account = session.get_one(Account, visitor.account_id)
+    return describe_me(account, visitor, request, response)
+
+
+@router.put("/account/preferences", responses=error_responses(409, 413))
+def put_preferences(
+    body: Annotated[dict[str, Any], Body(description="Any JSON object of at most 64 kB; it replaces the old one.")],
+    visitor: VisitorDep,
+    session: SessionDep,
+    request: Request,
+    response: Response,
+    if_match: IfMatch = None,
+) -> MyAccount:
+    """Replace my preferences. With `If-Match` only if nobody did so before; without, the last one counts."""
+    expected = None if if_match is None else read_if_match(if_match)
+    account = store_preferences(session, visitor.account_id, body, expected)
+    return describe_me(account, visitor, request, response)

@@ -1,4 +1,4 @@
-"""Who asks."""
+"""Who asks, and what they may do."""
 
 from __future__ import annotations
 
@@ -9,17 +9,24 @@ from typing import Annotated
 from fastapi import Depends
 from sqlalchemy import select
 from sqlalchemy.orm import Session
+from starlette.requests import HTTPConnection
 
-from server.accounts.models import LOCAL_ACCOUNT_ID, ROLES, Account, Role
-from server.database import SessionDep
+from server.accounts.models import ROLES, Account, Role
+from server.accounts.visitor import Visitor, read_visitor
 from server.errors import ForbiddenError
 
 
-def get_current_account(session: SessionDep) -> Account:
-    """The account of a request: the local one, since only this machine can reach the studio."""
-    account = session.get(Account, LOCAL_ACCOUNT_ID)
-    assert account is not None, "the first migration makes the local account"
-    return account
+def get_visitor(connection: HTTPConnection) -> Visitor:
+    """Who makes the request; the door found out before anything else was done."""
+    return read_visitor(connection.scope)
+
+
+VisitorDep = Annotated[Visitor, Depends(get_visitor)]
+
+
+def get_current_account(visitor: VisitorDep) -> Account:
+    """The account of a request, to be read: id, name and role. It belongs to no session and costs no query."""
+    return Account(id=visitor.account_id, name=visitor.name, role=visitor.role)
 
 
 CurrentAccount = Annotated[Account, Depends(get_current_account)]
@@ -45,14 +52,15 @@ class RequireRole:
         return account
 
 
+require_lead = RequireRole("lead")
 ReviewerAccount = Annotated[Account, Depends(RequireRole("reviewer"))]
-LeadAccount = Annotated[Account, Depends(RequireRole("lead"))]
+LeadAccount = Annotated[Account, Depends(require_lead)]
 AdminAccount = Annotated[Account, Depends(RequireRole("admin"))]
 
 
-def get_current_account_id() -> uuid.UUID:
+def get_current_account_id(visitor: VisitorDep) -> uuid.UUID:
     """The account's id, without a session: for routes that work longer than one transaction."""
-    return LOCAL_ACCOUNT_ID
+    return visitor.account_id
 
 
 AccountIdDep = Annotated[uuid.UUID, Depends(get_current_account_id)]

@@ -11,6 +11,7 @@ from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 
 from server.app.browser_app import BrowserApp
+from server.app.door import Door
 from server.app.error_handler import install_error_handler
 from server.app.guard import Guard
 from server.app.parts import LIFESPANS, PAGE_ROUTERS, ROUTERS, SEQUENCE_FACTS
@@ -43,11 +44,12 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.sequence_facts = SEQUENCE_FACTS
     install_error_handler(app)
     for router in ROUTERS:
-        app.include_router(router, prefix=API, responses=error_responses(403, 500))
+        app.include_router(router, prefix=API, responses=error_responses(401, 403, 500))
     for router in PAGE_ROUTERS:
         app.include_router(router)
     app.router.default = BrowserApp(settings.web_dist)  # what no route takes
-    app.add_middleware(Guard, settings=settings)
+    app.add_middleware(Door, settings=settings)
+    app.add_middleware(Guard, settings=settings)  # added last, so it stands outermost
     return app
 
 

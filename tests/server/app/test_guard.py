@@ -83,7 +83,7 @@ def test_more_hosts_and_origins_can_be_allowed(settings: Settings) -> None:
     app = create_app(settings.model_copy(update=more))
     with TestClient(app, base_url="http://studio.lab", raise_server_exceptions=False) as client:
         assert client.get("/api/v1/health").status_code == 200
-        assert client.request(*WRITE, headers={"Origin": "http://localhost:5173"}).status_code == 404
+        assert client.request(*WRITE, headers={"Origin": "http://localhost:5173"}).status_code == 401
         assert client.request(*WRITE, headers={"Origin": "http://localhost:5174"}).status_code == 403
 
 

@@ -15,8 +15,9 @@ from starlette.concurrency import run_in_threadpool
 
 from server.database import Database, utc_now
 from server.jobs import service
+from server.jobs.describe import describe_job, describe_jobs
 from server.jobs.models import ENDED_STATES, JobLogRow, JobRow
-from server.jobs.schemas import JobLogLine, JobOut
+from server.jobs.schemas import JobLogLine
 
 POLL_SECONDS = 0.25
 HEARTBEAT_SECONDS = 15.0
@@ -64,15 +65,16 @@ class JobFeed:
         with database.reading() as session:
             job = session.get(JobRow, self.job_id)
             lines = service.read_log(session, self.job_id, self.line)
+            described = None if job is None or job.version == self.version else describe_job(session, job)
         if job is None:
             self.has_ended = True
             return []
         for row in lines:
             self.line = row.number
             events.append(encode_event("log", log_line(row), f"{self.version}.{self.line}"))
-        if job.version != self.version:
+        if described is not None:
             self.version = job.version
-            events.append(encode_event("job", JobOut.model_validate(job), f"{self.version}.{self.line}"))
+            events.append(encode_event("job", described, f"{self.version}.{self.line}"))
         self.has_ended = job.state in ENDED_STATES and len(lines) < service.LOG_PAGE
         return events
 
@@ -101,13 +103,13 @@ class AllJobsFeed:
             recent = select(JobRow.id).order_by(JobRow.created_at.desc()).limit(RECENT_JOBS)
             query = query.where(or_(JobRow.state.not_in(ENDED_STATES), JobRow.id.in_(recent)))
         with database.reading() as session:
-            jobs = list(session.scalars(query))
+            changed = [job for job in session.scalars(query) if self.versions.get(job.id) != job.version]
+            described = describe_jobs(session, changed)
         events = []
-        for job in reversed(jobs):
-            if self.versions.get(job.id) != job.version:
-                self.versions[job.id] = job.version
-                self.since = max(job.updated_at, self.since or job.updated_at)
-                events.append(encode_event("job", JobOut.model_validate(job), self.since.isoformat()))
+        for job, out in zip(reversed(changed), reversed(described), strict=True):
+            self.versions[job.id] = job.version
+            self.since = max(job.updated_at, self.since or job.updated_at)
+            events.append(encode_event("job", out, self.since.isoformat()))
         self.since = self.since or utc_now()
         return events
 

@@ -8,14 +8,31 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from sqlalchemy import select
+from sqlalchemy.orm import Session
 
+from server.accounts.audit import record_act
+from server.accounts.service import CurrentAccount
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
-from server.errors import error_responses
-from server.jobs import events, service, workers
+from server.errors import StudioError, error_responses
+from server.jobs import batches, events, service, workers
+from server.jobs.describe import describe_job, describe_jobs
 from server.jobs.form import track_form
 from server.jobs.models import JobRow, WorkerRow
-from server.jobs.schemas import JobCreate, JobForm, JobLog, JobOut, JobState, WorkerOut
+from server.jobs.schemas import (
+    BatchCreate,
+    BatchMade,
+    BatchOut,
+    BulkAct,
+    BulkDone,
+    BulkRefusal,
+    JobCreate,
+    JobForm,
+    JobLog,
+    JobOut,
+    JobState,
+    WorkerOut,
+)
 
 router = APIRouter(tags=["jobs"], responses=error_responses())
 
@@ -25,23 +42,62 @@ EVENT_STREAM: dict[int | str, dict[str, Any]] = {
 
 
 @router.post("/jobs", status_code=201, responses=error_responses(404))
-def create_job(body: JobCreate, session: SessionDep) -> JobOut:
+def create_job(body: JobCreate, session: SessionDep, account: CurrentAccount) -> JobOut:
     """Queue a job."""
     params = service.check_track_params(session, body.sequence_id, body.params)
-    return JobOut.model_validate(service.create_job(session, body.kind, body.sequence_id, params))
+    job = service.create_job(session, body.kind, body.sequence_id, params, created_by=account.id)
+    record_act(session, account.id, "job.start", "job", job.id)
+    return describe_job(session, job)
+
+
+@router.post("/jobs/batch", status_code=201)
+def create_batch(body: BatchCreate, session: SessionDep, account: CurrentAccount) -> BatchMade:
+    """Queue one job for each of several recordings: all or, when one of them cannot be, none (422 with `refused`)."""
+    batch_id, jobs = batches.create_batch(session, body.kind, body.sequence_ids, body.params, account.id)
+    record_act(session, account.id, "batch.start", "batch", batch_id, jobs=len(jobs))
+    return BatchMade(batch=batches.get_batch(session, batch_id), jobs=describe_jobs(session, jobs))
+
+
+@router.post("/jobs/bulk")
+def act_on_jobs(body: BulkAct, session: SessionDep, account: CurrentAccount) -> BulkDone:
+    """Cancel, retry or resume several jobs. Each by itself: `refused` says which could not be, and why."""
+    done, refused = [], []
+    for job_id in dict.fromkeys(body.job_ids):
+        try:
+            done.append(_act(session, body.act, job_id, account.id))
+        except StudioError as error:
+            refused.append(BulkRefusal(id=job_id, detail=error.detail))
+    return BulkDone(jobs=describe_jobs(session, done), refused=refused)
 
 
 @router.get("/jobs")
 def list_jobs(
     session: SessionDep,
     sequence_id: uuid.UUID | None = None,
-    state: JobState | None = None,
+    state: Annotated[list[JobState], Query(description="One or several.")] = [],  # noqa: B006 (FastAPI copies it)
+    created_by: uuid.UUID | None = None,
+    batch_id: uuid.UUID | None = None,
+    search: Annotated[str | None, Query(max_length=200, description="Words of the recording's name.")] = None,
     cursor: Cursor = None,
     limit: Limit = 100,
 ) -> Page[JobOut]:
     """Jobs, the newest first."""
-    rows, next_cursor = service.list_jobs(session, sequence_id, state, cursor, limit)
-    return Page(items=[JobOut.model_validate(row) for row in rows], next_cursor=next_cursor)
+    wanted = service.JobFilter(sequence_id, state, created_by, batch_id, search)
+    rows, next_cursor = service.list_jobs(session, wanted, cursor, limit)
+    return Page(items=describe_jobs(session, rows), next_cursor=next_cursor)
+
+
+@router.get("/jobs/batches")
+def list_batches(session: SessionDep, cursor: Cursor = None, limit: Limit = 100) -> Page[BatchOut]:
+    """Batches with what has become of their jobs, the newest first."""
+    items, next_cursor = batches.list_batches(session, cursor, limit)
+    return Page(items=items, next_cursor=next_cursor)
+
+
+@router.get("/jobs/batches/{batch_id}", responses=error_responses(404))
+def get_batch(batch_id: uuid.UUID, session: SessionDep) -> BatchOut:
+    """One batch with what has become of its jobs."""
+    return batches.get_batch(session, batch_id)
 
 
 @router.get("/jobs/form")
@@ -61,27 +117,36 @@ def stream_all_jobs(
 @router.get("/jobs/{job_id}", responses=error_responses(404))
 def get_job(job_id: uuid.UUID, session: SessionDep) -> JobOut:
     """One job."""
-    return JobOut.model_validate(service.get_job(session, job_id))
+    return describe_job(session, service.get_job(session, job_id))
 
 
 @router.post("/jobs/{job_id}/cancel", responses=error_responses(404, 409))
-def cancel_job(job_id: uuid.UUID, session: SessionDep) -> JobOut:
+def cancel_job(job_id: uuid.UUID, session: SessionDep, account: CurrentAccount) -> JobOut:
     """End a job that is queued or running."""
-    service.get_job(session, job_id)
-    return JobOut.model_validate(service.cancel_job(session, job_id))
+    return describe_job(session, _act(session, "cancel", job_id, account.id))
 
 
 @router.post("/jobs/{job_id}/retry", status_code=201, responses=error_responses(404, 409))
-def retry_job(job_id: uuid.UUID, session: SessionDep) -> JobOut:
+def retry_job(job_id: uuid.UUID, session: SessionDep, account: CurrentAccount) -> JobOut:
     """A new job with the parameters of one that has ended."""
-    return JobOut.model_validate(service.retry_job(session, job_id))
+    return describe_job(session, _act(session, "retry", job_id, account.id))
 
 
 @router.post("/jobs/{job_id}/resume", responses=error_responses(404, 409))
-def resume_job(job_id: uuid.UUID, session: SessionDep) -> JobOut:
+def resume_job(job_id: uuid.UUID, session: SessionDep, account: CurrentAccount) -> JobOut:
     """Go on with a cancelled or failed job where it stopped."""
+    return describe_job(session, _act(session, "resume", job_id, account.id))
+
+
+def _act(session: Session, act: str, job_id: uuid.UUID, account_id: uuid.UUID) -> JobRow:
+    """Do one thing to one job, and note who did it."""
     service.get_job(session, job_id)
-    return JobOut.model_validate(service.resume_job(session, job_id))
+    if act == "retry":
+        job = service.retry_job(session, job_id, account_id)
+    else:
+        job = service.cancel_job(session, job_id) if act == "cancel" else service.resume_job(session, job_id)
+    record_act(session, account_id, f"job.{act}", "job", job_id)
+    return job
 
 
 @router.get("/jobs/{job_id}/log", responses=error_responses(404))

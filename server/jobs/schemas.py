@@ -21,15 +21,32 @@ class JobCreate(BaseModel):
     )
 
 
+class BatchCreate(BaseModel):
+    """The same for several recordings."""
+
+    kind: Literal["track"] = "track"
+    sequence_ids: list[uuid.UUID] = Field(min_length=1, max_length=500, description="One job for each.")
+    params: dict[str, Any] = Field(default_factory=dict, description="As of one job; the same for all.")
+
+
+class JobWorker(BaseModel):
+    """The worker that runs a job, or ran it last."""
+
+    id: uuid.UUID
+    name: str
+    host: str
+
+
 class JobOut(BaseModel):
     """A job as it is now."""
 
-    model_config = ConfigDict(from_attributes=True, title="Job")
+    model_config = ConfigDict(title="Job")
 
     id: uuid.UUID
     kind: str
     state: JobState
     sequence_id: uuid.UUID
+    sequence_name: str = Field(description="Of the recording, as it is called now.")
     track_id: uuid.UUID | None = Field(description="What it produced.")
     params: dict[str, Any]
     progress: float = Field(ge=0, le=1)
@@ -40,10 +57,60 @@ class JobOut(BaseModel):
     error: str | None = Field(description="What went wrong, for people.")
     attempt: int = Field(description="1, and one more for every resume.")
     retry_of: uuid.UUID | None
+    batch_id: uuid.UUID | None = Field(description="Shared by the jobs that one request started.")
+    created_by: uuid.UUID | None
+    created_by_name: str | None = Field(description="Who started it; null for jobs of before there were accounts.")
+    worker: JobWorker | None = Field(description="Who runs it, or ran it last.")
     version: int = Field(description="Grows with every change.")
     created_at: datetime
     started_at: datetime | None
     ended_at: datetime | None
+
+
+class BatchOut(BaseModel):
+    """Jobs that one request started, taken together. A job that was tried again is counted once, as its last try."""
+
+    model_config = ConfigDict(title="Batch")
+
+    id: uuid.UUID
+    kind: str
+    params: dict[str, Any]
+    created_at: datetime
+    created_by: uuid.UUID | None
+    created_by_name: str | None
+    ended_at: datetime | None = Field(description="When the last of them ended; null while one has not.")
+    total: int
+    states: dict[JobState, int] = Field(description="How many are in each state.")
+    progress: float = Field(ge=0, le=1)
+    seconds_left: float | None = Field(description="With as many workers as are at it now; null while not known.")
+
+
+class BatchMade(BaseModel):
+    """A batch and its jobs, in the order of the recordings."""
+
+    batch: BatchOut
+    jobs: list[JobOut]
+
+
+class BulkAct(BaseModel):
+    """One act on several jobs."""
+
+    act: Literal["cancel", "retry", "resume"]
+    job_ids: list[uuid.UUID] = Field(min_length=1, max_length=500)
+
+
+class BulkRefusal(BaseModel):
+    """One that it could not be done to."""
+
+    id: uuid.UUID
+    detail: str = Field(description="Why, for people.")
+
+
+class BulkDone(BaseModel):
+    """What became of each."""
+
+    jobs: list[JobOut] = Field(description="Those it was done to; of `retry` the new ones.")
+    refused: list[BulkRefusal]
 
 
 class JobLogLine(BaseModel):

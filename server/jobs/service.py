@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import CursorResult, func, select, tuple_, update
+from sqlalchemy import CursorResult, Select, func, select, tuple_, update
 from sqlalchemy.orm import Session
 
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.jobs.models import ENDED_STATES, JobLogRow, JobRow, WorkerRow
+from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
 
 KINDS = ("track",)
@@ -35,15 +37,47 @@ def get_job(session: Session, job_id: UUID) -> JobRow:
     return job
 
 
+@dataclass(frozen=True)
+class JobFilter:
+    """Which jobs are asked for; what is None or empty asks for nothing.
+
+    Attributes:
+        sequence_id: Of one recording.
+        states: In one of these states.
+        created_by: Started by this account.
+        batch_id: Of one batch.
+        search: Words that the name of the recording holds, upper and lower case alike.
+    """
+
+    sequence_id: UUID | None = None
+    states: Sequence[str] = ()
+    created_by: UUID | None = None
+    batch_id: UUID | None = None
+    search: str | None = None
+
+    def apply(self, query: Select[tuple[JobRow]]) -> Select[tuple[JobRow]]:
+        for column, wanted in (
+            (JobRow.sequence_id, self.sequence_id),
+            (JobRow.created_by, self.created_by),
+            (JobRow.batch_id, self.batch_id),
+        ):
+            if wanted is not None:
+                query = query.where(column == wanted)
+        if self.states:
+            query = query.where(JobRow.state.in_(self.states))
+        words = (self.search or "").split()
+        if words:
+            query = query.join(SequenceRow, SequenceRow.id == JobRow.sequence_id)
+        for word in words:
+            query = query.where(SequenceRow.name.icontains(word, autoescape=True))
+        return query
+
+
 def list_jobs(
-    session: Session, sequence_id: UUID | None, state: str | None, cursor: str | None, limit: int
+    session: Session, wanted: JobFilter, cursor: str | None, limit: int
 ) -> tuple[Sequence[JobRow], str | None]:
-    """Newest first, of one recording or in one state if so asked."""
-    query = select(JobRow).order_by(JobRow.created_at.desc(), JobRow.id.desc())
-    if sequence_id is not None:
-        query = query.where(JobRow.sequence_id == sequence_id)
-    if state is not None:
-        query = query.where(JobRow.state == state)
+    """Newest first."""
+    query = wanted.apply(select(JobRow)).order_by(JobRow.created_at.desc(), JobRow.id.desc())
     if cursor is not None:
         query = query.where(tuple_(JobRow.created_at, JobRow.id) < read_moment_cursor(cursor))
     rows = session.scalars(query.limit(limit + 1)).all()
@@ -53,12 +87,21 @@ def list_jobs(
 
 
 def create_job(
-    session: Session, kind: str, sequence_id: UUID, params: dict[str, Any], retry_of: UUID | None = None
+    session: Session,
+    kind: str,
+    sequence_id: UUID,
+    params: dict[str, Any],
+    *,
+    created_by: UUID | None = None,
+    batch_id: UUID | None = None,
+    retry_of: UUID | None = None,
 ) -> JobRow:
     """Queue a job. A worker finds it as soon as the transaction is committed."""
     if kind not in KINDS:
         raise InvalidError(f"There is no kind of job {kind!r}; there are: {', '.join(KINDS)}.")
-    job = JobRow(kind=kind, sequence_id=sequence_id, params=params, retry_of=retry_of)
+    job = JobRow(
+        kind=kind, sequence_id=sequence_id, params=params, created_by=created_by, batch_id=batch_id, retry_of=retry_of
+    )
     session.add(job)
     session.flush()
     append_log(session, job.id, "info", "queued" if retry_of is None else f"queued again; a retry of job {retry_of}")
@@ -92,12 +135,20 @@ def cancel_job(session: Session, job_id: UUID) -> JobRow:
     return job
 
 
-def retry_job(session: Session, job_id: UUID) -> JobRow:
-    """A new job with the same parameters, from the beginning."""
+def retry_job(session: Session, job_id: UUID, created_by: UUID | None = None) -> JobRow:
+    """A new job with the same parameters, from the beginning; in the batch of the old one it stands in its place."""
     job = get_job(session, job_id)
     if job.state not in ENDED_STATES:
         raise JobStateError(f"The job is {job.state}; cancel it first, or wait for its end.")
-    return create_job(session, job.kind, job.sequence_id, job.params, retry_of=job.id)
+    return create_job(
+        session,
+        job.kind,
+        job.sequence_id,
+        job.params,
+        created_by=created_by,
+        batch_id=job.batch_id,
+        retry_of=job.id,
+    )
 
 
 def resume_job(session: Session, job_id: UUID) -> JobRow:

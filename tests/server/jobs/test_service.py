@@ -120,9 +120,9 @@ def test_jobs_are_listed_in_pages_newest_first_and_none_twice(database, sequence
     seen, cursor = [], None
     with database.reading() as session:
         while True:
-            rows, cursor = service.list_jobs(session, sequence_id, "queued", cursor, 3)
+            rows, cursor = service.list_jobs(session, service.JobFilter(sequence_id, ["queued"]), cursor, 3)
             seen += [row.id for row in rows]
             if cursor is None:
                 break
-        assert service.list_jobs(session, None, "failed", None, 3) == ([], None)
+        assert service.list_jobs(session, service.JobFilter(states=["failed"]), None, 3) == ([], None)
     assert seen == ids[::-1]

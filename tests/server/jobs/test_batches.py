@@ -163,8 +163,9 @@ def test_a_job_says_who_runs_it_and_where(client: TestClient, studio: Studio, ma
     job_id = uuid.UUID(made["jobs"][0]["id"])
     with studio.database.writing() as session:
         worker = workers.register_worker(session, "desk-0")
-        service.claim_job(session, job_id, 1, worker.id)
+        worker_id, host = worker.id, worker.host
+        service.claim_job(session, job_id, 1, worker_id)
     job = client.get(f"{API}/jobs/{job_id}").json()
-    assert job["worker"] == {"id": str(worker.id), "name": "desk-0", "host": worker.host}
+    assert job["worker"] == {"id": str(worker_id), "name": "desk-0", "host": host}
     with studio.database.reading() as session:
         assert session.get_one(JobRow, job_id).created_by == LOCAL_ACCOUNT_ID

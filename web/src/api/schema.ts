@@ -232,6 +232,86 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/jobs/batch": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Create Batch
+         * @description Queue one job for each of several recordings: all or, when one of them cannot be, none (422 with `refused`).
+         */
+        post: operations["create_batch"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/jobs/batches": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Batches
+         * @description Batches with what has become of their jobs, the newest first.
+         */
+        get: operations["list_batches"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/jobs/batches/{batch_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Batch
+         * @description One batch with what has become of its jobs.
+         */
+        get: operations["get_batch"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/jobs/bulk": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Act On Jobs
+         * @description Cancel, retry or resume several jobs. Each by itself: `refused` says which could not be, and why.
+         */
+        post: operations["act_on_jobs"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/jobs/events": {
         parameters: {
             query?: never;
@@ -1083,6 +1163,86 @@ export interface components {
             revision: number;
         };
         /**
+         * BatchCreate
+         * @description The same for several recordings.
+         */
+        BatchCreate: {
+            /**
+             * Kind
+             * @default track
+             * @constant
+             */
+            kind: "track";
+            /**
+             * Params
+             * @description As of one job; the same for all.
+             */
+            params?: {
+                [key: string]: unknown;
+            };
+            /**
+             * Sequence Ids
+             * @description One job for each.
+             */
+            sequence_ids: string[];
+        };
+        /**
+         * BatchMade
+         * @description A batch and its jobs, in the order of the recordings.
+         */
+        BatchMade: {
+            batch: components["schemas"]["BatchOut"];
+            /** Jobs */
+            jobs: components["schemas"]["JobOut"][];
+        };
+        /**
+         * Batch
+         * @description Jobs that one request started, taken together. A job that was tried again is counted once, as its last try.
+         */
+        BatchOut: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Created By */
+            created_by: string | null;
+            /** Created By Name */
+            created_by_name: string | null;
+            /**
+             * Ended At
+             * @description When the last of them ended; null while one has not.
+             */
+            ended_at: string | null;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Kind */
+            kind: string;
+            /** Params */
+            params: {
+                [key: string]: unknown;
+            };
+            /** Progress */
+            progress: number;
+            /**
+             * Seconds Left
+             * @description With as many workers as are at it now; null while not known.
+             */
+            seconds_left: number | null;
+            /**
+             * States
+             * @description How many are in each state.
+             */
+            states: {
+                [key: string]: number;
+            };
+            /** Total */
+            total: number;
+        };
+        /**
          * BestTrack
          * @description The track of a recording that fits best.
          */
@@ -1101,6 +1261,48 @@ export interface components {
             summary: {
                 [key: string]: unknown;
             };
+        };
+        /**
+         * BulkAct
+         * @description One act on several jobs.
+         */
+        BulkAct: {
+            /**
+             * Act
+             * @enum {string}
+             */
+            act: "cancel" | "retry" | "resume";
+            /** Job Ids */
+            job_ids: string[];
+        };
+        /**
+         * BulkDone
+         * @description What became of each.
+         */
+        BulkDone: {
+            /**
+             * Jobs
+             * @description Those it was done to; of `retry` the new ones.
+             */
+            jobs: components["schemas"]["JobOut"][];
+            /** Refused */
+            refused: components["schemas"]["BulkRefusal"][];
+        };
+        /**
+         * BulkRefusal
+         * @description One that it could not be done to.
+         */
+        BulkRefusal: {
+            /**
+             * Detail
+             * @description Why, for people.
+             */
+            detail: string;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
         };
         /**
          * CollidingParts
@@ -1599,10 +1801,22 @@ export interface components {
              */
             attempt: number;
             /**
+             * Batch Id
+             * @description Shared by the jobs that one request started.
+             */
+            batch_id: string | null;
+            /**
              * Created At
              * Format: date-time
              */
             created_at: string;
+            /** Created By */
+            created_by: string | null;
+            /**
+             * Created By Name
+             * @description Who started it; null for jobs of before there were accounts.
+             */
+            created_by_name: string | null;
             /** Ended At */
             ended_at: string | null;
             /**
@@ -1640,6 +1854,11 @@ export interface components {
              */
             sequence_id: string;
             /**
+             * Sequence Name
+             * @description Of the recording, as it is called now.
+             */
+            sequence_name: string;
+            /**
              * Stage
              * @description What is being done, for people.
              */
@@ -1661,6 +1880,8 @@ export interface components {
              * @description Grows with every change.
              */
             version: number;
+            /** @description Who runs it, or ran it last. */
+            worker: components["schemas"]["JobWorker"] | null;
         };
         /**
          * JobPreset
@@ -1693,6 +1914,21 @@ export interface components {
             values: {
                 [key: string]: number | boolean | string;
             };
+        };
+        /**
+         * JobWorker
+         * @description The worker that runs a job, or ran it last.
+         */
+        JobWorker: {
+            /** Host */
+            host: string;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Name */
+            name: string;
         };
         /**
          * ModelDistance
@@ -1767,6 +2003,16 @@ export interface components {
         Page_AnnotationRevision_: {
             /** Items */
             items: components["schemas"]["AnnotationRevision"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[BatchOut] */
+        Page_BatchOut_: {
+            /** Items */
+            items: components["schemas"]["BatchOut"][];
             /**
              * Next Cursor
              * @description For `?cursor=` to get what follows; null at the end.
@@ -2955,7 +3201,12 @@ export interface operations {
         parameters: {
             query?: {
                 sequence_id?: string | null;
-                state?: ("queued" | "running" | "succeeded" | "failed" | "cancelled") | null;
+                /** @description One or several. */
+                state?: ("queued" | "running" | "succeeded" | "failed" | "cancelled")[];
+                created_by?: string | null;
+                batch_id?: string | null;
+                /** @description Words of the recording's name. */
+                search?: string | null;
                 /** @description `next_cursor` of the page before. */
                 cursor?: string | null;
                 /** @description Most items of a page. */
@@ -3056,6 +3307,218 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    create_batch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BatchCreate"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BatchMade"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_batches: {
+        parameters: {
+            query?: {
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_BatchOut_"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_batch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                batch_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BatchOut"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    act_on_jobs: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BulkAct"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BulkDone"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -18,7 +18,8 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 MIN_ANGLE_DEG = 1.0
-"""Rays that differ by less tell no depth: with f = 525 px, a mark that is 1 px off moves the point by a tenth of its distance."""
+"""Rays that differ by less tell no depth: a mark that is 1 px off (f = 525 px) moves the point by a tenth of its
+distance."""
 
 OUTLIER_PX = 5.0
 """A mark is called into question when the views disagree by more; annotators differ by 1.5 px [T16] §4.2."""
@@ -32,10 +33,8 @@ class Triangulation:
 
     Attributes:
         points: (N, 3) world, m.
-        pixels: (N, C, 2) where each camera would see the point, px.
-        is_seen: (N, C) whether that is in its image.
         is_used: (N, C) views whose marks made the point.
-        residuals: (N, C) distance of each mark to `pixels`, px.
+        residuals: (N, C) distance of each mark to where its camera sees the point, px.
         left_out_residuals: (N, C) distance of each mark to the point that the other views alone make, px.
         angles_deg: (N,) the largest angle between two rays; lines, so at most 90.
         std_m: (N,) standard deviation of the point along its worst direction, m, if marks are off by 1 px in x and y.
@@ -43,8 +42,6 @@ class Triangulation:
     """
 
     points: Array
-    pixels: Array
-    is_seen: Mask
     is_used: Mask
     residuals: Array
     left_out_residuals: Array
@@ -78,13 +75,16 @@ def triangulate(cameras: Sequence[Camera], marks: Array) -> Triangulation:
     points[is_tried] = _solve(cameras, marks, rays, masks, is_tried)
     distances = np.full((N, C + 1, C), np.nan)
     for c, camera in enumerate(cameras):
-        pixels = camera.project(points[:, :, :].reshape(-1, 3)).reshape(N, C + 1, 2)
+        pixels = camera.project(points.reshape(-1, 3)).reshape(N, C + 1, 2)
         distances[:, :, c] = np.linalg.norm(pixels - marks[:, None, c], axis=2)
     chosen = np.array([_choose(distances[n], masks[n]) for n in range(N)], dtype=np.int64)
     everyone = np.arange(N)
     is_used = masks[everyone, chosen]
     angles = _find_angles(cameras, rays, is_used)
-    refusals = tuple(_refuse(has_ray[n], angles[n], distances[n, chosen[n]][is_used[n]]) for n in everyone)
+    num_marks = np.isfinite(marks).all(axis=2).sum(axis=1)
+    refusals = tuple(
+        _refuse(num_marks[n], has_ray[n], angles[n], distances[n, chosen[n]][is_used[n]]) for n in everyone
+    )
     found = points[everyone, chosen]
     residuals = distances[everyone, chosen]
     left_out = distances[:, 1 + np.arange(C), np.arange(C)]
@@ -92,10 +92,8 @@ def triangulate(cameras: Sequence[Camera], marks: Array) -> Triangulation:
     for values in (found, residuals, left_out):
         values[is_refused] = np.nan
     is_used[is_refused] = False
-    pixels = np.stack([camera.project(found) for camera in cameras], axis=1).reshape(N, C, 2)
-    is_seen = np.stack([camera.can_see(found) for camera in cameras], axis=1).reshape(N, C)
     std = _find_std(cameras, found, is_used)
-    return Triangulation(found, pixels, is_seen, is_used, residuals, left_out, angles, std, refusals)
+    return Triangulation(found, is_used, residuals, left_out, angles, std, refusals)
 
 
 def _solve(cameras: Sequence[Camera], marks: Array, rays: Array, masks: Mask, is_tried: Mask) -> Array:
@@ -163,10 +161,12 @@ def _find_angles(cameras: Sequence[Camera], rays: Array, is_used: Mask) -> Array
     return np.where(is_used.sum(axis=1) >= 2, angles, np.nan)
 
 
-def _refuse(has_ray: Mask, angle_deg: float, distances: Array) -> str:
+def _refuse(num_marks: int, has_ray: Mask, angle_deg: float, distances: Array) -> str:
     """Why a point is not to be believed, or ''."""
-    if (count := int(has_ray.sum())) < 2:
-        return f"Marked in {count} of the views; two are needed."
+    if num_marks < 2:
+        return f"Marked in {num_marks} of the views; two are needed."
+    if has_ray.sum() < 2:
+        return "A mark lies where the camera's lens, as calibrated, lets nothing be seen. Move it into the image."
     if angle_deg < MIN_ANGLE_DEG:
         return (
             f"The rays are nearly parallel ({angle_deg:.2f}°, needed {MIN_ANGLE_DEG:g}°), so they tell no depth. "

@@ -43,6 +43,12 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--background", type=float, default=0.0, metavar="M", help="a wall at this depth, m; 0 for none"
     )
+    parser.add_argument(
+        "--cameras", type=int, default=1, metavar="N", help="with --motion: 1 to 8 cameras around the hands"
+    )
+    parser.add_argument(
+        "--size", type=parse_size, default=(640, 480), metavar="WxH", help="with --motion: size of the images, px"
+    )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="a folder that does not exist yet")
     add_json(parser)
     parser.set_defaults(run=run_guarded(synthesize, show))
@@ -53,6 +59,8 @@ def synthesize(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.synthesis.recording import RecordingOptions, write_recording
     from tracker.synthesis.sensor import StructuredLight
 
+    if not 1 <= args.cameras <= 8 or (args.twin is not None and (args.cameras, args.size) != (1, (640, 480))):
+        raise TrackerError("--cameras must be 1 to 8; a twin (--twin) has the one camera of its recording, 640x480 px.")
     if args.step < 1 or args.seed < 0 or args.background < 0:
         raise TrackerError("--step must be at least 1, --seed and --background at least 0.")
     began = time.monotonic()
@@ -94,4 +102,12 @@ def _perform(args: argparse.Namespace):
         raise TrackerError(f"There is no motion {args.motion!r}; choose one of {', '.join(MOTIONS)}.")
     given = args.hand or [("right", None)]
     models = load_hands(given, tuple(dict(given)))
-    return perform(models, args.motion, args.frames[1] or MOTION_FRAMES)
+    return perform(models, args.motion, args.frames[1] or MOTION_FRAMES, args.cameras, args.size)
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Width and height of `WxH`, px."""
+    words = text.lower().split("x")
+    if len(words) != 2 or not all(word.isdecimal() and 32 <= int(word) <= 4096 for word in words):
+        raise argparse.ArgumentTypeError(f"{text!r} is no size; needed WIDTHxHEIGHT, 32 to 4096 px each, as 640x480")
+    return int(words[0]), int(words[1])

@@ -13,6 +13,7 @@ from tracker.model.articulated import ArticulatedModel
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.model.scene import Scene
 from tracker.synthesis.actor import Actor
+from tracker.synthesis.camera_ring import surround
 from tracker.synthesis.performance import Performance
 from tracker.synthesis.shading import SKIN
 
@@ -27,16 +28,34 @@ APART = 0.11
 FPS = 30.0
 
 
-def perform(models: dict[str, ArticulatedModel], motion: str, num_moments: int) -> Performance:
-    """One or two hands, by side, that perform one of `MOTIONS` in front of a Carmine's camera at the world's origin."""
+def perform(
+    models: dict[str, ArticulatedModel],
+    motion: str,
+    num_moments: int,
+    num_cameras: int = 1,
+    size: tuple[int, int] = (640, 480),
+) -> Performance:
+    """One or two hands, by side, that perform one of `MOTIONS` in front of a Carmine's camera at the world's origin.
+
+    Args:
+        models: Hands by side.
+        motion: A name out of `MOTIONS`.
+        num_moments: At `FPS`.
+        num_cameras: The others stand around the hands and look at them.
+        size: Width and height of the images, px; the view stays as wide as the Carmine's.
+    """
     actors = []
     for side, model in models.items():
         x = 0.0 if len(models) == 1 else -APART if side == "right" else APART
         scene = Scene((model,))
         Ms = np.array([scene.pose_at(pose).Ms for pose in perform_motion(model, motion, num_moments, FPS, x)])
         actors.append(Actor(side, model, Ms, SKIN))
-    camera = Camera("cam0", 640, 480, np.array([[525.0, 0.0, 319.5], [0.0, 525.0, 239.5], [0.0, 0.0, 1.0]]))
-    return Performance(motion, FPS, camera, tuple(actors))
+    width, height = size
+    focal = 525.0 * width / 640
+    K = np.array([[focal, 0.0, 0.5 * (width - 1)], [0.0, focal, 0.5 * (height - 1)], [0.0, 0.0, 1.0]])
+    camera = Camera("cam0", width, height, K)
+    others = surround(camera, np.array([0.0, 0.02, DISTANCE]), num_cameras - 1)
+    return Performance(motion, FPS, camera, tuple(actors), others)
 
 
 def perform_motion(model: ArticulatedModel, motion: str, num_moments: int, fps: float, x: float = 0.0) -> Array:

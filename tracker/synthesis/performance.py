@@ -1,8 +1,8 @@
-"""Actors before a camera, and what the camera would see without noise."""
+"""Actors before one camera or several, and what a camera would see without noise."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,23 +18,33 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Performance:
-    """Actors that move together, and the camera that records them.
+    """Actors that move together, and the cameras that record them.
 
     Attributes:
         name: For people.
         fps: Moments a second.
         camera: Without distortion.
         actors: At least one, all with the same number of moments.
+        other_cameras: That record the same moments, without distortion.
     """
 
     name: str
     fps: float
     camera: Camera
     actors: tuple[Actor, ...]
+    other_cameras: tuple[Camera, ...] = ()
 
     def __post_init__(self) -> None:
         assert self.actors and len({actor.num_moments for actor in self.actors}) == 1
-        assert self.camera.distortion.size == 0, "the renderer draws no lens distortion"
+        assert all(camera.distortion.size == 0 for camera in self.cameras), "the renderer draws no lens distortion"
+
+    @property
+    def cameras(self) -> tuple[Camera, ...]:
+        return (self.camera, *self.other_cameras)
+
+    def seen_by(self, camera: Camera) -> Performance:
+        """The same before one camera alone."""
+        return replace(self, camera=camera, other_cameras=())
 
     @property
     def num_moments(self) -> int:

@@ -16,6 +16,7 @@ import numpy as np
 import trimesh
 
 from tracker.capture.annotations import Annotation, save_annotations
+from tracker.capture.camera import Camera
 from tracker.capture.frame_pattern import FramePattern
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.capture.recorded_object import RecordedObject
@@ -33,8 +34,6 @@ log = logging.getLogger(__name__)
 
 SaveModel = Callable[[ArticulatedModel, Path], None]
 
-COLOR = FramePattern("color/", 6, ".png")
-DEPTH = FramePattern("depth/", 6, ".png")
 TRUTH_FILE = "truth.npz"
 
 
@@ -80,13 +79,21 @@ def write_recording(
     """
     assert len(options.moments) > 0
     with _appearing(folder) as unfinished:
-        for name in ("color", "depth", "models", *(["objects"] if performance.objects else [])):
+        cameras = tuple(_recorded_camera(camera, number, options) for number, camera in enumerate(performance.cameras))
+        for name in ("models", *(["objects"] if performance.objects else [])):
             (unfinished / name).mkdir()
+        for camera in cameras:
+            for pattern in (camera.color, camera.depth):
+                assert pattern is not None
+                (unfinished / pattern.path(0)).parent.mkdir(parents=True)
+        views = [performance.seen_by(camera) for camera in cameras]
         moments = []
         for frame, index in enumerate(options.moments):
-            moment = render_moment(performance, index)
-            _write_images(performance, moment, frame, unfinished, options)
-            moments.append((moment.joints, moment.pixels, find_visibility(performance, moment)))
+            seen = [render_moment(view, index) for view in views]
+            for number, (view, moment) in enumerate(zip(views, seen, strict=True)):
+                _write_images(view, moment, number, frame, unfinished, options)
+            visibility = [find_visibility(view, moment) for view, moment in zip(views, seen, strict=True)]
+            moments.append((seen[0].joints, [moment.pixels for moment in seen], visibility))
             progress((frame + 1) / len(options.moments))
         joints, pixels, visibility = (np.array(column) for column in zip(*moments, strict=True))
         truth = Truth(
@@ -94,8 +101,8 @@ def write_recording(
             source_frame=np.array(options.moments),
             joint_names=performance.joint_names,
             joints_3d=joints,
-            joints_2d=pixels[:, None],
-            visibility=visibility[:, None],
+            joints_2d=pixels,
+            visibility=visibility,
             object_names=tuple(actor.name for actor in performance.objects),
             T_world_object=_object_motion(performance, options.moments),
         )
@@ -104,24 +111,13 @@ def write_recording(
         for actor in performance.hands:
             save_model(actor.model, unfinished / "models" / f"{actor.name}.npz")
         objects = tuple(_write_object(actor, truth, unfinished, save_model) for actor in performance.objects)
-        camera = performance.camera
-        recorded = RecordedCamera(
-            id=camera.id,
-            width=camera.width,
-            height=camera.height,
-            K=camera.K,
-            T_world_camera=camera.T_world_camera,
-            color=COLOR,
-            depth=DEPTH,
-            depth_scale=options.depth_scale,
-        )
         save_sequence_json(
             Sequence(
                 folder=unfinished,
                 name=performance.name,
                 fps=performance.fps / options.moments.step,
                 frame_count=len(options.moments),
-                cameras=(recorded,),
+                cameras=cameras,
                 hands=tuple(actor.name for actor in performance.hands),
                 objects=objects,
                 annotations="annotations.json",
@@ -131,10 +127,27 @@ def write_recording(
     return load_sequence(folder)
 
 
+def _recorded_camera(camera: Camera, number: int, options: RecordingOptions) -> RecordedCamera:
+    """The first camera's images lie in `color` and `depth`, those of every other in a folder of its own."""
+    home = f"{camera.id}/" if number else ""
+    return RecordedCamera(
+        id=camera.id,
+        width=camera.width,
+        height=camera.height,
+        K=camera.K,
+        T_world_camera=camera.T_world_camera,
+        color=FramePattern(f"{home}color/", 6, ".png"),
+        depth=FramePattern(f"{home}depth/", 6, ".png"),
+        depth_scale=options.depth_scale,
+    )
+
+
 def _write_images(
-    performance: Performance, moment: Moment, frame: int, folder: Path, options: RecordingOptions
+    performance: Performance, moment: Moment, number: int, frame: int, folder: Path, options: RecordingOptions
 ) -> None:
-    rng = np.random.default_rng([options.seed, moment.index]) if options.sensor is not None else None
+    """What the camera of this number sees; a performance before it alone."""
+    seed = [options.seed, moment.index, *([number] if number else [])]
+    rng = np.random.default_rng(seed) if options.sensor is not None else None
     cosines = compute_cosines(performance, moment)
     color = shade(performance, moment, cosines, rng)
     depth = moment.depth
@@ -146,7 +159,9 @@ def _write_images(
         depth = options.sensor.measure(depth, cosines, performance.camera.K[0, 0], rng)
     units = np.clip(np.rint(depth / options.depth_scale), 0, np.iinfo(np.uint16).max).astype(np.uint16)
     fast = [cv2.IMWRITE_PNG_COMPRESSION, 3]
-    for pattern, image in ((COLOR, cv2.cvtColor(color, cv2.COLOR_RGB2BGR)), (DEPTH, units)):
+    camera = performance.camera
+    assert isinstance(camera, RecordedCamera) and camera.color is not None and camera.depth is not None
+    for pattern, image in ((camera.color, cv2.cvtColor(color, cv2.COLOR_RGB2BGR)), (camera.depth, units)):
         path = folder / pattern.path(frame)
         if not cv2.imwrite(str(path), image, fast):
             raise SequenceError(f"{path}: the image could not be written; is the disk full?")
@@ -158,10 +173,11 @@ def _annotate(performance: Performance, truth: Truth) -> list[Annotation]:
     for hand in performance.hands:
         own = [truth.joint_names.index(name) for name in hand.joint_names]
         for frame in truth.frame:
-            visibility = truth.visibility[frame, 0, own]
-            points = np.column_stack([truth.joints_2d[frame, 0, own], visibility.astype(np.float64)])
-            points[visibility == 0] = 0.0
-            items.append(Annotation(int(frame), performance.camera.id, hand.name, points))
+            for number, camera in enumerate(performance.cameras):
+                visibility = truth.visibility[frame, number, own]
+                points = np.column_stack([truth.joints_2d[frame, number, own], visibility.astype(np.float64)])
+                points[visibility == 0] = 0.0
+                items.append(Annotation(int(frame), camera.id, hand.name, points))
     return items
 
 

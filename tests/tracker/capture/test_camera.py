@@ -34,6 +34,14 @@ def test_a_ray_leads_to_the_pixel_it_comes_from(camera, rng):
     assert camera.can_see(points).all()
 
 
+def test_pixels_are_those_of_opencv(camera, rng):
+    points = se3.transform(camera.T_world_camera, rng.uniform([-0.2, -0.2, 0.6], [0.2, 0.2, 2.0], (50, 3)))
+    T = camera.T_camera_world
+    coefficients = camera.distortion if camera.distortion.size else None
+    expected = cv2.projectPoints(points, cv2.Rodrigues(T[:3, :3])[0], T[:3, 3], camera.K, coefficients)[0]
+    np.testing.assert_allclose(camera.project(points), expected[:, 0], atol=1e-6)
+
+
 def test_rays_are_those_of_opencv(camera, rng):
     pixels = rng.uniform([150, 100], [490, 380], (200, 2))
     coefficients = camera.distortion if camera.distortion.size else None

@@ -11,6 +11,7 @@ import pytest
 
 from tracker.capture.truth import load_truth
 from tracker.errors import SequenceError
+from tracker.synthesis.camera_ring import surround
 from tracker.synthesis.performance import render_moment
 from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.synthesis.sensor import StructuredLight
@@ -48,6 +49,28 @@ def test_truth_holds_the_joints_and_the_motion_of_every_frame(performance, tmp_p
         np.testing.assert_array_equal(truth.joints_3d[frame], moment.joints)
         np.testing.assert_array_equal(truth.joints_2d[frame, 0], moment.pixels)
         np.testing.assert_array_equal(truth.T_world_object[frame, 0], performance.actors[0].T_world_model(int(index)))
+
+
+def test_several_cameras_see_the_same_joints_at_the_same_moments(performance, tmp_path):
+    others = surround(performance.camera, performance.actors[0].joints(0, performance.actors[0].vertices(0))[0], 2)
+    several = replace(performance, other_cameras=others)
+    sequence = write_recording(several, tmp_path / "r", RecordingOptions(range(2), sensor=None), save_nothing)
+    assert [camera.id for camera in sequence.cameras] == ["cam0", "cam1", "cam2"]
+    truth = load_truth(tmp_path / "r" / "truth.npz")
+    for number, camera in enumerate(sequence.cameras):
+        for frame in range(2):
+            moment = render_moment(performance.seen_by(camera), frame)
+            np.testing.assert_allclose(sequence.frame(frame, camera.id).depth, moment.depth, atol=0.0001)
+            np.testing.assert_array_equal(truth.joints_2d[frame, number], camera.project(truth.joints_3d[frame]))
+
+
+def test_the_first_camera_records_the_same_whether_others_do_or_not(performance, tmp_path):
+    several = replace(performance, other_cameras=surround(performance.camera, np.array([0.1, -0.2, 0.7]), 1))
+    write_recording(performance, tmp_path / "one", RecordingOptions(range(2)), save_nothing)
+    write_recording(several, tmp_path / "two", RecordingOptions(range(2)), save_nothing)
+    one, two = digests(tmp_path / "one"), digests(tmp_path / "two")
+    assert all(one[path] == two[path] for path in one if path.endswith(".png"))
+    assert two["depth/000000.png"] != two["cam1/depth/000000.png"]
 
 
 def test_an_object_is_placed_where_it_is_in_the_first_frame(performance, tmp_path):

@@ -652,6 +652,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sequences/{sequence_id}/triangulation": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Triangulate
+         * @description Joints in space from marks in several cameras, where every camera sees them, and how well the marks agree.
+         *
+         *     Nothing is stored.
+         */
+        post: operations["triangulate"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sequences/{sequence_id}/{content_key}/cameras/{camera}/frames/{frame}/color.jpg": {
         parameters: {
             query?: never;
@@ -2341,6 +2363,108 @@ export interface components {
             };
         };
         /**
+         * TriangulatedJoint
+         * @description A joint in space, or why there is none.
+         */
+        TriangulatedJoint: {
+            /**
+             * Angle Deg
+             * @description Largest angle between two lines of sight.
+             */
+            angle_deg: number | null;
+            /**
+             * Point
+             * @description (3,) world, m
+             */
+            point: number[] | null;
+            /**
+             * Refusal
+             * @description Why there is no point, for people; empty when there is one.
+             */
+            refusal: string;
+            /**
+             * Std Mm
+             * @description Standard deviation in the worst direction if marks are off by 1 px.
+             */
+            std_mm: number | null;
+            /**
+             * Views
+             * @description Every camera of the recording, in its order.
+             */
+            views: components["schemas"]["TriangulatedView"][];
+        };
+        /**
+         * TriangulatedView
+         * @description A joint in one camera.
+         */
+        TriangulatedView: {
+            /** Camera */
+            camera: string;
+            /**
+             * Is Seen
+             * @description That is in the image.
+             */
+            is_seen: boolean;
+            /**
+             * Is Used
+             * @description The mark in this view counted. A marked view that did not was set aside.
+             */
+            is_used: boolean;
+            /**
+             * Left Out Px
+             * @description From the mark to where the camera sees the joint that the other views alone make, px; null with fewer than two others.
+             */
+            left_out_px: number | null;
+            /**
+             * Residual Px
+             * @description From the mark to where the camera sees the joint, px.
+             */
+            residual_px: number | null;
+            /**
+             * X
+             * @description Where the camera sees the joint, px; null behind it or without a joint.
+             */
+            x: number | null;
+            /** Y */
+            y: number | null;
+        };
+        /**
+         * TriangulationIn
+         * @description One hand at one moment, in several cameras.
+         */
+        TriangulationIn: {
+            /** Views */
+            views: components["schemas"]["TriangulationView"][];
+        };
+        /**
+         * Triangulation
+         * @description The joints of a hand in space.
+         */
+        TriangulationOut: {
+            /**
+             * Joints
+             * @description 21, in the order of `/hand-skeleton`.
+             */
+            joints: components["schemas"]["TriangulatedJoint"][];
+        };
+        /**
+         * TriangulationView
+         * @description One hand as it is marked in one camera; joints with v = 0 are left out of account.
+         */
+        TriangulationView: {
+            /** Camera */
+            camera: string;
+            /**
+             * Points
+             * @description [x, y, v] of each joint in the order of `/hand-skeleton`: px, the centre of the top-left pixel is (0, 0); v is 0 absent, 1 occluded, 2 visible.
+             */
+            points: [
+                number,
+                number,
+                0 | 1 | 2
+            ][];
+        };
+        /**
          * ViewerSessionChange
          * @description Where to go and what to show.
          */
@@ -3356,6 +3480,15 @@ export interface operations {
                     "application/json": components["schemas"]["BatchMade"];
                 };
             };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Forbidden */
             403: {
                 headers: {
@@ -3408,6 +3541,15 @@ export interface operations {
                     "application/json": components["schemas"]["Page_BatchOut_"];
                 };
             };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Forbidden */
             403: {
                 headers: {
@@ -3455,6 +3597,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["BatchOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
                 };
             };
             /** @description Forbidden */
@@ -3515,6 +3666,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["BulkDone"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
                 };
             };
             /** @description Forbidden */
@@ -4976,6 +5136,77 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["SequenceOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    triangulate: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TriangulationIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TriangulationOut"];
                 };
             };
             /** @description Unauthorized */

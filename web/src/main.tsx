@@ -12,6 +12,7 @@ import { createRoot } from "react-dom/client";
 import { RouterProvider } from "react-router";
 import { ApiError } from "./api/client";
 import { router } from "./pages/routes";
+import { loadKeys } from "./state/keys";
 import { resumeSaving } from "./state/saving";
 import { cssVariables, theme } from "./theme";
 
@@ -26,6 +27,7 @@ const queries = new QueryClient({
 });
 
 resumeSaving();
+void loadKeys();
 
 const root = document.getElementById("root");
 if (root) {

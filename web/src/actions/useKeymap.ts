@@ -1,5 +1,6 @@
 import { useEffect, useRef } from "react";
 import { bindingsFor, chordOf, type Scope } from "../model/keymap";
+import { useCurrentKeymap } from "../state/keys";
 
 export type Handlers = Readonly<Record<string, (event: KeyboardEvent) => void>>;
 
@@ -18,8 +19,9 @@ function isOnPicture(target: EventTarget | null): boolean {
 export function useKeymap(scope: Scope, handlers: Handlers): void {
   const current = useRef(handlers);
   current.current = handlers;
+  const map = useCurrentKeymap();
   useEffect(() => {
-    const bindings = bindingsFor(scope);
+    const bindings = bindingsFor(scope, map);
     const answer = (event: KeyboardEvent): void => {
       if (event.defaultPrevented || event.isComposing) return;
       const chord = chordOf(event);
@@ -33,5 +35,5 @@ export function useKeymap(scope: Scope, handlers: Handlers): void {
     };
     window.addEventListener("keydown", answer);
     return () => window.removeEventListener("keydown", answer);
-  }, [scope]);
+  }, [scope, map]);
 }

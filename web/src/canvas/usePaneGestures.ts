@@ -1,4 +1,4 @@
-import { useEffect, useRef, type PointerEvent as ReactPointerEvent, type RefObject } from "react";
+import { useEffect, useRef, type MouseEvent as ReactMouseEvent, type PointerEvent as ReactPointerEvent, type RefObject } from "react";
 import type { PointerStore } from "../state/pointer";
 import { fitView, isInImage, panBy, toPixel, zoomAt, type Point, type Size, type View } from "./view";
 
@@ -10,8 +10,12 @@ export interface PaneGestures {
   onSelect?: (joint: number) => void;
   onDragJoint?: (joint: number, to: Point) => void;
   onDragHand?: (by: Point) => void;
+  /** While the wheel turns with Alt: radians and a factor since it began, about where the cursor was then. */
+  onTurnHand?: (turn: { about: Point; angle: number; factor: number }) => void;
   onDragEnd?: () => void;
   onCycle?: (joint: number) => void;
+  /** Space is held for panning, so it was not meant for playing. */
+  onSpacePan?: () => void;
 }
 
 type Press =
@@ -22,6 +26,12 @@ type Press =
 
 /** How far a press may wander and still be a click, px of the screen. */
 const CLICK_RADIUS = 4;
+
+/** One notch of a wheel (100) turns by 2 degrees or grows by 2 %. */
+const TURN_PER_STEP = (2 * Math.PI) / 180 / 100;
+const GROWTH_PER_STEP = Math.log(1.02) / 100;
+/** A pause this long ends a turn: the next notch is another step for undo. */
+const TURN_PAUSE_MS = 350;
 
 const clamp = (pixel: Point, image: Size): Point => ({
   x: Math.min(image.width - 0.501, Math.max(-0.5, pixel.x)),
@@ -38,26 +48,65 @@ export function usePaneGestures(
   gestures: PaneGestures,
 ) {
   const press = useRef<Press | null>(null);
-  const latest = useRef({ view, pane, image, onView });
-  latest.current = { view, pane, image, onView };
+  const latest = useRef({ view, pane, image, onView, gestures });
+  latest.current = { view, pane, image, onView, gestures };
 
   useEffect(() => {
     const element = surface.current;
     if (!element) return;
+    let turn: { about: Point; angle: number; factor: number } | null = null;
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    const endTurn = (): void => {
+      clearTimeout(timer);
+      if (turn) latest.current.gestures.onDragEnd?.();
+      turn = null;
+    };
     // React listens passively to the wheel; the page must not scroll.
     const wheel = (event: WheelEvent): void => {
       event.preventDefault();
       const now = latest.current;
       const box = element.getBoundingClientRect();
       const screen = { x: event.clientX - box.left, y: event.clientY - box.top };
-      const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
-      const factor = Math.exp(-event.deltaY * lines * 0.0015);
+      // With Shift a browser turns a wheel sideways.
+      const by = (event.deltaY || event.deltaX) * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1);
+      if (event.altKey && now.gestures.onTurnHand) {
+        turn ??= { about: toPixel(now.view, screen), angle: 0, factor: 1 };
+        turn = event.shiftKey ? { ...turn, factor: turn.factor * Math.exp(-by * GROWTH_PER_STEP) } : { ...turn, angle: turn.angle + by * TURN_PER_STEP };
+        now.gestures.onTurnHand(turn);
+        clearTimeout(timer);
+        timer = setTimeout(endTurn, TURN_PAUSE_MS);
+        return;
+      }
       const smallest = fitView(now.image, now.pane).scale * 0.5;
-      now.onView(zoomAt(now.view, screen, factor, smallest));
+      now.onView(zoomAt(now.view, screen, Math.exp(-by * 0.0015), smallest));
+    };
+    // Whatever comes next finds the turn done.
+    const next = (event: Event): void => {
+      if (!(event instanceof KeyboardEvent && ["Alt", "Shift"].includes(event.key))) endTurn();
     };
     element.addEventListener("wheel", wheel, { passive: false });
-    return () => element.removeEventListener("wheel", wheel);
+    window.addEventListener("keydown", next, true);
+    window.addEventListener("pointerdown", next, true);
+    return () => {
+      endTurn();
+      element.removeEventListener("wheel", wheel);
+      window.removeEventListener("keydown", next, true);
+      window.removeEventListener("pointerdown", next, true);
+    };
   }, [surface]);
+
+  const isSpaceHeld = useRef(false);
+  useEffect(() => {
+    const note = (event: KeyboardEvent): void => {
+      if (event.code === "Space") isSpaceHeld.current = event.type === "keydown";
+    };
+    window.addEventListener("keydown", note);
+    window.addEventListener("keyup", note);
+    return () => {
+      window.removeEventListener("keydown", note);
+      window.removeEventListener("keyup", note);
+    };
+  }, []);
 
   const screenOf = (event: ReactPointerEvent): Point => {
     const box = event.currentTarget.getBoundingClientRect();
@@ -80,7 +129,8 @@ export function usePaneGestures(
         return;
       }
       event.currentTarget.setPointerCapture(event.pointerId);
-      if (event.button === 1 || event.ctrlKey || event.metaKey) press.current = { kind: "pan", last: screen };
+      if (isSpaceHeld.current) gestures.onSpacePan?.();
+      if (event.button === 1 || event.ctrlKey || event.metaKey || isSpaceHeld.current) press.current = { kind: "pan", last: screen };
       else if (event.altKey && gestures.onDragHand) press.current = { kind: "hand", start: pixel };
       else if (joint >= 0) press.current = { kind: "joint", joint, start: screen, isMoving: false };
       else press.current = { kind: "ground", start: screen, last: screen };
@@ -122,6 +172,11 @@ export function usePaneGestures(
     onPointerCancel() {
       press.current = null;
       gestures.onDragEnd?.();
+    },
+
+    onDoubleClick(event: ReactMouseEvent<HTMLElement>) {
+      const box = event.currentTarget.getBoundingClientRect();
+      if (!isInImage(toPixel(view, { x: event.clientX - box.left, y: event.clientY - box.top }), image)) onView(null);
     },
 
     onPointerLeave() {

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { bindingsFor, chordOf, findConflicts, KEYMAP, RESERVED, type KeyBinding } from "./keymap";
+import { bindingsFor, chordOf, faultOf, findConflicts, KEYMAP, remapOf, RESERVED, withRemap, type KeyBinding } from "./keymap";
 
 const press = (key: string, modifiers: Partial<Record<"ctrlKey" | "metaKey" | "altKey" | "shiftKey", boolean>> = {}) => ({
   key,
@@ -43,5 +43,23 @@ test("a page sees its own keys and those of everywhere", () => {
   const keys = bindingsFor("annotate");
   expect(keys.get("F")?.id).toBe("frame.next");
   expect(keys.get("Ctrl+K")?.id).toBe("search");
-  expect(keys.get("M")).toBeUndefined();
+  expect(keys.get("A")).toBeUndefined();
+});
+
+test("a person's keys go before the defaults, never meet them, and only they are kept", () => {
+  const mine = withRemap(map, { "frame.next": ["X", "Ctrl+T"], nothing: ["Y"], "frame.back": "Z" as unknown as string[] });
+  expect(findConflicts(mine)).toEqual([]);
+  expect(bindingsFor("annotate", mine).get("X")?.id).toBe("frame.next");
+  expect(bindingsFor("annotate", mine).get("F")).toBeUndefined();
+  expect(bindingsFor("annotate", mine).get("Delete")?.id).toBe("joint.clear");
+  expect(remapOf(withRemap(map, remapOf(mine)))).toEqual(remapOf(mine));
+  expect(remapOf(map)).toEqual({});
+});
+
+test("a key that is taken, reserved or no key at all is refused with the reason", () => {
+  expect(faultOf(map, "frame.next", "Q")).toMatchObject({ kind: "taken", by: { id: "joint.occluded" } });
+  expect(faultOf(map, "frame.next", "F1")).toMatchObject({ kind: "taken", by: { id: "help" } });
+  expect(faultOf(map, "frame.next", "A")).toBeNull();
+  expect(faultOf(map, "frame.next", "Ctrl+W")).toEqual({ kind: "reserved" });
+  expect(faultOf(map, "frame.next", "Alt+Alt")).toEqual({ kind: "modifier" });
 });

@@ -18,6 +18,7 @@ export const KEYMAP = [
   ...table("everywhere", "Everywhere", [
     ["search", "Search recordings and pages", "Ctrl+K"],
     ["help", "This keyboard map", "F1", "?"],
+    ["settings", "Settings: other keys", "F2"],
     ["undo", "Undo", "Ctrl+Z"],
     ["redo", "Redo", "Ctrl+Shift+Z", "Ctrl+Y"],
   ]),
@@ -49,6 +50,11 @@ export const KEYMAP = [
     ["hand.clear", "Clear the whole hand", "Shift+Delete"],
     ["hand.switch", "Other hand", "G"],
     ["hand.bring", "Bring the pose of the last annotated frame", "B"],
+    ["hand.propagate", "Carry the pose on to the next frame and go there", "Ctrl+B"],
+    ["hand.swap", "Swap left and right", "Alt+T"],
+    ["key.mark", "Key frame of this hand, or not any more", "K"],
+    ["key.accept", "Accept what is between this key frame and the next", "Shift+K"],
+    ["place.mode", "After a click: next joint, same joint in the next frame, or stay", "M"],
     ["nudge.left", "Move the joint half a pixel left", "Shift+Left"],
     ["nudge.right", "Move the joint half a pixel right", "Shift+Right"],
     ["nudge.up", "Move the joint half a pixel up", "Shift+Up"],
@@ -88,7 +94,10 @@ export const KEYMAP = [
 ] as const satisfies readonly KeyBinding[];
 
 /** Keys that the browser or the system keeps for itself. */
-export const RESERVED = ["Ctrl+T", "Ctrl+W", "Ctrl+N", "Ctrl+Tab", "Alt+Tab", "Ctrl+Shift+T", "Ctrl+Shift+N", "Alt+Left", "Alt+Right"];
+export const RESERVED: readonly string[] = [
+  ...["Ctrl+T", "Ctrl+W", "Ctrl+N", "Ctrl+Tab", "Ctrl+Shift+Tab", "Alt+Tab", "Ctrl+Shift+T", "Ctrl+Shift+N", "Ctrl+Shift+W", "Alt+Left", "Alt+Right"],
+  ...["Ctrl+L", "Ctrl+R", "Ctrl+Shift+R", "Ctrl+Q", "Ctrl+PageUp", "Ctrl+PageDown", "Alt+F4", "F5", "F11", "F12"],
+];
 
 const NAMES: Record<string, string> = {
   ArrowLeft: "Left",
@@ -120,11 +129,50 @@ export function chordOf(press: KeyPress): string {
   return [...parts, key].join("+");
 }
 
+/** Keys that a person has put elsewhere, by the id of the binding. */
+export type Remap = Readonly<Record<string, readonly string[]>>;
+
+const meet = (a: KeyBinding, b: KeyBinding): boolean => a.scope === b.scope || a.scope === "everywhere" || b.scope === "everywhere";
+
+/**
+ * The table with a person's own keys in it. A key that a person gave to one thing is taken from whatever has it by
+ * default, so a new version's new keys never bring a conflict; unknown ids and reserved keys are left out.
+ */
+export function withRemap(map: readonly KeyBinding[], remap: Remap): readonly KeyBinding[] {
+  const chosen = map.map((binding) => {
+    const keys = remap[binding.id];
+    return Array.isArray(keys) ? { ...binding, keys: keys.filter((key) => typeof key === "string" && !RESERVED.includes(key)) } : binding;
+  });
+  const own = chosen.filter((binding, index) => binding !== map[index]);
+  return chosen.map((binding, index) =>
+    binding === map[index] ? { ...binding, keys: binding.keys.filter((key) => !own.some((other) => meet(binding, other) && other.keys.includes(key))) } : binding,
+  );
+}
+
+/** What a person asked for, put into words of the table: only what differs from the defaults is kept. */
+export function remapOf(map: readonly KeyBinding[], defaults: readonly KeyBinding[] = KEYMAP): Remap {
+  const own = map.filter((binding) => binding.keys.join(" ") !== defaults.find((one) => one.id === binding.id)?.keys.join(" "));
+  return Object.fromEntries(own.map((binding) => [binding.id, binding.keys]));
+}
+
+/** Why a key cannot be given to a binding: the browser keeps it, it does nothing alone, or something else has it. */
+export type KeyFault = { readonly kind: "reserved" } | { readonly kind: "modifier" } | { readonly kind: "taken"; readonly by: KeyBinding };
+
+const MODIFIERS = new Set(["Control", "Alt", "Shift", "Meta", "AltGraph", "CapsLock", "Dead", "Unidentified", "Process"]);
+
+export function faultOf(map: readonly KeyBinding[], id: string, chord: string): KeyFault | null {
+  const binding = map.find((one) => one.id === id);
+  if (MODIFIERS.has(chord.split(/\+(?=.)/).at(-1) ?? "")) return { kind: "modifier" };
+  if (RESERVED.includes(chord)) return { kind: "reserved" };
+  const by = map.find((other) => other.id !== id && binding && meet(binding, other) && other.keys.includes(chord));
+  return by ? { kind: "taken", by } : null;
+}
+
 /** Chord to binding for one page; what the page binds goes before what is bound everywhere. */
-export function bindingsFor(scope: Scope): ReadonlyMap<string, KeyBinding> {
+export function bindingsFor(scope: Scope, map: readonly KeyBinding[] = KEYMAP): ReadonlyMap<string, KeyBinding> {
   const found = new Map<string, KeyBinding>();
   for (const wanted of ["everywhere", scope] as const) {
-    for (const binding of KEYMAP as readonly KeyBinding[]) {
+    for (const binding of map) {
       if (binding.scope === wanted) binding.keys.forEach((key) => found.set(key, binding));
     }
   }
@@ -136,12 +184,8 @@ export function findConflicts(map: readonly KeyBinding[]): string[] {
   const conflicts: string[] = [];
   map.forEach((a, i) =>
     map.slice(i + 1).forEach((b) => {
-      const meet = a.scope === b.scope || a.scope === "everywhere" || b.scope === "everywhere";
-      a.keys.filter((key) => meet && b.keys.includes(key)).forEach((key) => conflicts.push(`${key}: ${a.id}, ${b.id}`));
+      a.keys.filter((key) => meet(a, b) && b.keys.includes(key)).forEach((key) => conflicts.push(`${key}: ${a.id}, ${b.id}`));
     }),
   );
   return conflicts;
 }
-
-/** First key of an action, for hints beside buttons. */
-export const keyOf = (id: string): string => (KEYMAP as readonly KeyBinding[]).find((binding) => binding.id === id)?.keys[0] ?? "";

@@ -5,8 +5,10 @@ import { Suspense, useEffect, useRef, useState } from "react";
 import { Link, Outlet, useLocation } from "react-router";
 import { useKeymap } from "../actions/useKeymap";
 import { isActive, useJobs, useJobStream } from "../api/jobs";
+import { useHint } from "../state/keys";
 import { flushSaving } from "../state/saving";
 import { DropAnywhere } from "./parts/DropAnywhere";
+import { KeySettings } from "./parts/KeySettings";
 import { KeyboardMap } from "./parts/KeyboardMap";
 import { PageSkeleton } from "./parts/PageSkeleton";
 import { openSearch, Search } from "./parts/Search";
@@ -65,11 +67,13 @@ function useReturn(isLinked: boolean): void {
 /** Header, navigation and what is true on every page; the page itself is the outlet. */
 export function Shell() {
   const [isHelpOpen, setHelpOpen] = useState(false);
+  const [isSettingsOpen, setSettingsOpen] = useState(false);
   const room = roomOf(useLocation().pathname);
   const isLinked = useJobStream();
   useReturn(isLinked);
   const running = useJobs().data?.filter(isActive).length ?? 0;
-  useKeymap("everywhere", { help: () => setHelpOpen(true), search: openSearch });
+  const hint = useHint();
+  useKeymap("everywhere", { help: () => setHelpOpen(true), settings: () => setSettingsOpen(true), search: openSearch });
 
   return (
     <div className={classes.shell}>
@@ -104,7 +108,7 @@ export function Shell() {
             <span>Search</span>
             <Kbd size="xs">Ctrl K</Kbd>
           </UnstyledButton>
-          <Tooltip label="Keyboard map (F1)">
+          <Tooltip label={hint("Keyboard map", "help")}>
             <ActionIcon size="lg" aria-label="Keyboard map" onClick={() => setHelpOpen(true)}>
               <IconKeyboard size={18} />
             </ActionIcon>
@@ -117,7 +121,8 @@ export function Shell() {
           <Outlet />
         </Suspense>
       </main>
-      <KeyboardMap isOpen={isHelpOpen} onClose={() => setHelpOpen(false)} />
+      <KeyboardMap isOpen={isHelpOpen} onClose={() => setHelpOpen(false)} onSettings={() => (setHelpOpen(false), setSettingsOpen(true))} />
+      <KeySettings isOpen={isSettingsOpen} onClose={() => setSettingsOpen(false)} />
       <Search />
       <DropAnywhere />
     </div>

@@ -3,6 +3,8 @@
 import type { Annotation, Recording, Side } from "../api/types";
 import { firstOpenJoint, fromWire, keyText, toWire, type Pose } from "../model/pose";
 import { changedKeys, type AnnotatorState } from "./annotator";
+import { startInterpolation } from "./interpolation";
+import { createKeyFrames, type KeyFrames } from "./keyFrames";
 import type { SaveQueue } from "./saveQueue";
 import { createStore, type Store } from "./store";
 import { createSuggestionStore, type SuggestionStore } from "./suggestions";
@@ -14,6 +16,7 @@ export interface Session {
   readonly queue: SaveQueue;
   /** What machines propose: never saved, until a person accepts it. */
   readonly suggestions: SuggestionStore;
+  readonly keyFrames: Store<KeyFrames>;
   close(): void;
 }
 
@@ -48,6 +51,9 @@ export function openSession(recording: Recording, annotations: readonly Annotati
     draft: null,
   });
   const undo = createUndoStack(store);
+  const suggestions = createSuggestionStore();
+  const keyFrames = createKeyFrames(recording.id);
+  const stopInterpolation = startInterpolation(store, keyFrames, suggestions, cameras);
   const stopSaving = store.watch((now, before, origin) => {
     if (origin === "server") return;
     for (const key of changedKeys(now.poses, before.poses)) {
@@ -59,8 +65,10 @@ export function openSession(recording: Recording, annotations: readonly Annotati
     store,
     undo,
     queue,
-    suggestions: createSuggestionStore(),
+    suggestions,
+    keyFrames,
     close() {
+      stopInterpolation();
       stopSaving();
       undo.stop();
     },

@@ -1,6 +1,6 @@
 /** Undo and redo: watches the store and keeps changes; nobody else knows that it exists. */
 
-import { parseKey, samePose, type Pose } from "../model/pose";
+import { samePose, type Pose } from "../model/pose";
 import { changedKeys, type AnnotatorState } from "./annotator";
 import type { Store } from "./store";
 
@@ -8,10 +8,18 @@ interface Change {
   readonly key: string;
   readonly before: Pose | undefined;
   readonly after: Pose | undefined;
-  /** The active joint before and after, so that undoing a click makes the same joint next again. */
-  readonly jointBefore: number;
-  readonly jointAfter: number;
 }
+
+/** Where the person was; undoing goes back there, so that undoing a click makes the same joint next again. */
+type Place = Pick<AnnotatorState, "camera" | "frame" | "hand" | "joint">;
+
+interface Step {
+  readonly changes: readonly Change[];
+  readonly before: Place;
+  readonly after: Place;
+}
+
+const placeOf = ({ camera, frame, hand, joint }: AnnotatorState): Place => ({ camera, frame, hand, joint });
 
 const LIMIT = 500;
 
@@ -24,43 +32,35 @@ export interface UndoStack {
 }
 
 export function createUndoStack(store: Store<AnnotatorState>): UndoStack {
-  let done: Change[][] = [];
-  let undone: Change[][] = [];
+  let done: Step[] = [];
+  let undone: Step[] = [];
 
   const stop = store.watch((now, before, origin) => {
     const keys = changedKeys(now.poses, before.poses);
     if (keys.length === 0) return;
     if (origin === "server") {
       // What somebody else changed must not come back by our undo.
-      const isStale = (step: Change[]): boolean => step.some((change) => keys.includes(change.key));
+      const isStale = (step: Step): boolean => step.changes.some((change) => keys.includes(change.key));
       done = done.filter((step) => !isStale(step));
       undone = undone.filter((step) => !isStale(step));
     } else if (origin === "person") {
-      const step = keys.map((key) => ({
-        key,
-        before: before.poses[key],
-        after: now.poses[key],
-        jointBefore: before.joint,
-        jointAfter: now.joint,
-      }));
-      if (step.every((change) => samePose(change.before, change.after))) return;
+      const changes = keys.map((key) => ({ key, before: before.poses[key], after: now.poses[key] }));
+      if (changes.every((change) => samePose(change.before, change.after))) return;
+      const step = { changes, before: placeOf(before), after: placeOf(now) };
       done = [...done.slice(1 - LIMIT), step];
       undone = [];
     }
   });
 
-  const show = (step: Change[], pick: (change: Change) => Pose | undefined, joint: (change: Change) => number): void => {
-    const first = step[0];
-    if (!first) return;
+  const show = (step: Step, pick: (change: Change) => Pose | undefined, place: Place): void => {
     const state = store.get();
     const poses = { ...state.poses };
-    for (const change of step) {
+    for (const change of step.changes) {
       const pose = pick(change);
       if (pose) poses[change.key] = pose;
       else delete poses[change.key];
     }
-    const { camera, frame, hand } = parseKey(first.key);
-    store.set({ ...state, poses, camera, frame, hand, joint: joint(first), draft: null }, "history");
+    store.set({ ...state, ...place, poses, draft: null }, "history");
   };
 
   return {
@@ -71,14 +71,14 @@ export function createUndoStack(store: Store<AnnotatorState>): UndoStack {
       if (!step) return;
       done = done.slice(0, -1);
       undone = [...undone, step];
-      show(step, (change) => change.before, (change) => change.jointBefore);
+      show(step, (change) => change.before, step.before);
     },
     redo() {
       const step = undone.at(-1);
       if (!step) return;
       undone = undone.slice(0, -1);
       done = [...done, step];
-      show(step, (change) => change.after, (change) => change.jointAfter);
+      show(step, (change) => change.after, step.after);
     },
     stop,
   };

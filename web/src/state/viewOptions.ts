@@ -1,7 +1,9 @@
 /** How the annotator shows pictures; kept in the browser, because it is a matter of the person and the screen. */
 
 import { useLocalStorage } from "@mantine/hooks";
+import type { PlaceMode } from "../actions/annotate/place";
 import type { Camera } from "../api/types";
+import type { Palette } from "../canvas/depth";
 
 export type Arrangement = "color" | "depth" | "side" | "over";
 
@@ -12,9 +14,13 @@ export interface ViewOptions {
   readonly contrast: number;
   readonly areHandsShown: boolean;
   readonly areNamesShown: boolean;
+  readonly placeMode: PlaceMode;
+  readonly palette: Palette;
+  /** Of depth over colour, 0..1. */
+  readonly depthOpacity: number;
 }
 
-const DEFAULTS: ViewOptions = { arrangement: "color", brightness: 1, contrast: 1, areHandsShown: true, areNamesShown: false };
+const DEFAULTS: ViewOptions = { arrangement: "color", brightness: 1, contrast: 1, areHandsShown: true, areNamesShown: false, placeMode: "joint", palette: "warm", depthOpacity: 0.55 };
 
 export function useViewOptions(): [ViewOptions, (change: Partial<ViewOptions>) => void] {
   const [options, setOptions] = useLocalStorage<ViewOptions>({ key: "handloom/view", defaultValue: DEFAULTS, getInitialValueInEffect: false });

@@ -3,6 +3,7 @@ import { IconChevronLeft, IconChevronRight, IconPlayerPause, IconPlayerPlay } fr
 import type { RefObject } from "react";
 import { Link } from "react-router";
 import { goToFrame, selectCamera } from "../../actions/annotate/select";
+import { useHint } from "../../state/keys";
 import { arrangementsOf, type Arrangement } from "../../state/viewOptions";
 import { useAnnotating } from "./annotating";
 import classes from "./Annotator.module.css";
@@ -17,6 +18,7 @@ const NAMES: Record<Arrangement, string> = { color: "Colour", depth: "Depth", si
 /** Which recording, camera and frame, and which pictures of it. */
 export function FrameBar({ frameField }: FrameBarProps) {
   const { recording, camera, state, isPlaying, arrangement, setOptions, act, run } = useAnnotating();
+  const hint = useHint();
   const arrangements = arrangementsOf(camera);
   return (
     <div className={classes.bar}>
@@ -39,12 +41,12 @@ export function FrameBar({ frameField }: FrameBarProps) {
         <FrameTool key={index} />
       ))}
       <Group gap={4} ml="auto" wrap="nowrap">
-        <Tooltip label={isPlaying ? "Pause (Space)" : "Play (Space)"}>
+        <Tooltip label={hint(isPlaying ? "Pause" : "Play", "play")}>
           <ActionIcon aria-label={isPlaying ? "Pause" : "Play"} onClick={() => run("play")}>
             {isPlaying ? <IconPlayerPause size={18} /> : <IconPlayerPlay size={18} />}
           </ActionIcon>
         </Tooltip>
-        <Tooltip label="Previous frame (D)">
+        <Tooltip label={hint("Previous frame", "frame.previous")}>
           <ActionIcon aria-label="Previous frame" onClick={() => run("frame.previous")}>
             <IconChevronLeft size={18} />
           </ActionIcon>
@@ -66,7 +68,7 @@ export function FrameBar({ frameField }: FrameBarProps) {
         <Text size="xs" className="quiet" style={{ whiteSpace: "nowrap" }}>
           of 0–{recording.frame_count - 1}
         </Text>
-        <Tooltip label="Next frame (F)">
+        <Tooltip label={hint("Next frame", "frame.next")}>
           <ActionIcon aria-label="Next frame" onClick={() => run("frame.next")}>
             <IconChevronRight size={18} />
           </ActionIcon>

@@ -3,6 +3,7 @@ import { useEffect, useRef } from "react";
 import { selectJoint, switchHand } from "../../actions/annotate/select";
 import { HANDS, JOINTS, jointColor, jointLabel } from "../../model/joints";
 import { decidedCount, keyText, statusOf, type JointStatus } from "../../model/pose";
+import { useHint } from "../../state/keys";
 import { HandMark } from "../parts/HandBadge";
 import { useAnnotating } from "./annotating";
 import classes from "./JointsPanel.module.css";
@@ -29,6 +30,7 @@ function StatusMark({ status, color }: { status: JointStatus; color: string }) {
 /** The joints of the active hand, what is known about each, and which comes next. */
 export function JointsPanel() {
   const { state, pose, act } = useAnnotating();
+  const hint = useHint();
   const active = useRef<HTMLButtonElement>(null);
   useEffect(() => void active.current?.scrollIntoView({ block: "nearest" }), [state.joint]);
   return (
@@ -37,7 +39,7 @@ export function JointsPanel() {
         {HANDS.map((hand) => {
           const count = decidedCount(hand === state.hand ? pose : state.poses[keyText({ camera: state.camera, frame: state.frame, hand })]);
           return (
-            <Tooltip key={hand} label={`${hand} hand (G switches)`}>
+            <Tooltip key={hand} label={hint(`${hand} hand`, "hand.switch")}>
               <button type="button" role="tab" aria-selected={hand === state.hand} className={classes.hand} data-hand={hand} onClick={() => hand !== state.hand && act(switchHand, undefined)}>
                 <HandMark hand={hand} size={12} />
                 {hand}

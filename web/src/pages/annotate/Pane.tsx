@@ -1,6 +1,7 @@
 import { dragHand, dragJoint, endDrag } from "../../actions/annotate/move";
-import { placeJoint } from "../../actions/annotate/place";
+import { placeIn } from "../../actions/annotate/place";
 import { selectCamera, selectJoint } from "../../actions/annotate/select";
+import { turnHand } from "../../actions/annotate/turn";
 import { cycleVisibility } from "../../actions/annotate/visibility";
 import type { Camera } from "../../api/types";
 import { jointAt } from "../../canvas/hit";
@@ -21,7 +22,7 @@ interface PaneProps {
 
 /** One picture of one camera, to be annotated; a gesture on a camera that is not the active one makes it so first. */
 export function Pane({ camera, label, layers, isBusy }: PaneProps) {
-  const { state, pose, options, viewOf, setView, pointer, isMagnified, act } = useAnnotating();
+  const { state, pose, options, viewOf, setView, pointer, isMagnified, act, run } = useAnnotating();
   const isActive = camera.id === state.camera;
   const shown = isActive ? pose : (state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })] ?? emptyPose());
   const here = (): void => act(selectCamera, camera.id);
@@ -41,7 +42,7 @@ export function Pane({ camera, label, layers, isBusy }: PaneProps) {
       hitJoint={(view, screen) => (options.areHandsShown ? jointAt(shown, view, screen, isActive ? state.joint : -1) : -1)}
       onPlace={(pixel) => {
         here();
-        act(placeJoint, pixel);
+        act(placeIn[options.placeMode], pixel);
       }}
       onSelect={(joint) => {
         here();
@@ -55,6 +56,11 @@ export function Pane({ camera, label, layers, isBusy }: PaneProps) {
         here();
         act(dragHand, by);
       }}
+      onTurnHand={(turn) => {
+        here();
+        act(turnHand, turn);
+      }}
+      onSpacePan={() => run("play")}
       onDragEnd={() => act(endDrag, undefined)}
       onCycle={(joint) => {
         here();

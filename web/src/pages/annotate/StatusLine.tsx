@@ -6,6 +6,7 @@ import { formatCount } from "../../model/format";
 import { jointLabel } from "../../model/joints";
 import { statusOf, type Pose } from "../../model/pose";
 import type { AnnotatorState } from "../../state/annotator";
+import { useHint } from "../../state/keys";
 import { usePointer, type PointerStore } from "../../state/pointer";
 import type { SaveStatus } from "../../state/saveQueue";
 import { useAnnotating } from "./annotating";
@@ -47,10 +48,11 @@ function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | n
 
 export function StatusLine() {
   const { state, pose, saving, pointer, pictures, lock, session } = useAnnotating();
+  const hint = useHint();
   const { text, tone, icon: Icon } = describeSaving(saving);
   return (
     <div className={classes.line}>
-      <Tooltip label={saving.isOffline ? "Kept in this browser; try now (Ctrl+S)" : "Every gesture is saved by itself"}>
+      <Tooltip label={saving.isOffline ? hint("Kept in this browser; try now", "save.now") : "Every gesture is saved by itself"}>
         <button type="button" className={classes.saving} data-tone={tone} onClick={() => session.queue.flush()} aria-live="polite" data-testid="save-state">
           <Icon size={15} aria-hidden />
           {text}

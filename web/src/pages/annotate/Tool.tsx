@@ -1,6 +1,6 @@
 import { ActionIcon, Tooltip } from "@mantine/core";
 import type { ReactNode } from "react";
-import { keyOf } from "../../model/keymap";
+import { useHint } from "../../state/keys";
 
 interface ToolProps {
   label: string;
@@ -13,9 +13,9 @@ interface ToolProps {
 
 /** A button of the tool rail; its hint says the key of its action. */
 export function Tool({ label, action, icon, isOn, isDisabled = false, onClick }: ToolProps) {
-  const key = keyOf(action);
+  const hint = useHint();
   return (
-    <Tooltip label={key ? `${label} (${key})` : label} position="right">
+    <Tooltip label={hint(label, action)} position="right">
       <ActionIcon
         size={32}
         variant={isOn ? "light" : "subtle"}

@@ -1,11 +1,17 @@
+import { acceptBetween } from "../../actions/annotate/acceptBetween";
 import { bringPose, annotatedFrames } from "../../actions/annotate/bring";
 import { clearHand, clearJoint } from "../../actions/annotate/clear";
 import { cancelDrag, nudgeJoint } from "../../actions/annotate/move";
 import { placeBeside } from "../../actions/annotate/place";
+import { propagateOn } from "../../actions/annotate/propagate";
 import { goToFrame, selectCamera, selectFinger, stepJoint, switchHand } from "../../actions/annotate/select";
+import { swapHands } from "../../actions/annotate/swap";
 import { toggleOccluded, toggleOutside } from "../../actions/annotate/visibility";
 import type { Recording } from "../../api/types";
-import type { Action, AnnotatorState } from "../../state/annotator";
+import { keyFramesOf, spanAt } from "../../model/interpolation";
+import { isEmpty, keyText } from "../../model/pose";
+import { activeKey, poseAt, type Action, type AnnotatorState } from "../../state/annotator";
+import { toggleKey } from "../../state/keyFrames";
 import type { Session } from "../../state/session";
 import type { Actions, Annotating } from "./annotating";
 
@@ -64,6 +70,17 @@ export function annotateActions(session: Session, recording: Recording, act: Ann
     "hand.clear": simple(clearHand),
     "hand.switch": simple(switchHand),
     "hand.bring": simple(bringPose),
+    "hand.propagate": simple(propagateOn),
+    "hand.swap": simple(swapHands),
+    "key.mark": () => {
+      const here = activeKey(store.get());
+      if (!isEmpty(poseAt(store.get(), here))) toggleKey(session.keyFrames, keyText(here));
+    },
+    "key.accept": () => {
+      const state = store.get();
+      const span = spanAt(keyFramesOf(session.keyFrames.get(), state.poses, activeKey(state)), state.frame);
+      if (span) act(acceptBetween, span);
+    },
     "drag.cancel": simple(cancelDrag),
     undo: () => session.undo.undo(),
     redo: () => session.undo.redo(),

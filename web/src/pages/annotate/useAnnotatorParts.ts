@@ -2,6 +2,7 @@
 
 import { useCallback, useEffect, useMemo, useRef, useState, type RefObject } from "react";
 import { useSearchParams } from "react-router";
+import { PLACE_MODES } from "../../actions/annotate/place";
 import { goToFrame } from "../../actions/annotate/select";
 import { useKeymap } from "../../actions/useKeymap";
 import type { Recording } from "../../api/types";
@@ -97,6 +98,7 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
       const all = arrangementsOf(camera);
       setOptions({ arrangement: all[(all.indexOf(arrangement) + 1) % all.length] ?? "color" });
     },
+    "place.mode": () => setOptions({ placeMode: PLACE_MODES[(PLACE_MODES.indexOf(options.placeMode) + 1) % PLACE_MODES.length] ?? "joint" }),
     "view.hands": () => setOptions({ areHandsShown: !options.areHandsShown }),
     "view.names": () => setOptions({ areNamesShown: !options.areNamesShown }),
     "view.brighter": () => setOptions({ brightness: clampFactor(options.brightness * 1.1) }),

@@ -7,6 +7,7 @@ import type { Recording } from "../../api/types";
 import type { AnnotatorState } from "../../state/annotator";
 import { queueOf } from "../../state/saving";
 import type { SaveStatus } from "../../state/saveQueue";
+import type { KeyFrames } from "../../state/keyFrames";
 import type { SuggestionsState } from "../../state/suggestions";
 import { openSession, revisionsOf, type Session, type Start } from "../../state/session";
 
@@ -73,3 +74,6 @@ export const useSaveStatus = (session: Session): SaveStatus =>
 
 export const useSuggestions = (session: Session): SuggestionsState =>
   useSyncExternalStore(useCallback((tell) => session.suggestions.watch(tell), [session]), session.suggestions.get);
+
+export const useKeyFrames = (session: Session): KeyFrames =>
+  useSyncExternalStore(useCallback((tell) => session.keyFrames.watch(tell), [session]), session.keyFrames.get);

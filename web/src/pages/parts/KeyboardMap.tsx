@@ -1,15 +1,19 @@
-import { Group, Kbd, Modal, Stack, Text, Title } from "@mantine/core";
+import { Button, Group, Kbd, Modal, Stack, Text, Title } from "@mantine/core";
+import { IconKeyboard } from "@tabler/icons-react";
 import { Fragment } from "react";
-import { KEYMAP, type KeyBinding } from "../../model/keymap";
+import { useCurrentKeymap } from "../../state/keys";
 import classes from "./KeyboardMap.module.css";
 
 const MOUSE: readonly (readonly [string, string])[] = [
   ["Click", "Place the next joint, or choose the one under the cursor"],
   ["Drag a joint", "Move it"],
   ["Alt + drag", "Move the whole hand"],
+  ["Alt + wheel", "Turn the whole hand about the cursor"],
+  ["Alt + Shift + wheel", "Make the whole hand larger or smaller"],
   ["Right click on a joint", "Visible, occluded, outside"],
   ["Wheel", "Zoom at the cursor"],
-  ["Drag the ground, or Ctrl + drag", "Pan"],
+  ["Drag the ground, Ctrl + drag, or Space + drag", "Pan"],
+  ["Double click beside the image", "Fit the image"],
 ];
 
 /** "Ctrl+Shift+Z" as keys to look at. */
@@ -30,6 +34,11 @@ function Row({ keys, label }: { keys: readonly string[]; label: string }) {
     <Group justify="space-between" wrap="nowrap" gap="md" py={2}>
       <Text size="sm">{label}</Text>
       <Group gap={6} wrap="nowrap">
+        {keys.length === 0 && (
+          <Text size="xs" className="quiet" span>
+            no key
+          </Text>
+        )}
         {keys.map((chord, index) => (
           <Fragment key={chord}>
             {index > 0 && (
@@ -46,11 +55,19 @@ function Row({ keys, label }: { keys: readonly string[]; label: string }) {
 }
 
 /** The keyboard map, made from the same table as the handlers. */
-export function KeyboardMap({ isOpen, onClose }: { isOpen: boolean; onClose: () => void }) {
-  const map: readonly KeyBinding[] = KEYMAP;
+export function KeyboardMap({ isOpen, onClose, onSettings }: { isOpen: boolean; onClose: () => void; onSettings: () => void }) {
+  const map = useCurrentKeymap();
   const groups = [...new Set(map.map((binding) => binding.group))];
   return (
     <Modal opened={isOpen} onClose={onClose} title={<Title order={2}>Keyboard map</Title>} size={1040}>
+      <Group justify="space-between" mb="md">
+        <Text size="sm" className="quiet">
+          Every key can be put elsewhere.
+        </Text>
+        <Button variant="default" size="xs" leftSection={<IconKeyboard size={15} />} onClick={onSettings}>
+          Change keys
+        </Button>
+      </Group>
       <div className={classes.columns}>
         {groups.map((group) => (
           <Stack key={group} gap={2} className={classes.group}>

@@ -17,6 +17,7 @@ import {
 import { Link, useNavigate } from "react-router";
 import { EXPORTS, exportUrl, trackFileUrl, useDeleteTrack, useRestoreTrack } from "../../api/tracks";
 import type { Recording, Track } from "../../api/types";
+import { useHint } from "../../state/keys";
 import classes from "./TrackReview.module.css";
 
 interface TrackBarProps {
@@ -39,6 +40,7 @@ const STATUS_ICONS = { ok: IconCircleCheck, lost: IconAlertTriangle, recovered: 
 /** Which track, which frame, and how it went there. */
 export function TrackBar(props: TrackBarProps) {
   const { track, recording, frame, status, isPlaying, hasLost, camera, onCamera, onPlay, onStep, onBad, onAnnotate } = props;
+  const hint = useHint();
   const remove = useDeleteTrack();
   const restore = useRestoreTrack();
   const navigate = useNavigate();
@@ -89,12 +91,12 @@ export function TrackBar(props: TrackBarProps) {
           {StatusIcon && <StatusIcon size={15} aria-hidden />}
           {status ?? "not tracked"}
         </Group>
-        <Tooltip label={isPlaying ? "Pause (Space)" : "Play (Space)"}>
+        <Tooltip label={hint(isPlaying ? "Pause" : "Play", "track.play")}>
           <ActionIcon aria-label={isPlaying ? "Pause" : "Play"} onClick={onPlay}>
             {isPlaying ? <IconPlayerPause size={18} /> : <IconPlayerPlay size={18} />}
           </ActionIcon>
         </Tooltip>
-        <Tooltip label="Previous frame (D)">
+        <Tooltip label={hint("Previous frame", "track.previous")}>
           <ActionIcon aria-label="Previous frame" onClick={() => onStep(-1)}>
             <IconChevronLeft size={18} />
           </ActionIcon>
@@ -102,12 +104,12 @@ export function TrackBar(props: TrackBarProps) {
         <Text size="sm" ta="center" miw={96} data-testid="frame">
           frame {frame}
         </Text>
-        <Tooltip label="Next frame (F)">
+        <Tooltip label={hint("Next frame", "track.next")}>
           <ActionIcon aria-label="Next frame" onClick={() => onStep(1)}>
             <IconChevronRight size={18} />
           </ActionIcon>
         </Tooltip>
-        <Tooltip label={hasLost ? "Next lost frame (N)" : "Next of the worst frames (N)"}>
+        <Tooltip label={hint(hasLost ? "Next lost frame" : "Next of the worst frames", "track.nextBad")}>
           <ActionIcon aria-label={hasLost ? "Next lost frame" : "Next of the worst frames"} onClick={() => onBad(1)}>
             <IconPlayerTrackNext size={18} />
           </ActionIcon>

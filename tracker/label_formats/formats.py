@@ -1,0 +1,175 @@
+"""Every format of labels: what it holds, its writer and its reader."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tracker.errors import AnnotationError
+from tracker.label_formats.coco_keypoints import read_coco_keypoints, write_coco_keypoints
+from tracker.label_formats.coco_wholebody import read_coco_wholebody, write_coco_wholebody
+from tracker.label_formats.deeplabcut import read_deeplabcut, write_deeplabcut
+from tracker.label_formats.freihand import read_freihand, write_freihand
+from tracker.label_formats.handloom_json import read_handloom, write_handloom
+from tracker.label_formats.interhand import read_interhand, write_interhand
+from tracker.label_formats.label_set import ExportedLabels, ImportedLabels, ImportHints, LabelSet
+from tracker.label_formats.t16_text import read_t16, write_t16
+
+
+@dataclass(frozen=True)
+class LabelFormat:
+    """A format.
+
+    Attributes:
+        name: In addresses and on the command line.
+        title: For people.
+        holds: What of the labels it takes.
+        loses: What it cannot take, as sentences.
+        file: Name of an export; `.zip` when it is several files.
+        several: Whether one export can hold several recordings.
+        needs_3d: Whether it holds 3D joints and nothing else.
+    """
+
+    name: str
+    title: str
+    holds: str
+    loses: tuple[str, ...]
+    file: str
+    write: Callable[[list[LabelSet]], ExportedLabels]
+    read: Callable[[dict[str, bytes], list[LabelSet], ImportHints], ImportedLabels]
+    several: bool = False
+    needs_3d: bool = False
+
+
+_OUTSIDE = "joints outside the image become joints that nobody looked at"
+_OCCLUDED = "occluded joints become visible ones"
+_FORMATS = (
+    LabelFormat(
+        "annotations",
+        "Handloom (annotations.json)",
+        "everything",
+        (),
+        "annotations.json",
+        write_handloom,
+        read_handloom,
+    ),
+    LabelFormat(
+        "coco_keypoints",
+        "COCO keypoints",
+        "2D joints, occlusion, side, all cameras",
+        (_OUTSIDE,),
+        "coco_keypoints.json",
+        write_coco_keypoints,
+        read_coco_keypoints,
+        several=True,
+    ),
+    LabelFormat(
+        "coco_wholebody",
+        "COCO-WholeBody hands",
+        "2D joints, occlusion, side, all cameras",
+        (_OUTSIDE,),
+        "coco_wholebody.json",
+        write_coco_wholebody,
+        read_coco_wholebody,
+        several=True,
+    ),
+    LabelFormat(
+        "freihand",
+        "FreiHAND",
+        "3D joints of right hands that are known whole",
+        (
+            "left hands are left out",
+            "hands without all 21 joints in 3D are left out",
+            _OCCLUDED,
+            "lens distortion is lost",
+        ),
+        "freihand.zip",
+        write_freihand,
+        read_freihand,
+        needs_3d=True,
+    ),
+    LabelFormat(
+        "interhand",
+        "InterHand2.6M",
+        "3D joints of both hands, calibrated cameras",
+        ("joints that are not known in 3D are left out", _OCCLUDED, "lens distortion is lost"),
+        "interhand.zip",
+        write_interhand,
+        read_interhand,
+        needs_3d=True,
+    ),
+    LabelFormat(
+        "deeplabcut",
+        "DeepLabCut (CSV)",
+        "2D joints, side, a table for each camera",
+        (_OCCLUDED, _OUTSIDE),
+        "deeplabcut.zip",
+        write_deeplabcut,
+        read_deeplabcut,
+    ),
+    LabelFormat(
+        "t16",
+        "T16 (joints_2D_GT)",
+        "2D joints in whole pixels, side, all cameras",
+        (_OCCLUDED, _OUTSIDE, "positions are rounded to whole pixels", "joints in row or column 0 are left out"),
+        "joints_2D_GT.zip",
+        write_t16,
+        read_t16,
+    ),
+)
+LABEL_FORMATS: dict[str, LabelFormat] = {item.name: item for item in _FORMATS}
+
+
+def find_label_format(name: str) -> LabelFormat:
+    """The format of this name."""
+    if name not in LABEL_FORMATS:
+        raise AnnotationError(f"There is no format of labels {name!r}; there are {', '.join(LABEL_FORMATS)}.")
+    return LABEL_FORMATS[name]
+
+
+def export_labels(name: str, sets: list[LabelSet]) -> ExportedLabels:
+    """Files of the labels; raises when there is nothing that the format could hold."""
+    format_ = find_label_format(name)
+    if len(sets) != 1 and not format_.several:
+        several = ", ".join(item.name for item in _FORMATS if item.several)
+        raise AnnotationError(f"{format_.title} holds one recording a file; {several} hold several.")
+    return format_.write(sets)
+
+
+def import_labels(
+    name: str | None, files: dict[str, bytes], sets: list[LabelSet], hints: ImportHints | None = None
+) -> tuple[str, ImportedLabels]:
+    """The format and what was found; raises when the files cannot be read at all."""
+    format_ = find_label_format(name or recognise_labels(files))
+    if len(sets) != 1 and not format_.several:
+        raise AnnotationError(f"{format_.title} holds one recording a file; name the recording.")
+    hints = hints or ImportHints()
+    if hints.hand not in (None, "right", "left"):
+        raise AnnotationError(f"The option hand is {str(hints.hand)[:40]!r}; needed right or left.")
+    if hints.pixel_centre not in (None, 0.0, 0.5):
+        raise AnnotationError(f"The option pixel_centre is {hints.pixel_centre}; needed 0 or 0.5.")
+    return format_.name, format_.read(files, sets, hints)
+
+
+def recognise_labels(files: dict[str, bytes]) -> str:
+    """The format of files, from their names and first words; raises when it is none or could be several."""
+    names = [name.split("/")[-1] for name in files]
+    if any(name.endswith("_joint_3d.json") for name in names):
+        return "interhand"
+    if any(name.endswith("_xyz.json") for name in names):
+        return "freihand"
+    if any(name.lower().endswith(".csv") for name in names):
+        return "deeplabcut"
+    if any("joints_2D_GT/" in name for name in files):
+        return "t16"
+    if len(files) == 1:
+        data = next(iter(files.values()))
+        if b'"lefthand_kpts"' in data or b'"righthand_kpts"' in data:
+            return "coco_wholebody"
+        if b'"categories"' in data and b'"annotations"' in data:
+            return "coco_keypoints"
+        if b'"items"' in data and b'"joints"' in data:
+            return "annotations"
+    raise AnnotationError(
+        f"The labels were not recognised ({', '.join(sorted(files)[:5])}); say the format: {', '.join(LABEL_FORMATS)}."
+    )

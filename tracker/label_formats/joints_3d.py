@@ -91,7 +91,7 @@ class _DepthReader:
     def __init__(self, labels: LabelSet) -> None:
         self._labels = labels
         self._last: tuple[str, int] | None = None
-        self._depth: npt.NDArray[np.float32] | None = None
+        self._depth: npt.NDArray[np.uint16] | None = None
 
     def at(self, camera: str, frame: int, x: float, y: float) -> float:
         """m, 0 where there is none."""
@@ -100,13 +100,13 @@ class _DepthReader:
         if self._last != (camera, frame):
             self._last = (camera, frame)
             try:
-                self._depth = self._labels.sequence.frame(frame, camera).depth
+                self._depth = self._labels.sequence.depth_raw(frame, camera)
             except TrackerError:
                 self._depth = None
         column, row = round(x), round(y)
         if self._depth is None or not (0 <= row < self._depth.shape[0] and 0 <= column < self._depth.shape[1]):
             return 0.0
-        return float(self._depth[row, column])
+        return float(self._depth[row, column]) * self._labels.sequence.camera(camera).depth_scale
 
 
 def project_hand(camera: Camera, points: Array, valid: Mask) -> Array:

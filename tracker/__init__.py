@@ -31,7 +31,11 @@ if TYPE_CHECKING:
         TrackerError,
         TrackingError,
     )
+    from tracker.evaluation.comparison import JudgedTrack, compare_tracks
     from tracker.evaluation.evaluation import Evaluation, evaluate_track
+    from tracker.evaluation.report_csv import write_csv
+    from tracker.evaluation.report_html import write_html
+    from tracker.evaluation.worst_picture import draw_item, encode_jpeg
     from tracker.export.export import EXPORT_KINDS, export_track
     from tracker.label_formats.formats import LABEL_FORMATS, LabelFormat, export_labels, import_labels
     from tracker.label_formats.image_names import list_image_names
@@ -78,6 +82,7 @@ _HOMES = {
     "LABEL_FORMATS": "tracker.label_formats.formats",
     "LabelFormat": "tracker.label_formats.formats",
     "LabelSet": "tracker.label_formats.label_set",
+    "JudgedTrack": "tracker.evaluation.comparison",
     "ModelView": "tracker.tracking.frame_view",
     "PRESETS": "tracker.tracking.presets",
     "Sequence": "tracker.capture.sequence",
@@ -95,8 +100,11 @@ _HOMES = {
     "ViewAids": "tracker.tracking.view_aids",
     "add_commands": "tracker.cli",
     "check_import": "tracker.capture.import_check",
+    "compare_tracks": "tracker.evaluation.comparison",
     "default_hand": "tracker.model.default_hand",
     "describe_frame": "tracker.tracking.frame_view",
+    "draw_item": "tracker.evaluation.worst_picture",
+    "encode_jpeg": "tracker.evaluation.worst_picture",
     "evaluate_track": "tracker.evaluation.evaluation",
     "export_labels": "tracker.label_formats.formats",
     "export_track": "tracker.export.export",
@@ -119,6 +127,8 @@ _HOMES = {
     "track_frames": "tracker.tracking.follow",
     "triangulate": "tracker.capture.triangulation",
     "warm_up": "tracker.tracking.warm_up",
+    "write_csv": "tracker.evaluation.report_csv",
+    "write_html": "tracker.evaluation.report_html",
 }
 
 __all__ = [
@@ -146,6 +156,7 @@ __all__ = [
     "ImportRefusedError",
     "ImportReport",
     "ImportedLabels",
+    "JudgedTrack",
     "LabelFormat",
     "LabelSet",
     "ModelView",
@@ -163,8 +174,11 @@ __all__ = [
     "ViewAids",
     "add_commands",
     "check_import",
+    "compare_tracks",
     "default_hand",
     "describe_frame",
+    "draw_item",
+    "encode_jpeg",
     "evaluate_track",
     "export_labels",
     "export_track",
@@ -187,6 +201,8 @@ __all__ = [
     "track_frames",
     "triangulate",
     "warm_up",
+    "write_csv",
+    "write_html",
 ]
 
 

@@ -6,7 +6,7 @@ counts, occluded or not; one marked absent does not. Frames that the tracker cal
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,7 +35,11 @@ class Evaluation:
         status: N, what the tracker said of the frame: "ok", "lost" or "recovered".
         error: (N, 21) px in the order of HAND_JOINTS; NaN where the joint is marked absent or does not project.
         visibility: (N, 21) 0 absent, 1 occluded, 2 visible.
+        marked: (N, 21, 2) px, where people marked the joints.
+        tracked: (N, 21, 2) px, where the track has them; NaN where one does not project.
         untracked: Annotated (frame, camera, hand) that the track does not hold.
+        track_frame: (T,) all frames of the track.
+        lost_frame: (L,) those that the tracker calls lost.
     """
 
     frame: npt.NDArray[np.int64]
@@ -44,12 +48,17 @@ class Evaluation:
     status: tuple[str, ...]
     error: Array
     visibility: npt.NDArray[np.int64]
+    marked: Array
+    tracked: Array
     untracked: tuple[tuple[int, str, str], ...]
+    track_frame: npt.NDArray[np.int64]
+    lost_frame: npt.NDArray[np.int64]
 
     def __post_init__(self) -> None:
         items = len(self.frame)
         assert len(self.camera) == len(self.hand) == len(self.status) == items
         assert self.error.shape == self.visibility.shape == (items, len(HAND_JOINTS))
+        assert self.marked.shape == self.tracked.shape == (items, len(HAND_JOINTS), 2)
 
     @property
     def statistics(self) -> Statistics:
@@ -63,6 +72,55 @@ class Evaluation:
         total = np.nansum(self.error, axis=1)
         return np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
 
+    def select(
+        self, *, camera: str = "", hand: str = "", visibility: int | None = None, without_start: bool = False
+    ) -> Evaluation:
+        """What is left with one camera, one hand, joints of one visibility, or without the frame the track began at.
+
+        Empty and None take all.
+        """
+        kept = np.ones(len(self.frame), dtype=bool)
+        if camera:
+            kept &= np.array([name == camera for name in self.camera], dtype=bool)
+        if hand:
+            kept &= np.array([name == hand for name in self.hand], dtype=bool)
+        if without_start and len(self.track_frame):
+            kept &= self.frame != self.track_frame[0]
+        error = self.error[kept]
+        if visibility is not None:
+            error = np.where(self.visibility[kept] == visibility, error, np.nan)
+        rows = np.flatnonzero(kept)
+        return replace(
+            self,
+            frame=self.frame[kept],
+            camera=tuple(self.camera[row] for row in rows),
+            hand=tuple(self.hand[row] for row in rows),
+            status=tuple(self.status[row] for row in rows),
+            error=error,
+            visibility=self.visibility[kept],
+            marked=self.marked[kept],
+            tracked=self.tracked[kept],
+            untracked=tuple(
+                key for key in self.untracked if (not camera or key[1] == camera) and (not hand or key[2] == hand)
+            ),
+        )
+
+    def where(self, mask: npt.NDArray[np.bool_]) -> Statistics:
+        """Over the joints of a mask that broadcasts to (N, 21), px."""
+        return compute_statistics(np.where(mask, self.error, np.nan))
+
+    def by_hand(self) -> dict[str, Statistics]:
+        """For each hand, px."""
+        return {hand: self.where(_is(self.hand, hand)) for hand in sorted(set(self.hand))}
+
+    def by_camera(self) -> dict[str, Statistics]:
+        """For each camera, px."""
+        return {camera: self.where(_is(self.camera, camera)) for camera in sorted(set(self.camera))}
+
+    def by_joint(self) -> list[Statistics]:
+        """For each of the 21 joints, px."""
+        return [compute_statistics(self.error[:, j]) for j in range(len(HAND_JOINTS))]
+
     def worst_items(self, most: int = 10) -> list[int]:
         """Places of the items with the largest mean error, worst first."""
         mean = self.item_mean
@@ -73,27 +131,22 @@ class Evaluation:
         """Statistics over all, by visibility, hand and joint; every item; the worst items. Errors in px."""
         return {
             "joint_error_px": self.statistics.to_json(),
-            "visible_error_px": self._where(self.visibility == VISIBLE),
-            "occluded_error_px": self._where(self.visibility == OCCLUDED),
-            "hands": {
-                hand: self._where(np.array([name == hand for name in self.hand])[:, None])
-                for hand in sorted(set(self.hand))
-            },
+            "visible_error_px": self.where(self.visibility == VISIBLE).to_json(),
+            "occluded_error_px": self.where(self.visibility == OCCLUDED).to_json(),
+            "hands": {hand: found.to_json() for hand, found in self.by_hand().items()},
+            "cameras": {camera: found.to_json() for camera, found in self.by_camera().items()},
             "joints": [
-                {"joint": joint, **compute_statistics(self.error[:, j]).to_json()}
-                for j, joint in enumerate(HAND_JOINTS)
+                {"joint": joint, **found.to_json()} for joint, found in zip(HAND_JOINTS, self.by_joint(), strict=True)
             ],
-            "items": [self._item(item) for item in range(len(self.frame))],
-            "worst": [self._item(item) for item in self.worst_items()],
+            "items": [self.describe_item(item) for item in range(len(self.frame))],
+            "worst": [self.describe_item(item) for item in self.worst_items()],
             "annotated": len(self.frame) + len(self.untracked),
             "evaluated": len(self.frame),
             "untracked": [{"frame": f, "camera": c, "hand": h} for f, c, h in self.untracked],
         }
 
-    def _where(self, mask: npt.NDArray[np.bool_]) -> dict[str, Any]:
-        return compute_statistics(np.where(mask, self.error, np.nan)).to_json()
-
-    def _item(self, item: int) -> dict[str, Any]:
+    def describe_item(self, item: int) -> dict[str, Any]:
+        """One item in plain values, px."""
         known = compute_statistics(self.error[item])
         return {
             "frame": int(self.frame[item]),
@@ -106,12 +159,16 @@ class Evaluation:
         }
 
 
+def _is(names: tuple[str, ...], wanted: str) -> npt.NDArray[np.bool_]:
+    return np.array([name == wanted for name in names], dtype=bool)[:, None]
+
+
 def evaluate_track(track: Track, annotations: Annotations) -> Evaluation:
     """Errors of a track at every annotated hand that it holds."""
     places = {int(frame): place for place, frame in enumerate(track.frame)}
     cameras = {camera: c for c, camera in enumerate(track.camera_ids)}
     columns = {name: j for j, name in enumerate(track.joint_names)}
-    evaluated, untracked, errors, visibilities = [], [], [], []
+    evaluated, untracked, errors, visibilities, tracked = [], [], [], [], []
     for item in annotations.items:
         names = [f"{item.hand}/{joint}" for joint in HAND_JOINTS]
         if item.frame not in places or item.camera not in cameras or names[0] not in columns:
@@ -124,6 +181,7 @@ def evaluate_track(track: Track, annotations: Annotations) -> Evaluation:
         evaluated.append(item)
         errors.append(np.where(visibility > 0, distance, np.nan))
         visibilities.append(visibility)
+        tracked.append(projected)
     shape = (len(evaluated), len(HAND_JOINTS))
     return Evaluation(
         frame=np.array([item.frame for item in evaluated], dtype=np.int64),
@@ -132,5 +190,9 @@ def evaluate_track(track: Track, annotations: Annotations) -> Evaluation:
         status=tuple(str(track.status[places[item.frame]]) for item in evaluated),
         error=np.array(errors, dtype=np.float64).reshape(shape),
         visibility=np.array(visibilities, dtype=np.int64).reshape(shape),
+        marked=np.array([item.points[:, :2] for item in evaluated], dtype=np.float64).reshape(*shape, 2),
+        tracked=np.array(tracked, dtype=np.float64).reshape(*shape, 2),
         untracked=tuple(untracked),
+        track_frame=np.asarray(track.frame, dtype=np.int64),
+        lost_frame=np.asarray(track.frame, dtype=np.int64)[track.status == "lost"],
     )

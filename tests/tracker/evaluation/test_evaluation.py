@@ -50,7 +50,8 @@ def test_occluded_joints_count_and_absent_ones_do_not(known):
     assert document["visible_error_px"]["mean"] == pytest.approx(0.0, abs=1e-6)
     assert document["joints"][4]["mean"] == pytest.approx(10.0)
     assert document["joints"][8] == {
-        "joint": "index_tip", "count": 0, "mean": None, "std": None, "median": None, "p95": None, "max": None
+        "joint": "index_tip", "count": 0, "mean": None, "std": None, "median": None, "p75": None, "p95": None,
+        "p99": None, "max": None
     }  # fmt: skip
 
 

@@ -1,0 +1,73 @@
+"""Drawings of a report: curves as inline SVG, bars behind numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+
+COLORS = ("#1c9c8f", "#d9822b", "#7d6bd8", "#3d86d8", "#c2547e", "#7c8a2e", "#8a8f98", "#b0553a")
+DASHES = ("", "7 4", "2 3", "9 3 2 3", "4 2", "12 4", "1 4", "6 2 1 2")
+WIDTH, HEIGHT = 960, 240
+LEFT, RIGHT, TOP, BOTTOM = 48, 12, 10, 34
+
+
+@dataclass(frozen=True)
+class Line:
+    """A curve; both lists have one length, None is a gap."""
+
+    label: str
+    x: Sequence[float]
+    y: Sequence[float | None]
+
+
+def draw_curves(lines: Sequence[Line], label: str, x_title: str, y_title: str, top: float | None = None) -> str:
+    """Lines over one another, told apart by colour and dashes, with a legend."""
+    xs = [value for line in lines for value in line.x]
+    ys = [value for line in lines for value in line.y if value is not None]
+    if not xs or not ys:
+        return "<p class=quiet>Nothing to draw.</p>"
+    low, high = min(xs), max(max(xs), min(xs) + 1)
+    top = top or max(1e-9, 1.05 * max(ys))
+
+    def at(x: float, y: float) -> tuple[float, float]:
+        across = (x - low) / (high - low)
+        return LEFT + across * (WIDTH - LEFT - RIGHT), HEIGHT - BOTTOM - y / top * (HEIGHT - TOP - BOTTOM)
+
+    parts = [f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(label)}">']
+    for step in range(5):
+        value = top * step / 4
+        y = at(low, value)[1]
+        parts.append(f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{y:.1f}" y2="{y:.1f}"/>')
+        parts.append(f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">{value:.3g}</text>')
+    for step in range(6):
+        value = low + (high - low) * step / 5
+        x = at(value, 0)[0]
+        anchor = "end" if step == 5 else "middle"
+        parts.append(f'<text x="{x:.1f}" y="{HEIGHT - BOTTOM + 15}" text-anchor="{anchor}">{value:.4g}</text>')
+    parts.append(f'<text x="{WIDTH - RIGHT}" y="{HEIGHT - 4}" text-anchor="end">{escape(x_title)}</text>')
+    parts.append(f'<text x="4" y="{HEIGHT - 4}">{escape(y_title)}</text>')
+    for place, line in enumerate(lines):
+        color, dash = COLORS[place % len(COLORS)], DASHES[place % len(DASHES)]
+        points = [at(x, min(y, top)) for x, y in zip(line.x, line.y, strict=True) if y is not None]
+        path = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+        parts.append(f'<polyline points="{path}" stroke="{color}" stroke-dasharray="{dash}"/>')
+        if len(points) <= 60:
+            parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="{color}"/>' for x, y in points]
+    legend = "".join(
+        f'<span><svg class="key" viewBox="0 0 24 8"><line x1="0" x2="24" y1="4" y2="4" '
+        f'stroke="{COLORS[place % len(COLORS)]}" stroke-dasharray="{DASHES[place % len(DASHES)]}"/></svg>'
+        f"{escape(line.label)}</span>"
+        for place, line in enumerate(lines)
+    )
+    return f'<figure>{"".join(parts)}</svg><figcaption class="legend">{legend}</figcaption></figure>'
+
+
+def draw_bar_cell(value: float | None, full: float, text: str | None = None, best: bool = False) -> str:
+    """A table cell with a number and a bar that is as long as the value's share of `full`."""
+    if value is None:
+        return "<td class=number>–</td>"
+    share = 100 * min(1.0, max(0.0, value / full)) if full > 0 else 0.0
+    shown = text if text is not None else f"{value:.2f}"
+    mark = ' class="best" title="the smallest of its column"' if best else ""
+    return f'<td class="number bar" style="--share:{share:.1f}%"><span{mark}>{escape(shown)}</span></td>'

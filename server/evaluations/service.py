@@ -1,25 +1,33 @@
-"""Compares tracks with annotations."""
+"""Compares tracks with labels, and with each other."""
 
 from __future__ import annotations
 
 import uuid
-from typing import Any
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
-from server.annotations.service import load_annotations
-from server.database import Database
+from server.database import Database, utc_now
+from server.errors import NotFoundError
+from server.evaluations.choice import Chosen, choose_tracks
+from server.evaluations.judge import Judge
+from server.evaluations.labels import LabelsId, find_current_labels, find_snapshots
+from server.evaluations.schemas import Comparison, EvaluationQuery
 from server.storage import Storage
 from server.tracks.models import TrackRow
 from server.tracks.service import get_track
 
+if TYPE_CHECKING:
+    from tracker import JudgedTrack
 
-def evaluate(database: Database, storage: Storage, track_id: uuid.UUID) -> dict[str, Any]:
+VISIBILITIES = {"occluded": 1, "visible": 2}
+
+
+def evaluate(database: Database, judge: Judge, track_id: uuid.UUID) -> dict[str, Any]:
     """Evaluate a track against the annotations of its recording; its mean error is kept with its row."""
-    from tracker import evaluate_track, load_track
-
     with database.reading() as session:
         row = get_track(session, track_id)
-        annotations = load_annotations(session, row.sequence_id)
-    result = evaluate_track(load_track(storage.folder("tracks", track_id)), annotations).to_json()
+        labels = find_current_labels(session, row.sequence_id)
+    result = judge.find(track_id, labels).evaluation.to_json()
     error_px = result["joint_error_px"].get("mean") if result["evaluated"] else None
     if error_px != row.error_px:
         with database.writing() as session:
@@ -27,3 +35,90 @@ def evaluate(database: Database, storage: Storage, track_id: uuid.UUID) -> dict[
             assert track is not None
             track.error_px = error_px
     return result
+
+
+def compare(database: Database, judge: Judge, query: EvaluationQuery) -> tuple[Comparison, list[JudgedTrack]]:
+    """The comparison that was asked for, and the tracks in it."""
+    from tracker import compare_tracks
+
+    with database.reading() as session:
+        chosen = choose_tracks(session, query)
+    judged = [_judge(judge, one, query) for one in chosen]
+    reference = query.reference or next((one.track.id for one in chosen), None)
+    document = compare_tracks(judged, reference=None if reference is None else str(reference), within_px=query.within)
+    for one, described in zip(chosen, document["tracks"], strict=True):
+        for item in described["worst"]:
+            item["picture"] = write_picture_address(one, item["camera"], item["frame"], item["hand"])
+    cameras = dict.fromkeys(camera["id"] for one in chosen for camera in one.sequence.cameras)
+    return Comparison.model_validate(document | {"made_at": utc_now(), "cameras": list(cameras)}), judged
+
+
+def _judge(judge: Judge, one: Chosen, query: EvaluationQuery) -> JudgedTrack:
+    from tracker import JudgedTrack
+
+    verdict = judge.find(one.track.id, one.labels)
+    return JudgedTrack(
+        key=str(one.track.id),
+        name=one.track.name,
+        recording_key=str(one.sequence.id),
+        recording=one.sequence.name,
+        parameters=verdict.parameters,
+        evaluation=verdict.evaluation.select(
+            camera=query.camera,
+            hand=query.hand or "",
+            visibility=None if query.visibility is None else VISIBILITIES[query.visibility],
+            without_start=query.without_start,
+        ),
+        labels=verdict.labels,
+        origin={
+            "id": str(one.track.id),
+            "sha256": verdict.track_sha256,
+            "made_at": one.track.created_at.isoformat(timespec="seconds"),
+            "job_id": None if one.track.job_id is None else str(one.track.job_id),
+        },
+    )
+
+
+def write_picture_address(one: Chosen, camera: str, frame: int, hand: str) -> str:
+    """Where the picture of an item is; the address names the labels, so what it shows never changes."""
+    place = f"{quote(camera, safe='')}/{frame}/{hand}"
+    return f"/api/v1/tracks/{one.track.id}/evaluation/{one.labels.key}/{place}.jpg"
+
+
+def draw_picture(
+    database: Database,
+    storage: Storage,
+    judge: Judge,
+    track_id: uuid.UUID,
+    labels_key: str,
+    place: tuple[str, int, str],
+) -> bytes:
+    """The picture of one hand in one image: marks and track, cut out."""
+    from tracker import draw_item, encode_jpeg, load_sequence
+
+    with database.reading() as session:
+        sequence_id = get_track(session, track_id).sequence_id
+        labels = _find_labels(session, sequence_id, labels_key)
+    evaluation = judge.find(track_id, labels).evaluation
+    camera, frame, hand = place
+    keys = zip(evaluation.camera, evaluation.frame.tolist(), evaluation.hand, strict=True)
+    item = next((number for number, key in enumerate(keys) if key == place), None)
+    if item is None:
+        raise NotFoundError(f"The {hand} hand in frame {frame} of {camera} is not both annotated and tracked.")
+    return encode_jpeg(draw_item(load_sequence(storage.folder("sequences", sequence_id)), evaluation, item))
+
+
+def _find_labels(session: Any, sequence_id: uuid.UUID, key: str) -> LabelsId:
+    kind, _, id_ = key.partition("-")
+    if kind == "snapshot":
+        labels = find_snapshots(session, [uuid.UUID(id_)]).get(sequence_id)
+        if labels is None:
+            raise NotFoundError(f"The snapshot {id_} is not of this track's recording.")
+        return labels
+    labels = find_current_labels(session, sequence_id)
+    if labels.key != key:
+        raise NotFoundError(
+            f"The labels are at revision {labels.revision} now; pictures of revision {id_} are no longer made. "
+            "Load the evaluation again, or judge by a snapshot."
+        )
+    return labels

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from pathlib import Path
 
@@ -134,3 +135,33 @@ def test_an_object_that_the_recording_does_not_name_is_refused(recording, tmp_pa
     arguments = ["track", str(recording), "--object", "ball=ball.ply", "--out", str(tmp_path / "track")]
     assert main(arguments) == 2
     assert "names no objects" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", ["html", "csv", "json"])
+def test_evaluate_writes_a_report_that_says_which_labels_it_judged_by(kind, recording, tracked, tmp_path, capsys):
+    report = tmp_path / f"report.{kind}"
+    labels = recording / "annotations.json"
+    arguments = ["evaluate", str(tracked), "--annotations", str(labels), "--json", "--report", str(report)]
+    assert main(arguments) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["report"] == str(report)
+    text = report.read_text()
+    if kind == "csv":
+        assert len(text.splitlines()) == 1 + 12 * 21
+        return
+    assert hashlib.sha256(labels.read_bytes()).hexdigest() in text
+    mean = result["annotations"]["joint_error_px"]["mean"]
+    if kind == "html":
+        assert f"{mean:.2f}" in text
+        assert text.count("data:image/jpeg;base64,") == 12, "pictures, for the recording lies beside the annotations"
+    else:
+        assert json.loads(text)["tracks"][0]["error"]["mean"] == mean
+
+
+def test_a_report_of_another_kind_is_refused_and_nothing_is_written(recording, tracked, tmp_path, capsys):
+    arguments = ["evaluate", str(tracked), "--report", str(tmp_path / "report.pdf")]
+    assert main([*arguments, "--annotations", str(recording / "annotations.json")]) == 2
+    assert "needed one of .html, .csv, .json" in capsys.readouterr().err
+    assert main([*arguments, "--truth", str(recording / "truth.npz")]) == 2
+    assert "give --annotations" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []

@@ -44,6 +44,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/evaluations": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Compare Tracks
+         * @description Tracks judged by annotations, side by side: tables, curves, worst frames, differences against one of them.
+         */
+        get: operations["compare_tracks"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/evaluations/report.{kind}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Report
+         * @description The same as a file: a page that needs nothing else, a table of every joint, or the numbers as JSON.
+         */
+        get: operations["get_report"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/hand-models": {
         parameters: {
             query?: never;
@@ -838,6 +878,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/tracks/{track_id}/evaluation/{labels}/{camera}/{frame}/{hand}.jpg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Evaluation Picture
+         * @description An annotated hand cut out of its image: what was marked, and where the track has it.
+         */
+        get: operations["get_evaluation_picture"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/tracks/{track_id}/export/{kind}": {
         parameters: {
             query?: never;
@@ -1377,6 +1437,49 @@ export interface components {
             vertices: number;
         };
         /**
+         * ComparedParameters
+         * @description What the runs share and what not.
+         */
+        ComparedParameters: {
+            /** Different */
+            different: components["schemas"]["DifferingParameter"][];
+            /** Same */
+            same: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * Comparison
+         * @description Tracks judged by labels, side by side.
+         */
+        Comparison: {
+            /**
+             * Cameras
+             * @description That `camera` may name.
+             */
+            cameras: string[];
+            /** Joints */
+            joints: string[];
+            /**
+             * Made At
+             * Format: date-time
+             */
+            made_at: string;
+            /** Methods */
+            methods: components["schemas"]["MethodOut"][];
+            parameters: components["schemas"]["ComparedParameters"];
+            /** Reference */
+            reference: string | null;
+            /** Thresholds Px */
+            thresholds_px: number[];
+            /** Tracks */
+            tracks: components["schemas"]["JudgedTrackOut"][];
+            /** Version */
+            version: number;
+            /** Within Px */
+            within_px: number;
+        };
+        /**
          * ContactPart
          * @description A finger part near the object.
          */
@@ -1476,6 +1579,21 @@ export interface components {
             items: components["schemas"]["DetectionView"][];
         };
         /**
+         * DifferingParameter
+         * @description A parameter that is not the same in all.
+         */
+        DifferingParameter: {
+            /** Name */
+            name: string;
+            /**
+             * Values
+             * @description By the track's id.
+             */
+            values: {
+                [key: string]: unknown;
+            };
+        };
+        /**
          * DistancesView
          * @description How far visible skin is from the data in the frame that is shown.
          */
@@ -1504,6 +1622,40 @@ export interface components {
              * @example NotFoundError
              */
             error: string;
+        };
+        /**
+         * ErrorCurve
+         * @description Mean and largest error of each annotated frame.
+         */
+        ErrorCurve: {
+            /** Frame */
+            frame: number[];
+            /** Max */
+            max: (number | null)[];
+            /** Mean */
+            mean: (number | null)[];
+        };
+        /**
+         * ErrorStatistics
+         * @description Of a set of joint errors, px; null but for `count` where there are none.
+         */
+        ErrorStatistics: {
+            /** Count */
+            count: number;
+            /** Max */
+            max: number | null;
+            /** Mean */
+            mean: number | null;
+            /** Median */
+            median: number | null;
+            /** P75 */
+            p75: number | null;
+            /** P95 */
+            p95: number | null;
+            /** P99 */
+            p99: number | null;
+            /** Std */
+            std: number | null;
         };
         /**
          * FrameEnergy
@@ -1953,6 +2105,119 @@ export interface components {
             name: string;
         };
         /**
+         * JudgedTrackOut
+         * @description A track with its errors.
+         */
+        JudgedTrackOut: {
+            /**
+             * Annotated
+             * @description Annotated hands in images.
+             */
+            annotated: number;
+            /** Annotated Frames */
+            annotated_frames: number;
+            /**
+             * By Joint
+             * @description In the order of `joints`.
+             */
+            by_joint: components["schemas"]["ErrorStatistics"][];
+            /** Cameras */
+            cameras: {
+                [key: string]: components["schemas"]["ErrorStatistics"];
+            };
+            /** @description Over the joints that every track of the recording here has. */
+            common: components["schemas"]["ErrorStatistics"];
+            curve: components["schemas"]["ErrorCurve"];
+            error: components["schemas"]["ErrorStatistics"];
+            /**
+             * Evaluated
+             * @description Those of them that the track holds.
+             */
+            evaluated: number;
+            /** Frames */
+            frames: number;
+            /** Hands */
+            hands: {
+                [key: string]: components["schemas"]["ErrorStatistics"];
+            };
+            /**
+             * Key
+             * Format: uuid
+             */
+            key: string;
+            /**
+             * Labels
+             * @description Which labels judged it: of now with their revision, or a snapshot.
+             */
+            labels: {
+                [key: string]: unknown;
+            };
+            /** Lost */
+            lost: number;
+            /** Lost Frames */
+            lost_frames: number[];
+            /** Name */
+            name: string;
+            occluded: components["schemas"]["ErrorStatistics"];
+            /**
+             * Origin
+             * @description Which track this was.
+             */
+            origin: {
+                [key: string]: unknown;
+            };
+            /** @description Null for the reference, and for other recordings' tracks. */
+            paired: components["schemas"]["PairedDifferenceOut"] | null;
+            /** Parameters */
+            parameters: {
+                [key: string]: unknown;
+            };
+            /** Recording */
+            recording: string;
+            /**
+             * Recording Key
+             * Format: uuid
+             */
+            recording_key: string;
+            /**
+             * Shares
+             * @description Share of the joints within each of `thresholds_px` (PCK).
+             */
+            shares: (number | null)[];
+            /** Untracked */
+            untracked: number;
+            visible: components["schemas"]["ErrorStatistics"];
+            /**
+             * Within
+             * @description Share of the joints within `within_px`.
+             */
+            within: number | null;
+            /** Worst */
+            worst: components["schemas"]["WorstFrame"][];
+        };
+        /**
+         * MethodOut
+         * @description Tracks with the same parameters, one for each recording, pooled.
+         */
+        MethodOut: {
+            error: components["schemas"]["ErrorStatistics"];
+            /** Frames */
+            frames: number;
+            /** Is Reference */
+            is_reference: boolean;
+            /** Lost */
+            lost: number;
+            /** Name */
+            name: string;
+            paired: components["schemas"]["PairedDifferenceOut"] | null;
+            /** Recordings */
+            recordings: number;
+            /** Tracks */
+            tracks: string[];
+            /** Within */
+            within: number | null;
+        };
+        /**
          * ModelDistance
          * @description How far a model's visible skin is from the data.
          */
@@ -2090,6 +2355,34 @@ export interface components {
              * @description For `?cursor=` to get what follows; null at the end.
              */
             next_cursor: string | null;
+        };
+        /**
+         * PairedDifferenceOut
+         * @description Errors minus those of the reference, over joints that both have; below zero is better.
+         */
+        PairedDifferenceOut: {
+            /**
+             * Better
+             * @description Share of the joints that are nearer than the reference's.
+             */
+            better: number;
+            /** Difference */
+            difference: number;
+            /** Frames */
+            frames: number;
+            /** High */
+            high: number;
+            /** Joints */
+            joints: number;
+            /**
+             * Low
+             * @description Of the 95 % interval of the difference: a bootstrap over frames.
+             */
+            low: number;
+            /** Mean */
+            mean: number;
+            /** Reference Mean */
+            reference_mean: number;
         };
         /**
          * SequenceCamera
@@ -2565,6 +2858,36 @@ export interface components {
              */
             state: "running" | "silent" | "stopped" | "lost";
         };
+        /**
+         * WorstFrame
+         * @description One hand in one image, with a picture of it.
+         */
+        WorstFrame: {
+            /** Camera */
+            camera: string;
+            /** Frame */
+            frame: number;
+            /**
+             * Hand
+             * @enum {string}
+             */
+            hand: "right" | "left";
+            /** Joints */
+            joints: number;
+            /** Max Px */
+            max_px: number;
+            /** Mean Px */
+            mean_px: number;
+            /**
+             * Picture
+             * @description Address of a JPEG that may be kept for good.
+             */
+            picture?: string | null;
+            /** Status */
+            status: string;
+            /** Worst Joint */
+            worst_joint: string;
+        };
     };
     responses: never;
     parameters: never;
@@ -2686,6 +3009,182 @@ export interface operations {
             };
             /** @description Request Entity Too Large */
             413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    compare_tracks: {
+        parameters: {
+            query?: {
+                /** @description Tracks to compare, in this order. */
+                track?: string[];
+                /** @description Recordings of which every track is taken, the newest first. */
+                sequence?: string[];
+                /** @description Project; of each of its recordings the newest track of every method is taken. */
+                project?: string | null;
+                /** @description Track that the others are set against. */
+                reference?: string | null;
+                /** @description Label snapshots; recordings without one are judged by now's. */
+                snapshot?: string[];
+                /** @description This camera alone. */
+                camera?: string;
+                /** @description This hand alone. */
+                hand?: ("right" | "left") | null;
+                /** @description Joints marked so alone. */
+                visibility?: ("visible" | "occluded") | null;
+                /** @description Leave out the frame that each track began at: its annotation may have helped. */
+                without_start?: boolean;
+                /** @description px, for the share below it. */
+                within?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Comparison"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_report: {
+        parameters: {
+            query?: {
+                /** @description Tracks to compare, in this order. */
+                track?: string[];
+                /** @description Recordings of which every track is taken, the newest first. */
+                sequence?: string[];
+                /** @description Project; of each of its recordings the newest track of every method is taken. */
+                project?: string | null;
+                /** @description Track that the others are set against. */
+                reference?: string | null;
+                /** @description Label snapshots; recordings without one are judged by now's. */
+                snapshot?: string[];
+                /** @description This camera alone. */
+                camera?: string;
+                /** @description This hand alone. */
+                hand?: ("right" | "left") | null;
+                /** @description Joints marked so alone. */
+                visibility?: ("visible" | "occluded") | null;
+                /** @description Leave out the frame that each track began at: its annotation may have helped. */
+                without_start?: boolean;
+                /** @description px, for the share below it. */
+                within?: number;
+            };
+            header?: never;
+            path: {
+                kind: "html" | "csv" | "json";
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": unknown;
+                    "text/csv": unknown;
+                    "text/html": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5860,6 +6359,84 @@ export interface operations {
                         [key: string]: unknown;
                     };
                 };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_evaluation_picture: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                track_id: string;
+                labels: string;
+                camera: string;
+                frame: number;
+                hand: "right" | "left";
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/jpeg": string;
+                };
+            };
+            /** @description You have it already. */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description Unauthorized */
             401: {

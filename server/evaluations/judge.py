@@ -1,0 +1,96 @@
+"""Tracks against labels, each pair worked out once."""
+
+from __future__ import annotations
+
+import hashlib
+import threading
+import uuid
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from server.database import Database
+from server.evaluations.labels import LabelsId, read_labels
+from server.storage import Storage
+
+if TYPE_CHECKING:
+    from tracker import Evaluation
+
+MOST = 48
+"""Verdicts that stay in memory; one of 1,500 frames and two hands takes about 3 MB."""
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """A track judged by labels; neither changes ever.
+
+    Attributes:
+        evaluation: The errors.
+        parameters: Of the run that made the track.
+        labels: Where the labels come from.
+        track_sha256: Of `track.npz`.
+    """
+
+    evaluation: Evaluation
+    parameters: dict[str, Any]
+    labels: dict[str, Any]
+    track_sha256: str
+
+
+class Judge:
+    """Judges and remembers, the least recently asked for forgotten first. Who asks for the same at a time waits."""
+
+    def __init__(self, database: Database, storage: Storage) -> None:
+        self._database, self._storage = database, storage
+        self._verdicts: OrderedDict[tuple[uuid.UUID, str], Verdict] = OrderedDict()
+        self._making: dict[tuple[uuid.UUID, str], threading.Lock] = {}
+        self._lock = threading.Lock()
+
+    def find(self, track_id: uuid.UUID, labels: LabelsId) -> Verdict:
+        """The verdict, worked out now if need be. Called from the thread pool: it may take seconds."""
+        key = (track_id, labels.key)
+        with self._lock:
+            making = self._making.setdefault(key, threading.Lock())
+        with making:
+            with self._lock:
+                if key in self._verdicts:
+                    self._verdicts.move_to_end(key)
+                    return self._verdicts[key]
+            try:
+                verdict = self._judge(track_id, labels)
+            finally:
+                with self._lock:
+                    self._making.pop(key, None)
+            with self._lock:
+                self._verdicts[key] = verdict
+                while len(self._verdicts) > MOST:
+                    self._verdicts.popitem(last=False)
+            return verdict
+
+    def _judge(self, track_id: uuid.UUID, which: LabelsId) -> Verdict:
+        from tracker import evaluate_track, load_track
+
+        with self._database.reading() as session:
+            labels = read_labels(session, self._storage, which)
+        folder = self._storage.folder("tracks", track_id)
+        track = load_track(folder)
+        return Verdict(
+            evaluation=evaluate_track(track, labels.annotations),
+            parameters=track.setup.options.to_json(),
+            labels=labels.facts,
+            track_sha256=hashlib.sha256((folder / "track.npz").read_bytes()).hexdigest(),
+        )
+
+
+def get_judge(connection: HTTPConnection) -> Judge:
+    """The app's."""
+    state = connection.app.state
+    if not hasattr(state, "judge"):
+        state.judge = Judge(state.database, state.storage)
+    return state.judge
+
+
+JudgeDep = Annotated[Judge, Depends(get_judge)]

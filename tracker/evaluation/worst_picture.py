@@ -40,7 +40,8 @@ def draw_worst_picture(
         visibility: (21,) 0 absent, 1 occluded, 2 visible.
     """
     image = _load_image(sequence, frame, camera)
-    is_marked, is_tracked = visibility > 0, np.isfinite(tracked).all(axis=1)
+    is_marked: npt.NDArray[np.bool_] = np.asarray(visibility > 0)
+    is_tracked: npt.NDArray[np.bool_] = np.asarray(np.isfinite(tracked).all(axis=1))
     scale, corner = _find_window(image, marked[is_marked], tracked[is_tracked])
     warp = np.array([[scale, 0.0, -scale * corner[0]], [0.0, scale, -scale * corner[1]]])
     picture = cv2.warpAffine(image, warp, SIZE, flags=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR)

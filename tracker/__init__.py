@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from tracker.tracking.frame_view import FrameView, ModelView, describe_frame, render_overlay
     from tracker.tracking.options import TrackOptions
     from tracker.tracking.presets import PRESETS, USUAL_PRESET, TrackPreset
+    from tracker.tracking.quick_fit import MIN_FIT_JOINTS, QuickFit, fit_marked, view_track_hands
     from tracker.tracking.setup import TrackSetup
     from tracker.tracking.start import start_tracking
     from tracker.tracking.state import TrackState
@@ -83,8 +84,10 @@ _HOMES = {
     "LabelFormat": "tracker.label_formats.formats",
     "LabelSet": "tracker.label_formats.label_set",
     "JudgedTrack": "tracker.evaluation.comparison",
+    "MIN_FIT_JOINTS": "tracker.tracking.quick_fit",
     "ModelView": "tracker.tracking.frame_view",
     "PRESETS": "tracker.tracking.presets",
+    "QuickFit": "tracker.tracking.quick_fit",
     "Sequence": "tracker.capture.sequence",
     "SequenceError": "tracker.errors",
     "Track": "tracker.tracking.track",
@@ -111,6 +114,7 @@ _HOMES = {
     "extract_archive": "tracker.capture.archive",
     "find_path_fault": "tracker.capture.relative_path",
     "import_labels": "tracker.label_formats.formats",
+    "fit_marked": "tracker.tracking.quick_fit",
     "join_chunks": "tracker.tracking.track",
     "list_image_names": "tracker.label_formats.image_names",
     "load_annotations": "tracker.capture.annotations",
@@ -126,6 +130,7 @@ _HOMES = {
     "start_tracking": "tracker.tracking.start",
     "track_frames": "tracker.tracking.follow",
     "triangulate": "tracker.capture.triangulation",
+    "view_track_hands": "tracker.tracking.quick_fit",
     "warm_up": "tracker.tracking.warm_up",
     "write_csv": "tracker.evaluation.report_csv",
     "write_html": "tracker.evaluation.report_html",
@@ -137,6 +142,7 @@ __all__ = [
     "HAND_JOINTS",
     "IMPORT_FORMATS",
     "LABEL_FORMATS",
+    "MIN_FIT_JOINTS",
     "PRESETS",
     "USUAL_PRESET",
     "Annotation",
@@ -160,6 +166,7 @@ __all__ = [
     "LabelFormat",
     "LabelSet",
     "ModelView",
+    "QuickFit",
     "Sequence",
     "SequenceError",
     "Track",
@@ -185,6 +192,7 @@ __all__ = [
     "extract_archive",
     "find_path_fault",
     "import_labels",
+    "fit_marked",
     "join_chunks",
     "list_image_names",
     "load_annotations",
@@ -200,6 +208,7 @@ __all__ = [
     "start_tracking",
     "track_frames",
     "triangulate",
+    "view_track_hands",
     "warm_up",
     "write_csv",
     "write_html",

@@ -20,6 +20,7 @@ from server.sequences import frame_routes
 from server.sequences import routes as sequences
 from server.sequences.facts import FactFinder
 from server.suggestions import triangulation_routes
+from server.suggestions import routes as suggestions
 from server.tracks import routes as tracks
 from server.tracks.facts import find_best_tracks
 from server.viewer import routes as viewer
@@ -39,6 +40,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     viewer.router,
     evaluations.router,
     triangulation_routes.router,
+    suggestions.router,
 )
 """All under `/api/v1`."""
 

@@ -84,33 +84,39 @@ def undistort_points(points: Array, camera: Camera) -> Array:
     return ideal
 
 
-def start_hand(model: ArticulatedModel, points: Array, camera: Camera, observation: Observation) -> Array:
+def start_hand(
+    model: ArticulatedModel, points: Array, camera: Camera, observation: Observation | None, iterations: int = 40
+) -> Array:
     """(D,) pose of one hand whose joints lie on the marked pixels and, where visible, at the depth seen there.
 
     Args:
         model: The hand.
         points: (21, 3) x, y px of the image and v.
         camera: Undistorted camera.
-        observation: Of the whole image.
+        observation: Of the whole image or of a region with the marked joints; None where there is no depth.
+        iterations: Gauss-Newton steps from each of three bends.
     """
     scene = Scene((model,))
     marked = np.flatnonzero(points[:, 2] > 0)
     joints = mark_joints(scene, 0, points, camera)
-    lifted, seen = _lift(points, camera, observation)
+    if observation is None:
+        lifted, seen = _lift_by_size(points, camera, scene.pose_at(scene.rest_pose()).landmarks(0))
+    else:
+        lifted, seen = _lift(points, camera, observation)
     best, best_cost = scene.rest_pose(), np.inf
     for curl in (0.0, 0.35, 0.7):
         rest = scene.rest_pose()
         rest[6:] = curl_fingers(model, curl)
         T = _align(scene.pose_at(rest).landmarks(0)[marked], lifted[marked])
         rest[:6] = se3.log(T)
-        pose, cost = _descend(scene, rest, joints, lifted, seen)
+        pose, cost = _descend(scene, rest, joints, lifted, seen, iterations)
         if cost < best_cost:
             best, best_cost = pose, cost
     return best
 
 
 def _descend(
-    scene: Scene, start: Array, joints: MarkedJoints, lifted: Array, seen: npt.NDArray[np.bool_]
+    scene: Scene, start: Array, joints: MarkedJoints, lifted: Array, seen: npt.NDArray[np.bool_], iterations: int
 ) -> tuple[Array, float]:
     """Gauss-Newton on rays, depths, limits and nearness to the start; the pose and its cost."""
     objective = Objective(terms={}, anatomy=AnatomicalLimits(0.05), regularization=Regularization(2.0))
@@ -120,7 +126,7 @@ def _descend(
     limits = np.full(scene.num_dofs, 0.3)
     limits[:3] = 0.05
     pose, cost = start, np.inf
-    for _ in range(40):
+    for _ in range(iterations):
         posed = scene.pose_at(pose)
         residuals: dict[str, Residual] = {"joints": joints.find(posed), "depths": depths}
         JtJ, Jtr, costs = objective.linearize(posed, residuals, start)
@@ -144,8 +150,9 @@ def _lift(points: Array, camera: Camera, observation: Observation) -> tuple[Arra
     depths = np.zeros(21)
     seen = np.zeros(21, dtype=bool)
     height, width = observation.labels.shape
+    region = observation.region
     for joint in np.flatnonzero(points[:, 2] == 2):
-        column, row = round(points[joint, 0]), round(points[joint, 1])
+        column, row = round(points[joint, 0]) - region.column, round(points[joint, 1]) - region.row
         rows, columns = slice(max(0, row - 2), min(height, row + 3)), slice(max(0, column - 2), min(width, column + 3))
         values = observation.depth[rows, columns][(observation.labels[rows, columns] & HAND) > 0]
         if values.size:
@@ -156,9 +163,29 @@ def _lift(points: Array, camera: Camera, observation: Observation) -> tuple[Arra
         float(np.median(depths[seen])) if seen.any() else float(np.median(everywhere)) if everywhere.size else 0.5
     )
     depths[~seen] = fallback
+    return _at_depths(points, camera, depths), seen
+
+
+def _lift_by_size(points: Array, camera: Camera, rest: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
+    """Marked joints in space, (21, 3) world, m, all at the distance at which a hand looks so large; none is seen.
+
+    A hand that is bent or turned away looks smaller, never larger: of all pairs of marked joints those count that look
+    largest for their length at rest (21, 3) m.
+    """
+    first, second = np.triu_indices(21, 1)
+    both = (points[first, 2] > 0) & (points[second, 2] > 0)
+    first, second = first[both], second[both]
+    lengths = np.linalg.norm(rest[first] - rest[second], axis=1)
+    apart = np.linalg.norm((points[first, :2] - points[second, :2]) / camera.K[[0, 1], [0, 1]], axis=1)
+    depth = float(np.percentile(lengths / np.maximum(apart, 1e-4), 20)) if len(first) else 0.5
+    return _at_depths(points, camera, np.full(21, depth)), np.zeros(21, dtype=bool)
+
+
+def _at_depths(points: Array, camera: Camera, depths: Array) -> Array:
+    """(21, 3) world, m, of pixels at depths (21,) m."""
     x = (points[:, 0] - camera.K[0, 2]) / camera.K[0, 0] * depths
     y = (points[:, 1] - camera.K[1, 2]) / camera.K[1, 1] * depths
-    return se3.transform(camera.T_world_camera, np.stack([x, y, depths], axis=1)), seen
+    return se3.transform(camera.T_world_camera, np.stack([x, y, depths], axis=1))
 
 
 def _align(source: Array, target: Array) -> Array:

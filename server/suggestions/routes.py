@@ -1,0 +1,72 @@
+"""`/sequences/{sequence_id}/suggestions`: where a machine would have the joints."""
+
+from __future__ import annotations
+
+import uuid
+from typing import Annotated
+
+from fastapi import APIRouter, BackgroundTasks, Query
+
+from server.annotations.routes import CameraPath, FramePath, get_annotated_sequence
+from server.annotations.schemas import Hand
+from server.annotations.service import check_place, check_points
+from server.database import DatabaseDep
+from server.database.paging import Page
+from server.errors import error_responses
+from server.suggestions import service
+from server.suggestions.schemas import FitRequest, Suggestion
+from server.suggestions.shelf import ShelfDep
+
+router = APIRouter(
+    prefix="/sequences/{sequence_id}/suggestions/{camera}/{frame}",
+    tags=["suggestions"],
+    responses=error_responses(404),
+)
+
+TrackQuery = Annotated[
+    uuid.UUID | None, Query(description="The track to look at; the recording's best one when not given.")
+]
+
+
+@router.get("")
+def list_suggestions(
+    sequence_id: uuid.UUID,
+    camera: CameraPath,
+    frame: FramePath,
+    database: DatabaseDep,
+    shelf: ShelfDep,
+    later: BackgroundTasks,
+    track_id: TrackQuery = None,
+) -> Page[Suggestion]:
+    """The hands of an image as a track has them; empty where the track was lost, or where there is none."""
+    with database.reading() as session:
+        sequence = get_annotated_sequence(sequence_id, session)
+        place = check_place(sequence, camera, frame, "right")
+        recorded = service.Recorded.of(sequence)
+        chosen = service.choose_track(session, sequence_id, track_id)
+    later.add_task(service.warm_up, shelf, recorded, place)
+    items = [] if chosen is None else service.suggest_from_track(shelf, recorded, chosen, place)
+    return Page(items=items, next_cursor=None)
+
+
+@router.post("/{hand}/fit")
+def fit_suggestion(
+    sequence_id: uuid.UUID,
+    camera: CameraPath,
+    frame: FramePath,
+    hand: Hand,
+    body: FitRequest,
+    database: DatabaseDep,
+    shelf: ShelfDep,
+) -> Suggestion:
+    """A hand model fitted to the joints placed so far (at least 4), and to the depth image where there is one.
+
+    Nothing is stored.
+    """
+    with database.reading() as session:
+        sequence = get_annotated_sequence(sequence_id, session)
+        place = check_place(sequence, camera, frame, hand)
+        points = check_points(sequence, place, body.points)
+        recorded = service.Recorded.of(sequence)
+        chosen = service.choose_track(session, sequence_id, None)
+    return service.suggest_by_fit(shelf, recorded, chosen, place, points)

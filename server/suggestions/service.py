@@ -1,0 +1,137 @@
+"""Where a track, or a model fitted to the joints placed so far, would have the joints of a hand."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Sequence as Many
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from sqlalchemy.orm import Session
+
+from server.annotations.service import Place
+from server.errors import InvalidError, NotFoundError
+from server.sequences.models import SequenceRow
+from server.suggestions.schemas import SuggestedJoint, Suggestion
+from server.suggestions.shelf import Shelf
+from server.tracks.facts import find_best_tracks
+from server.tracks.models import TrackRow
+from server.tracks.service import get_track
+
+if TYPE_CHECKING:
+    from tracker import ArticulatedModel, QuickFit
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """The recording that is annotated, as suggestions need it."""
+
+    id: uuid.UUID
+    content_key: str
+
+    @classmethod
+    def of(cls, row: SequenceRow) -> Recorded:
+        return cls(row.id, row.content_key)
+
+
+@dataclass(frozen=True)
+class ChosenTrack:
+    """The track that suggestions come from."""
+
+    id: uuid.UUID
+    name: str
+
+
+def choose_track(session: Session, sequence_id: uuid.UUID, track_id: uuid.UUID | None) -> ChosenTrack | None:
+    """The track asked for, or the best of the recording, if it has any."""
+    if track_id is None:
+        best = find_best_tracks(session, [sequence_id]).get(sequence_id)
+        if best is None:
+            return None
+        track_id = best["best_track"]["id"]
+    row: TrackRow = get_track(session, track_id)
+    if row.sequence_id != sequence_id:
+        raise NotFoundError(f"The track {track_id} is of another recording.")
+    return ChosenTrack(row.id, row.name)
+
+
+def suggest_from_track(shelf: Shelf, recorded: Recorded, chosen: ChosenTrack, place: Place) -> list[Suggestion]:
+    """The hands of a track in one image; none where the track was lost or does not reach. `place.hand` is ignored."""
+    from tracker import view_track_hands
+
+    track, rows = shelf.track(chosen.id)
+    row = rows.get(place.frame)
+    if row is None or track.status[row] == "lost":
+        return []
+    camera = shelf.recording(recorded.id, recorded.content_key).camera(place.camera)
+    found = view_track_hands(track, row, camera)
+    return [
+        Suggestion(
+            source="track",
+            label=chosen.name,
+            camera=place.camera,
+            frame=place.frame,
+            hand="right" if hand == "right" else "left",
+            track_id=chosen.id,
+            model=next(m.name for n, m in zip(track.setup.names, track.setup.models, strict=True) if n == hand),
+            joints=_describe(view, camera.width, camera.height),
+        )
+        for hand, view in found.items()
+    ]
+
+
+def suggest_by_fit(
+    shelf: Shelf, recorded: Recorded, chosen: ChosenTrack | None, place: Place, points: Many[Many[float]]
+) -> Suggestion:
+    """A hand fitted to its placed joints; of the recording's own size where a track found that out."""
+    from tracker import MIN_FIT_JOINTS, fit_marked
+
+    placed = sum(1 for _, _, v in points if v)
+    if placed < MIN_FIT_JOINTS:
+        raise InvalidError(f"{placed} joints are placed; a model fit needs {MIN_FIT_JOINTS} or more. Place some more.")
+    camera = shelf.recording(recorded.id, recorded.content_key).camera(place.camera)
+    frame = shelf.frame(recorded.id, recorded.content_key, place.camera, place.frame) if camera.has_depth else None
+    model = _find_model(shelf, chosen, place.hand)
+    fit = fit_marked(model, np.array(points, dtype=np.float64), camera, frame)
+    return Suggestion(
+        source="fit",
+        label=f"model fit of {placed} joints",
+        camera=place.camera,
+        frame=place.frame,
+        hand="right" if place.hand == "right" else "left",
+        track_id=None,
+        model=model.name,
+        joints=_describe(fit, camera.width, camera.height),
+    )
+
+
+def warm_up(shelf: Shelf, recorded: Recorded, place: Place) -> None:
+    """Fit a hand once that nobody asked for: the kernels are loaded by then, when somebody waits."""
+    if shelf.is_warm:
+        return
+    shelf.is_warm = True
+    camera = shelf.recording(recorded.id, recorded.content_key).camera(place.camera)
+    middle = (camera.width / 2, camera.height / 2)
+    step = camera.height / 40
+    points = [[middle[0] + step * (joint % 5), middle[1] - step * (joint // 5), 2] for joint in range(21)]
+    suggest_by_fit(shelf, recorded, None, place, points)
+
+
+def _find_model(shelf: Shelf, chosen: ChosenTrack | None, hand: str) -> ArticulatedModel:
+    from tracker import default_hand
+
+    if chosen is not None:
+        setup = shelf.track(chosen.id)[0].setup
+        if hand in setup.names:
+            return setup.models[setup.names.index(hand)]
+    return default_hand(hand)
+
+
+def _describe(view: QuickFit, width: int, height: int) -> list[SuggestedJoint | None]:
+    return [
+        SuggestedJoint(px=(round(float(x), 2), round(float(y), 2)), guess="occluded" if hidden else "visible")
+        if -0.5 <= x < width - 0.5 and -0.5 <= y < height - 0.5
+        else None
+        for (x, y), hidden in zip(view.joints, view.is_hidden, strict=True)
+    ]

@@ -1,0 +1,75 @@
+"""Recordings, tracks and the last frames that suggestions were asked for, kept open: an annotator waits for nothing."""
+
+from __future__ import annotations
+
+import threading
+import uuid
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from server.storage import Storage
+
+if TYPE_CHECKING:
+    from tracker import Frame, Sequence, Track
+
+Thing = TypeVar("Thing")
+
+KEPT = 8
+"""Recordings, tracks and frames together."""
+
+
+class Shelf:
+    """What was opened last."""
+
+    def __init__(self, storage: Storage) -> None:
+        self._storage = storage
+        self._things: OrderedDict[Hashable, Any] = OrderedDict()
+        self._lock = threading.Lock()
+        self.is_warm = False
+
+    def recording(self, sequence_id: uuid.UUID, content_key: str) -> Sequence:
+        from tracker import load_sequence
+
+        folder = self._storage.folder("sequences", sequence_id)
+        return self._get((sequence_id, content_key), lambda: load_sequence(folder))
+
+    def frame(self, sequence_id: uuid.UUID, content_key: str, camera: str, frame: int) -> Frame:
+        recording = self.recording(sequence_id, content_key)
+        return self._get((sequence_id, content_key, camera, frame), lambda: recording.frame(frame, camera))
+
+    def track(self, track_id: uuid.UUID) -> tuple[Track, dict[int, int]]:
+        """A track and the row of each of its frames."""
+        return self._get(track_id, lambda: self._load_track(track_id))
+
+    def _load_track(self, track_id: uuid.UUID) -> tuple[Track, dict[int, int]]:
+        from tracker import load_track
+
+        track = load_track(self._storage.folder("tracks", track_id))
+        return track, {int(frame): row for row, frame in enumerate(track.frame)}
+
+    def _get(self, key: Hashable, load: Callable[[], Thing]) -> Thing:
+        with self._lock:
+            if key in self._things:
+                self._things.move_to_end(key)
+                return self._things[key]
+        loaded = load()
+        with self._lock:
+            self._things[key] = loaded
+            while len(self._things) > KEPT:
+                self._things.popitem(last=False)
+        return loaded
+
+
+def get_shelf(connection: HTTPConnection) -> Shelf:
+    """The app's."""
+    state = connection.app.state
+    if not hasattr(state, "suggestion_shelf"):
+        state.suggestion_shelf = Shelf(state.storage)
+    return state.suggestion_shelf
+
+
+ShelfDep = Annotated[Shelf, Depends(get_shelf)]

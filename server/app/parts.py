@@ -19,8 +19,8 @@ from server.jobs import routes as jobs
 from server.sequences import frame_routes
 from server.sequences import routes as sequences
 from server.sequences.facts import FactFinder
-from server.suggestions import triangulation_routes
 from server.suggestions import routes as suggestions
+from server.suggestions import triangulation_routes
 from server.tracks import routes as tracks
 from server.tracks.facts import find_best_tracks
 from server.viewer import routes as viewer

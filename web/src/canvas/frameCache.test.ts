@@ -38,3 +38,38 @@ test("calls off what nobody wants any more", async () => {
   await settled();
   expect(aborted.sort()).toEqual(["a", "c", "d"]);
 });
+
+test("several panes look at once: nobody calls off another's picture, and everybody's first comes before a second", async () => {
+  const loaded: string[] = [];
+  const aborted: string[] = [];
+  const finish: (() => void)[] = [];
+  const cache = createFrameCache<string>(
+    (address, signal) => {
+      loaded.push(address);
+      signal.addEventListener("abort", () => aborted.push(address));
+      return new Promise((resolve) => finish.push(() => resolve(address)));
+    },
+    { capacity: 100, weigh: () => 1 },
+  );
+  const firsts = ["a", "b", "c"].map((pane) => cache.focus([`${pane}0`, `${pane}1`, `${pane}2`], pane));
+  while (loaded.length < 9) {
+    finish.splice(0).forEach((done) => done());
+    await settled();
+  }
+  expect(await Promise.all(firsts)).toEqual(["a0", "b0", "c0"]);
+  expect(loaded.indexOf("c0")).toBeLessThan(loaded.indexOf("b2"));
+  expect(aborted).toEqual([]);
+  cache.focus(["d0"], "a").catch(() => undefined);
+  cache.leave("a");
+  expect(aborted).toEqual(["d0"]);
+});
+
+test("prefetching stops where it would push out what is wanted sooner", async () => {
+  const loaded: string[] = [];
+  const cache = createFrameCache((address) => (loaded.push(address), Promise.resolve(address)), { capacity: 4, weigh: () => 1 });
+  await cache.focus(["a", "b", "c", "d", "e", "f", "g"]);
+  for (let k = 0; k < 5; k += 1) await settled();
+  expect(cache.peek("a")).toBe("a");
+  expect(cache.peek("b")).toBe("b");
+  expect(loaded.length).toBeLessThanOrEqual(7);
+});

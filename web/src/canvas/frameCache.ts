@@ -3,8 +3,13 @@
 export interface FrameCache<T> {
   /** The picture if it is here. */
   peek(address: string): T | undefined;
-  /** Load these, the first ones first; what is under way for other addresses is called off. Resolves with the first. */
-  focus(addresses: readonly string[]): Promise<T>;
+  /**
+   * Load these, the first ones first; what is under way and nobody wants any more is called off. Resolves with the first.
+   * Several can look at once, each under its own name; the first picture of everybody comes before anybody's second.
+   */
+  focus(addresses: readonly string[], viewer?: string): Promise<T>;
+  /** A viewer that looks no more. */
+  leave(viewer: string): void;
   clear(): void;
 }
 
@@ -24,7 +29,19 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
   const held = new Map<string, T>();
   let weight = 0;
   const flying = new Map<string, { controller: AbortController; promise: Promise<T> }>();
+  const viewers = new Map<string, readonly string[]>();
+  /** What all viewers want, by turns: everybody's first, everybody's second, ... */
   let wanted: readonly string[] = [];
+  let firsts: ReadonlySet<string> = new Set();
+
+  function merge(): void {
+    const lists = [...viewers.values()];
+    const longest = Math.max(0, ...lists.map((list) => list.length));
+    const order = Array.from({ length: longest }, (_, k) => lists.flatMap((list) => list[k] ?? []));
+    wanted = [...new Set(order.flat())];
+    firsts = new Set(order[0] ?? []);
+    for (const [address, { controller }] of flying) if (!wanted.includes(address)) controller.abort();
+  }
 
   function keep(address: string, picture: T): void {
     if (held.delete(address)) weight -= weigh(picture);
@@ -32,7 +49,7 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
     weight += weigh(picture);
     for (const [oldest, old] of held) {
       if (weight <= capacity) break;
-      if (oldest === wanted[0] || oldest === address) continue;
+      if (firsts.has(oldest) || oldest === address) continue;
       held.delete(oldest);
       weight -= weigh(old);
       dispose(old);
@@ -58,9 +75,20 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
   }
 
   function startNext(): void {
+    let room = capacity;
+    let heaviest = 0;
     for (const address of wanted) {
       if (flying.size >= PARALLEL) return;
-      if (!held.has(address) && !flying.has(address)) void fetchOne(address);
+      const here = held.get(address);
+      if (here !== undefined) {
+        heaviest = Math.max(heaviest, weigh(here));
+        room -= weigh(here);
+      } else {
+        // What would only push out another one that is wanted sooner is left for later.
+        if (room < heaviest && !firsts.has(address)) return;
+        room -= heaviest;
+        if (!flying.has(address)) void fetchOne(address);
+      }
     }
   }
 
@@ -68,20 +96,24 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
     peek(address) {
       return held.get(address);
     },
-    focus(addresses) {
-      const before = wanted;
-      wanted = addresses;
-      for (const [address, { controller }] of flying) if (!wanted.includes(address)) controller.abort();
-      const [first] = wanted;
+    focus(addresses, viewer = "") {
+      viewers.set(viewer, addresses);
+      merge();
+      const [first] = addresses;
       if (first === undefined) return Promise.reject(new Error("No address to load."));
       const here = held.get(first);
       if (here !== undefined) keep(first, here);
       const promise = here !== undefined ? Promise.resolve(here) : fetchOne(first);
-      if (before !== wanted) startNext();
+      startNext();
       return promise;
     },
+    leave(viewer) {
+      viewers.delete(viewer);
+      merge();
+    },
     clear() {
-      wanted = [];
+      viewers.clear();
+      merge();
       flying.forEach(({ controller }) => controller.abort());
       held.forEach(dispose);
       held.clear();

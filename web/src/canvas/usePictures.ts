@@ -1,4 +1,4 @@
-import { useEffect, useMemo, useRef, useState } from "react";
+import { useEffect, useId, useMemo, useRef, useState } from "react";
 import { fetchBitmap, fetchBytes } from "../api/client";
 import { colorUrl, depthUrl } from "../api/recordings";
 import type { Camera, Recording } from "../api/types";
@@ -32,6 +32,7 @@ interface Loaded<T> {
 /** The picture of one address, the neighbours on their way; the last one stays until the next is here. */
 function useCached<T>(cache: FrameCache<T>, addresses: readonly string[]): Loaded<T> {
   const [first] = addresses;
+  const viewer = useId();
   const shown = useRef<{ address: string; picture: T } | null>(null);
   const [, setArrived] = useState<unknown>(null);
   const [failure, setFailure] = useState<{ address: string; error: Error } | null>(null);
@@ -40,17 +41,18 @@ function useCached<T>(cache: FrameCache<T>, addresses: readonly string[]): Loade
   const list = addresses.join("\n");
 
   useEffect(() => {
-    if (!list) return;
+    if (!list) return cache.leave(viewer);
     const wanted = list.split("\n");
     let isGone = false;
-    cache.focus(wanted).then(
+    cache.focus(wanted, viewer).then(
       (picture) => !isGone && setArrived(picture),
       (error: Error) => !isGone && error.name !== "AbortError" && setFailure({ address: wanted[0] ?? "", error }),
     );
     return () => {
       isGone = true;
     };
-  }, [cache, list]);
+  }, [cache, list, viewer]);
+  useEffect(() => () => cache.leave(viewer), [cache, viewer]);
 
   const picture = first === undefined ? null : (shown.current?.picture ?? null);
   return {
@@ -75,13 +77,16 @@ interface Wanted {
   palette?: Palette;
 }
 
-/** Colour and depth of one frame of one camera. `range` null chooses one from the first depth image seen. */
-export function usePictures(recording: Recording, camera: Camera, frame: number, wanted: Wanted, range: DepthRange | null): Pictures {
+/**
+ * Colour and depth of one frame of one camera. `range` null chooses one from the first depth image seen; `ahead` frames
+ * are loaded in the direction of travel.
+ */
+export function usePictures(recording: Recording, camera: Camera, frame: number, wanted: Wanted, range: DepthRange | null, ahead = 8): Pictures {
   const travel = useRef<{ frame: number; direction: 1 | -1 }>({ frame, direction: 1 });
   if (travel.current.frame !== frame) travel.current = { frame, direction: frame > travel.current.frame ? 1 : -1 };
   const { direction } = travel.current;
 
-  const frames = useMemo(() => framesToLoad(frame, direction, recording.frame_count), [frame, direction, recording.frame_count]);
+  const frames = useMemo(() => framesToLoad(frame, direction, recording.frame_count, ahead), [frame, direction, recording.frame_count, ahead]);
   const colors = wanted.color && camera.has_color ? frames.map((index) => colorUrl(recording, camera.id, index)) : [];
   const depths = wanted.depth && camera.has_depth ? frames.map((index) => depthUrl(recording, camera.id, index)) : [];
   const color = useCached(colorCache, colors);

@@ -77,6 +77,14 @@ export const KEYMAP = [
     ["drag.cancel", "Call off a drag; without one: leave the picture for the tools", "Esc"],
     ["save.now", "Send what waits at once", "Ctrl+S"],
   ]),
+  ...table("annotate", "Several cameras", [
+    ["views.triangulate", "Triangulate what is marked in two cameras, and suggest it in the others", "T"],
+    ["views.acceptAll", "Accept all suggestions in this frame", "Shift+T"],
+    ["views.epipolar", "Epipolar lines on or off", "Y"],
+    ["views.look", "Look at the joint in every picture, then at the hand, then at all", "L"],
+    ["views.large", "Enlarge this camera's picture, or not any more", "P"],
+    ["views.worst", "Mark that is farthest off; again: the next one", "U"],
+  ]),
   ...table("track", "Track", [
     ["track.play", "Play or pause", "Space"],
     ["track.next", "Next frame", "F", "Right"],

@@ -9,3 +9,28 @@ export type PointerStore = Store<Point | null>;
 export const createPointerStore = (): PointerStore => createStore<Point | null>(null);
 
 export const usePointer = (pointer: PointerStore): Point | null => useSyncExternalStore((tell) => pointer.watch(tell), pointer.get);
+
+/** The pointer in one of several cameras' pictures. */
+export interface Hover {
+  readonly camera: string;
+  readonly pixel: Point;
+}
+
+export type HoverStore = Store<Hover | null>;
+
+export const createHoverStore = (): HoverStore => createStore<Hover | null>(null);
+
+export const useHover = (hover: HoverStore): Hover | null => useSyncExternalStore(hover.watch, hover.get);
+
+/** The pointer as the pictures of one camera know it. */
+export function pointerOn(hover: HoverStore, camera: string): PointerStore {
+  const pixelOf = (value: Hover | null): Point | null => (value?.camera === camera ? value.pixel : null);
+  return {
+    get: () => pixelOf(hover.get()),
+    set(pixel, origin) {
+      if (pixel) hover.set({ camera, pixel }, origin);
+      else if (hover.get()?.camera === camera) hover.set(null, origin);
+    },
+    watch: (watcher) => hover.watch((now, before, origin) => watcher(pixelOf(now), pixelOf(before), origin)),
+  };
+}

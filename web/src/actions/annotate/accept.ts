@@ -21,12 +21,17 @@ export const acceptHand: Action<SuggestionsState> = (state, suggestions) => {
 };
 
 /** Take over what is suggested for both hands of the image: one step for undo, one save a hand. */
-export const acceptFrame: Action<SuggestionsState> = (state, suggestions) => {
+export const acceptFrame: Action<SuggestionsState> = (state, suggestions) => acceptAll(state, { suggestions, cameras: [state.camera] });
+
+/** The same in the images of several cameras. */
+export const acceptAll: Action<{ suggestions: SuggestionsState; cameras: readonly string[] }> = (state, { suggestions, cameras }) => {
   const poses = { ...state.poses };
-  for (const hand of HANDS) {
-    const place = { ...activeKey(state), hand };
-    const open = openJointsAt(suggestions, state, place);
-    if (open.some((joint) => joint !== null)) poses[keyText(place)] = withAccepted(poses[keyText(place)], open);
+  for (const camera of cameras) {
+    for (const hand of HANDS) {
+      const place = { camera, frame: state.frame, hand };
+      const open = openJointsAt(suggestions, state, place);
+      if (open.some((joint) => joint !== null)) poses[keyText(place)] = withAccepted(poses[keyText(place)], open);
+    }
   }
   if (Object.keys(poses).every((key) => poses[key] === state.poses[key])) return state;
   const next = { ...state, poses, draft: null };

@@ -4,6 +4,7 @@ import type { Session } from "../../state/session";
 import { AnnotatingContext } from "./annotating";
 import classes from "./Annotator.module.css";
 import { FrameBar } from "./FrameBar";
+import { CamerasProvider } from "./CamerasProvider";
 import { BARS, CARDS } from "./mounts";
 import { Panes } from "./Panes";
 import { SidePanel } from "./SidePanel";
@@ -29,26 +30,28 @@ export function Annotator({ recording, session }: AnnotatorProps) {
 
   return (
     <AnnotatingContext value={annotating}>
-      <div className={classes.page}>
-        <FrameBar frameField={frameField} />
-        {BARS.map((Bar, index) => (
-          <Bar key={index} />
-        ))}
-        <div className={classes.middle} ref={middle}>
-          <ToolRail />
-          <div className={classes.panes}>
-            <Panes />
-            <div className={classes.corner}>
-              {CARDS.map((Card, index) => (
-                <Card key={index} />
-              ))}
+      <CamerasProvider>
+        <div className={classes.page}>
+          <FrameBar frameField={frameField} />
+          {BARS.map((Bar, index) => (
+            <Bar key={index} />
+          ))}
+          <div className={classes.middle} ref={middle}>
+            <ToolRail />
+            <div className={classes.panes}>
+              <Panes />
+              <div className={classes.corner}>
+                {CARDS.map((Card, index) => (
+                  <Card key={index} />
+                ))}
+              </div>
             </div>
+            <SidePanel />
           </div>
-          <SidePanel />
+          <Timeline />
+          <StatusLine />
         </div>
-        <Timeline />
-        <StatusLine />
-      </div>
+      </CamerasProvider>
     </AnnotatingContext>
   );
 }

@@ -7,6 +7,7 @@ import { useHint } from "../../state/keys";
 import { HandMark } from "../parts/HandBadge";
 import { useAnnotating } from "./annotating";
 import classes from "./JointsPanel.module.css";
+import { JointError, ViewErrors } from "./ViewErrors";
 
 const STATUS: Record<JointStatus, { text: string; help: string }> = {
   unset: { text: "", help: "not marked yet" },
@@ -69,6 +70,7 @@ export function JointsPanel() {
             >
               <StatusMark status={status} color={jointColor(joint)} />
               <span className="one-line">{jointLabel(joint)}</span>
+              <JointError joint={joint} />
               <Text span size="xs" className={classes.status}>
                 {isActive && status === "unset" ? "next" : STATUS[status].text}
               </Text>
@@ -76,6 +78,7 @@ export function JointsPanel() {
           );
         })}
       </ScrollArea>
+      <ViewErrors />
     </div>
   );
 }

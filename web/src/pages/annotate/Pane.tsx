@@ -1,13 +1,16 @@
 import { dragHand, dragJoint, endDrag } from "../../actions/annotate/move";
 import { placeIn } from "../../actions/annotate/place";
-import { selectCamera, selectJoint } from "../../actions/annotate/select";
+import { activateCamera } from "../../actions/annotate/cameras";
+import { selectJoint } from "../../actions/annotate/select";
 import { turnHand } from "../../actions/annotate/turn";
 import { cycleVisibility } from "../../actions/annotate/visibility";
+import { useMemo, type ReactNode } from "react";
 import type { Camera } from "../../api/types";
 import { jointAt } from "../../canvas/hit";
 import { ImagePane, type PaneLayer } from "../../canvas/ImagePane";
 import { jointLabel } from "../../model/joints";
 import { emptyPose, keyText } from "../../model/pose";
+import { pointerOn } from "../../state/pointer";
 import { useAnnotating } from "./annotating";
 import classes from "./Annotator.module.css";
 import { LAYERS } from "./mounts";
@@ -18,14 +21,17 @@ interface PaneProps {
   label: string;
   layers: readonly PaneLayer[];
   isBusy: boolean;
+  /** In place of the label in the corner. */
+  overlay?: ReactNode;
 }
 
 /** One picture of one camera, to be annotated; a gesture on a camera that is not the active one makes it so first. */
-export function Pane({ camera, label, layers, isBusy }: PaneProps) {
-  const { state, pose, options, viewOf, setView, pointer, isMagnified, act, run } = useAnnotating();
+export function Pane({ camera, label, layers, isBusy, overlay }: PaneProps) {
+  const { state, pose, options, viewOf, setView, hover, isMagnified, act, run } = useAnnotating();
   const isActive = camera.id === state.camera;
   const shown = isActive ? pose : (state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })] ?? emptyPose());
-  const here = (): void => act(selectCamera, camera.id);
+  const here = (): void => act(activateCamera, camera.id);
+  const pointer = useMemo(() => pointerOn(hover, camera.id), [hover, camera.id]);
   return (
     <ImagePane
       label={`${label} of frame ${state.frame}, ${camera.id}. Next click places ${jointLabel(state.joint)}.`}
@@ -66,7 +72,7 @@ export function Pane({ camera, label, layers, isBusy }: PaneProps) {
         here();
         act(cycleVisibility, joint);
       }}
-      overlay={<span className={classes.paneLabel}>{label}</span>}
+      overlay={overlay ?? <span className={classes.paneLabel}>{label}</span>}
     >
       {(view) => LAYERS.map((Layer, index) => <Layer key={index} view={view} camera={camera} />)}
     </ImagePane>

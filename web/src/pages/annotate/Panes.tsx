@@ -1,9 +1,13 @@
 import { useAnnotating } from "./annotating";
+import { CameraGrid } from "./CameraGrid";
+import { useCameras } from "./cameras";
 import { Pane } from "./Pane";
 
-/** The pictures of the active camera in the chosen arrangement. */
+/** The pictures of the active camera in the chosen arrangement, or those of several cameras. */
 export function Panes() {
   const { camera, pictures, arrangement } = useAnnotating();
+  const { shown } = useCameras();
+  if (shown.length > 1) return <CameraGrid />;
   const color = { picture: pictures.color, opacity: 1 };
   const depth = { picture: pictures.depth, opacity: 1 };
   const show = (label: string, layers: readonly (typeof color)[]) => (

@@ -7,7 +7,7 @@ import type { Pictures } from "../../canvas/usePictures";
 import type { View } from "../../canvas/view";
 import type { Pose } from "../../model/pose";
 import type { Action, AnnotatorState } from "../../state/annotator";
-import type { PointerStore } from "../../state/pointer";
+import type { HoverStore, PointerStore } from "../../state/pointer";
 import type { SaveStatus } from "../../state/saveQueue";
 import type { Session } from "../../state/session";
 import type { Arrangement, ViewOptions } from "../../state/viewOptions";
@@ -35,7 +35,10 @@ export interface Annotating {
   /** Null fits the image. */
   viewOf(camera: string): View | null;
   setView(camera: string, view: View | null): void;
+  /** In the pictures of the active camera. */
   readonly pointer: PointerStore;
+  /** In whichever camera's pictures it is. */
+  readonly hover: HoverStore;
   readonly isMagnified: boolean;
   readonly isPlaying: boolean;
   /** Another version of the active hand to compare with, drawn as a ghost. */

@@ -7,11 +7,14 @@ import type { ComponentType } from "react";
 import type { Camera } from "../../api/types";
 import type { View } from "../../canvas/view";
 import type { FrameMarks } from "../../model/frameMarks";
+import { CamerasTool, CameraTools } from "./CamerasTool";
 import { ConflictCards } from "./ConflictCards";
+import { EpipolarLayer } from "./EpipolarLayer";
 import { HandsLayer } from "./HandsLayer";
 import { JointsPanel } from "./JointsPanel";
 import { PictureFailure } from "./PictureFailure";
 import { RefusalCards } from "./RefusalCards";
+import { SuggestionsLayer } from "./SuggestionsLayer";
 
 /** Something drawn on a picture (Konva), in screen coordinates of the view. */
 export interface LayerProps {
@@ -26,7 +29,7 @@ export interface Panel {
 }
 
 /** Drawn on every picture, in order, the last one on top. */
-export const LAYERS: readonly ComponentType<LayerProps>[] = [HandsLayer];
+export const LAYERS: readonly ComponentType<LayerProps>[] = [EpipolarLayer, SuggestionsLayer, HandsLayer];
 
 /** Tabs of the panel on the right. */
 export const PANELS: readonly Panel[] = [{ id: "joints", label: "Joints", Component: JointsPanel }];
@@ -38,10 +41,10 @@ export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, Pic
 export const BARS: readonly ComponentType[] = [];
 
 /** Buttons at the end of the frame bar. */
-export const FRAME_TOOLS: readonly ComponentType[] = [];
+export const FRAME_TOOLS: readonly ComponentType[] = [CamerasTool];
 
 /** Buttons at the end of the tool rail. */
-export const TOOLS: readonly ComponentType[] = [];
+export const TOOLS: readonly ComponentType[] = [CameraTools];
 
 /** Hooks that say which frames the timeline has to mark. */
 export const MARKS: readonly (() => FrameMarks)[] = [];

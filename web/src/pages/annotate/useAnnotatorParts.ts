@@ -13,7 +13,7 @@ import { KEYMAP } from "../../model/keymap";
 import type { Pose } from "../../model/pose";
 import { activePose, type Action } from "../../state/annotator";
 import { keepPlace } from "../../state/lastPlace";
-import { createPointerStore } from "../../state/pointer";
+import { createHoverStore, pointerOn } from "../../state/pointer";
 import type { Session } from "../../state/session";
 import { arrangementFor, arrangementsOf, clampFactor, useViewOptions } from "../../state/viewOptions";
 import type { Actions, Annotating } from "./annotating";
@@ -35,11 +35,12 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
   const [isMagnified, setMagnified] = useState(false);
   const [preview, setPreview] = useState<Pose | null>(null);
   const [lock, setLock] = useState<string | null>(null);
-  const [pointer] = useState(createPointerStore);
+  const [hover] = useState(createHoverStore);
   const [, setAddress] = useSearchParams();
 
   const camera = recording.cameras.find((one) => one.id === state.camera) ?? recording.cameras[0];
   if (!camera) throw new Error("This recording has no camera.");
+  const pointer = useMemo(() => pointerOn(hover, camera.id), [hover, camera.id]);
   const arrangement = arrangementFor(camera, options.arrangement);
   // Depth is fetched whenever there is any: the value under the cursor is wanted beside the colour image, too.
   const pictures = usePictures(recording, camera, state.frame, { color: arrangement !== "depth", depth: camera.has_depth }, range);
@@ -63,7 +64,8 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
 
   useEffect(() => {
     const timer = setTimeout(() => {
-      const address = new URLSearchParams({ camera: state.camera, frame: String(state.frame), hand: state.hand });
+      const address = new URLSearchParams(window.location.search);
+      for (const [name, value] of Object.entries({ camera: state.camera, frame: String(state.frame), hand: state.hand })) address.set(name, value);
       setAddress(address, { replace: true });
       keepPlace(`/recordings/${recording.id}/annotate?${address}`);
     }, 120);
@@ -155,6 +157,7 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     viewOf: (id) => views[id] ?? null,
     setView,
     pointer,
+    hover,
     isMagnified,
     isPlaying,
     preview,

@@ -1,0 +1,81 @@
+import { useLocalStorage } from "@mantine/hooks";
+import { notifications } from "@mantine/notifications";
+import { useCallback, useMemo, useRef, useState, type ReactNode } from "react";
+import { acceptAll } from "../../actions/annotate/accept";
+import type { Size } from "../../canvas/view";
+import { jointLabel } from "../../model/joints";
+import { lookAt } from "../../model/look";
+import { keyText } from "../../model/pose";
+import { suggestViews, worstMarks } from "../../model/triangulated";
+import { suggest } from "../../state/suggestions";
+import { useShownCameras } from "../../state/shownCameras";
+import { useActions, useAnnotating } from "./annotating";
+import { CamerasContext } from "./cameras";
+import { useTriangulation } from "./useTriangulation";
+
+/** Several cameras of one moment: which are shown, what their marks say together, and the keys for it. */
+export function CamerasProvider({ children }: { children: ReactNode }) {
+  const { recording, session, state, act, setView } = useAnnotating();
+  const [shown, setShown] = useShownCameras(recording, state.camera);
+  const [large, setLarge] = useState<string | null>(null);
+  const [areLinesShown, setLinesShown] = useLocalStorage({ key: "handloom/epipolar", defaultValue: true, getInitialValueInEffect: false });
+  const { joints, fetchNow } = useTriangulation();
+  const sizes = useRef(new Map<string, Size>());
+  const tellSize = useCallback((camera: string, size: Size) => void sizes.current.set(camera, size), []);
+  const looked = useRef({ place: "", turn: 0 });
+  const visited = useRef({ marks: "", next: 0 });
+
+  const triangulate = async (): Promise<void> => {
+    if (recording.cameras.length < 2) return void notifications.show({ message: "This recording has one camera: there is nothing to triangulate." });
+    try {
+      const answer = await fetchNow();
+      if (!answer) {
+        notifications.show({ message: `No joint of the ${state.hand} hand is marked in two cameras yet. Mark the ${jointLabel(state.joint)} in another camera, then press T again.` });
+        return;
+      }
+      const suggestions = suggestViews(answer.found, answer.views, state.frame, state.hand);
+      suggest(session.suggestions, suggestions);
+      const refusals = answer.found.joints.flatMap(({ refusal }, joint) => (refusal && !refusal.startsWith("Marked in") ? [`${jointLabel(joint)}: ${refusal}`] : []));
+      if (refusals.length > 0) notifications.show({ color: "yellow", message: refusals[0] + (refusals.length > 1 ? ` (and ${refusals.length - 1} more)` : "") });
+      else if (suggestions.length === 0) notifications.show({ message: "Every camera that sees these joints has them marked already." });
+    } catch (failure) {
+      notifications.show({ color: "red", message: `Not triangulated: ${failure instanceof Error ? failure.message : String(failure)} The marks are safe; press T to try again.` });
+    }
+  };
+
+  const look = (): void => {
+    const place = `${state.frame}|${state.hand}|${state.joint}`;
+    const turn = looked.current.place === place ? (looked.current.turn + 1) % 3 : 0;
+    looked.current = { place, turn };
+    for (const camera of shown) {
+      const size = sizes.current.get(camera.id);
+      const pose = state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })];
+      if (size) setView(camera.id, turn === 2 ? null : lookAt(camera, size, pose, joints, turn === 0 ? state.joint : null));
+    }
+  };
+
+  const goToWorst = (): void => {
+    const worst = worstMarks(joints ?? []);
+    if (worst.length === 0) return void notifications.show({ message: "No mark can be compared yet: mark a joint in two cameras." });
+    const marks = JSON.stringify([state.frame, state.hand, worst]);
+    const at = visited.current.marks === marks ? visited.current.next % worst.length : 0;
+    visited.current = { marks, next: at + 1 };
+    const mark = worst[at];
+    if (mark) act((now) => ({ ...now, camera: mark.camera, joint: mark.joint, draft: null }), undefined);
+  };
+
+  useActions({
+    "views.triangulate": () => void triangulate(),
+    "views.acceptAll": () => act(acceptAll, { suggestions: session.suggestions.get(), cameras: shown.map((camera) => camera.id) }),
+    "views.epipolar": () => setLinesShown(!areLinesShown),
+    "views.look": look,
+    "views.large": () => setLarge(large === state.camera ? null : state.camera),
+    "views.worst": goToWorst,
+  });
+
+  const value = useMemo(
+    () => ({ shown, setShown, large: shown.some((camera) => camera.id === large) ? large : null, setLarge, areLinesShown, setLinesShown, joints, tellSize }),
+    [shown, setShown, large, areLinesShown, setLinesShown, joints, tellSize],
+  );
+  return <CamerasContext value={value}>{children}</CamerasContext>;
+}

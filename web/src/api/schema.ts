@@ -692,6 +692,48 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sequences/{sequence_id}/suggestions/{camera}/{frame}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Suggestions
+         * @description The hands of an image as a track has them; empty where the track was lost, or where there is none.
+         */
+        get: operations["list_suggestions"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sequences/{sequence_id}/suggestions/{camera}/{frame}/{hand}/fit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Fit Suggestion
+         * @description A hand model fitted to the joints placed so far (at least 4), and to the depth image where there is one.
+         *
+         *     Nothing is stored.
+         */
+        post: operations["fit_suggestion"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sequences/{sequence_id}/triangulation": {
         parameters: {
             query?: never;
@@ -1658,6 +1700,21 @@ export interface components {
             std: number | null;
         };
         /**
+         * FitRequest
+         * @description The joints that somebody has placed so far.
+         */
+        FitRequest: {
+            /**
+             * Points
+             * @description [x, y, v] of each joint in the order of `/hand-skeleton`: px, the centre of the top-left pixel is (0, 0); v is 0 absent, 1 occluded, 2 visible.
+             */
+            points: [
+                number,
+                number,
+                0 | 1 | 2
+            ][];
+        };
+        /**
          * FrameEnergy
          * @description The energy of one frame's fit, iteration by iteration.
          */
@@ -2336,6 +2393,16 @@ export interface components {
              */
             next_cursor: string | null;
         };
+        /** Page[Suggestion] */
+        Page_Suggestion_: {
+            /** Items */
+            items: components["schemas"]["Suggestion"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
         /** Page[TrackOut] */
         Page_TrackOut_: {
             /** Items */
@@ -2547,6 +2614,67 @@ export interface components {
             mesh?: boolean | null;
             /** Skeleton */
             skeleton?: boolean | null;
+        };
+        /**
+         * SuggestedJoint
+         * @description Where a machine would have a joint. No visibility is stated, only guessed.
+         */
+        SuggestedJoint: {
+            /**
+             * Guess
+             * @enum {string}
+             */
+            guess: "occluded" | "visible";
+            /**
+             * Px
+             * @description px of the recorded image; the centre of the top-left pixel is (0, 0).
+             */
+            px: [
+                number,
+                number
+            ];
+        };
+        /**
+         * Suggestion
+         * @description What a machine proposes for one hand in one image. It is no annotation, and no request takes it for one.
+         */
+        Suggestion: {
+            /** Camera */
+            camera: string;
+            /** Frame */
+            frame: number;
+            /**
+             * Hand
+             * @enum {string}
+             */
+            hand: "right" | "left";
+            /**
+             * Joints
+             * @description In the order of `/hand-skeleton`; null where nothing is proposed, as outside the image.
+             */
+            joints: (components["schemas"]["SuggestedJoint"] | null)[];
+            /**
+             * Label
+             * @description For people, after "Suggested by".
+             * @example Track 2
+             * @example model fit of 7 joints
+             */
+            label: string;
+            /**
+             * Model
+             * @description The hand model behind it.
+             */
+            model: string;
+            /**
+             * Source
+             * @enum {string}
+             */
+            source: "triangulation" | "interpolation" | "fit" | "track";
+            /**
+             * Track Id
+             * @description The track it is of.
+             */
+            track_id: string | null;
         };
         /**
          * Term
@@ -5635,6 +5763,152 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["SequenceOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_suggestions: {
+        parameters: {
+            query?: {
+                /** @description The track to look at; the recording's best one when not given. */
+                track_id?: string | null;
+            };
+            header?: never;
+            path: {
+                sequence_id: string;
+                camera: string;
+                frame: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_Suggestion_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    fit_suggestion: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sequence_id: string;
+                camera: string;
+                frame: number;
+                hand: "right" | "left";
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FitRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Suggestion"];
                 };
             };
             /** @description Unauthorized */

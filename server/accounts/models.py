@@ -50,6 +50,18 @@ class LoginRow(Base):
     expires_at: Mapped[datetime]
 
 
+class PasswordCodeRow(Base):
+    """A one-time code with which somebody sets their password; an account has one at most."""
+
+    __tablename__ = "password_codes"
+    __table_args__ = (UniqueConstraint("account_id"), UniqueConstraint("secret_hash"))
+
+    account_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("accounts.id"))
+    secret_hash: Mapped[str] = mapped_column(String(64))
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+    expires_at: Mapped[datetime]
+
+
 class TokenRow(Base):
     """A script's way in; the secret is shown once and kept as its hash only."""
 

@@ -27,14 +27,20 @@ def parse_host(host: str) -> str | None:
     return parts.hostname if port_is_valid and not has_more else None
 
 
-def find_host_fault(headers: Headers, settings: Settings) -> str:
-    """Why a request to this host is refused; empty when it is not."""
+def find_host_fault(headers: Headers, settings: Settings, reached: str | None = None) -> str:
+    """Why a request to this host is refused; empty when it is not.
+
+    Args:
+        reached: The IP address that the connection came to. Where people log in, it may be named instead of a name: an
+            address cannot be made to point elsewhere.
+    """
     names = headers.getlist("host")
     if len(names) != 1:
         return f"The request has {len(names)} Host headers; needed one."
     name = parse_host(names[0])
     allowed = {*LOOPBACK_HOSTS, settings.host.lower(), *(host.lower() for host in settings.allowed_hosts)}
-    if name is None or name not in allowed:
+    is_reached = settings.is_login_needed and name is not None and name == reached
+    if not is_reached and (name is None or name not in allowed):
         return (
             f"The studio does not answer to the host {names[0]!r}. Open it at 127.0.0.1 or localhost, or name the host "
             "in HANDLOOM_ALLOWED_HOSTS."

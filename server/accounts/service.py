@@ -58,6 +58,16 @@ LeadAccount = Annotated[Account, Depends(require_lead)]
 AdminAccount = Annotated[Account, Depends(RequireRole("admin"))]
 
 
+def require_person(visitor: VisitorDep) -> Visitor:
+    """Dependency: a person, not a script. A stolen token must not make further tokens, nor people."""
+    if visitor.token_id is not None:
+        raise ForbiddenError("A token opens no account administration. Do it in a browser.")
+    return visitor
+
+
+PersonDep = Annotated[Visitor, Depends(require_person)]
+
+
 def get_current_account_id(visitor: VisitorDep) -> uuid.UUID:
     """The account's id, without a session: for routes that work longer than one transaction."""
     return visitor.account_id

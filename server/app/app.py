@@ -10,6 +10,7 @@ from fastapi import FastAPI
 from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 
+from server.accounts.tries import FailedTries
 from server.app.browser_app import BrowserApp
 from server.app.door import Door
 from server.app.error_handler import install_error_handler
@@ -41,6 +42,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         lifespan=_lifespan,
     )
     app.state.settings = settings
+    app.state.failed_tries = FailedTries()
     app.state.sequence_facts = SEQUENCE_FACTS
     install_error_handler(app)
     for router in ROUTERS:

@@ -32,6 +32,8 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "SAMEORIGIN",
     "Referrer-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), microphone=(), geolocation=(), payment=(), usb=()",
+    "X-Permitted-Cross-Domain-Policies": "none",
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cross-Origin-Resource-Policy": "same-origin",
 }
@@ -53,7 +55,8 @@ class Guard:
             await self.app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        fault = find_host_fault(headers, self.settings)
+        reached = (scope.get("server") or (None,))[0]
+        fault = find_host_fault(headers, self.settings, reached)
         if not fault and (scope["type"] == "websocket" or scope["method"] not in SAFE_METHODS):
             fault = find_origin_fault(headers, self.settings)
         if scope["type"] == "websocket":
@@ -72,6 +75,8 @@ class Guard:
                 answered = MutableHeaders(scope=message)
                 for name, value in HEADERS.items():
                     answered.setdefault(name, value)
+                if scope["path"].startswith("/api"):  # of what a person sees nothing stays in proxies and caches
+                    answered.setdefault("Cache-Control", "no-store")
             await send(message)
 
         if fault:

@@ -7,6 +7,7 @@ from contextlib import AbstractAsyncContextManager
 
 from fastapi import APIRouter, FastAPI
 
+from server.accounts import login_routes, people_routes, token_routes
 from server.accounts import routes as accounts
 from server.annotations import routes as annotations
 from server.annotations.service import find_annotated_frames
@@ -30,6 +31,9 @@ Lifespan = Callable[[FastAPI], AbstractAsyncContextManager[None]]
 ROUTERS: tuple[APIRouter, ...] = (
     health.router,
     accounts.router,
+    login_routes.router,
+    token_routes.router,
+    people_routes.router,
     hand_models.router,
     sequences.router,
     frame_routes.router,

@@ -8,7 +8,7 @@ import sys
 from server.cli import bench_server, demo, export_command, import_command, serve, worker_command
 from tracker import add_commands
 
-COMMANDS = (serve, worker_command, demo, import_command, export_command)
+COMMANDS = (serve, worker_command, demo, import_command, export_command, account_command)
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -36,11 +36,8 @@ def run(args: argparse.Namespace) -> int:
 
 def serve(settings: Settings, *, with_worker: bool) -> None:
     """Serve until SIGTERM or SIGINT; then end the worker and the viewer too."""
-    if not settings.is_loopback:
-        raise CommandError(
-            f"--host {settings.host}: the studio has no accounts yet, so whoever reaches it may do everything. Serve "
-            "it at 127.0.0.1 and reach it from elsewhere through a tunnel, such as `ssh -L 8000:127.0.0.1:8000 HOST`."
-        )
+    if settings.is_login_needed:
+        check_an_admin_can_log_in(settings)
     with listen(settings) as sock:
         from server.cli.studio import StudioServer
         from server.cli.supervisor import WorkerSupervisor
@@ -54,6 +51,21 @@ def serve(settings: Settings, *, with_worker: bool) -> None:
             # A second SIGINT after the server has stopped ends nothing but the waiting.
             with contextlib.suppress(KeyboardInterrupt):
                 StudioServer(settings, sock).run(sockets=[sock])
+
+
+def check_an_admin_can_log_in(settings: Settings) -> None:
+    """Refuse to open a port at which nobody could let anybody in."""
+    from server.accounts.logins import count_admins_who_can_log_in
+    from server.cli.open_studio import open_studio
+
+    with open_studio(settings) as studio, studio.database.reading() as session:
+        if count_admins_who_can_log_in(session) > 0:
+            return
+    where = "HANDLOOM_LOGIN=required" if settings.is_loopback else f"--host {settings.host}"
+    raise CommandError(
+        f"{where}: people must log in here, and no admin can yet. Add one first: `handloom account add NAME --role "
+        "admin` asks for a password. Or serve at 127.0.0.1 alone, where no login is needed."
+    )
 
 
 @contextlib.contextmanager

@@ -19,7 +19,7 @@ router = APIRouter(
     responses=error_responses(404),
 )
 
-IMMUTABLE = "public, max-age=31536000, immutable"
+IMMUTABLE = "private, max-age=31536000, immutable"
 Distance = Annotated[float | None, Query(ge=0, le=1000, allow_inf_nan=False, description="m")]
 
 

@@ -20,7 +20,7 @@ from server.tracks.schemas import FrameEnergy, TrackFrames, TrackJoints, TrackOu
 
 router = APIRouter(tags=["tracks"], responses=error_responses())
 
-IMMUTABLE = "public, max-age=31536000, immutable"
+IMMUTABLE = "private, max-age=31536000, immutable"
 
 
 def get_overlays(connection: HTTPConnection) -> Overlays:

@@ -105,7 +105,7 @@ def handloom_modules(data: Path) -> set[str]:
 def test_a_host_that_others_can_reach_is_refused(tmp_path: Path) -> None:
     refused = handloom(tmp_path, "serve", "--host", "0.0.0.0", "--port", "0")
     assert refused.returncode == 2
-    assert "has no accounts yet" in refused.stderr
+    assert "no admin can yet" in refused.stderr
     assert "ssh -L" in refused.stderr
 
 

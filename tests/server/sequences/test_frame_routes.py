@@ -84,7 +84,7 @@ def test_an_image_is_kept_for_good_and_not_sent_to_who_has_it(client: TestClient
     found = add_recording("waving")
     answer = client.get(address(found, 0, file))
     assert answer.status_code == 200
-    assert answer.headers["cache-control"] == "public, max-age=31536000, immutable"
+    assert answer.headers["cache-control"] == "private, max-age=31536000, immutable"
     again = client.get(address(found, 0, file), headers={"If-None-Match": answer.headers["etag"]})
     assert (again.status_code, again.content) == (304, b"")
     assert client.get(address(found, 1, file)).headers["etag"] != answer.headers["etag"]

@@ -40,9 +40,7 @@ def may_manage(actor: Account, role: Role) -> bool:
 
 def _check_may_manage(actor: Account, role: Role) -> None:
     if not may_manage(actor, role):
-        raise ForbiddenError(
-            f"{actor.name} is {actor.role} and may not manage a {role}. Ask an admin."
-        )
+        raise ForbiddenError(f"{actor.name} is {actor.role} and may not manage a {role}. Ask an admin.")
 
 
 def add_account(session: Session, actor: Account | None, name: str, role: Role) -> Account:

@@ -75,9 +75,7 @@ class TokenIn(BaseModel):
 
     name: Name
     may_write: bool = Field(default=False, description="False: it may only read.")
-    days: Annotated[float, Field(gt=0, le=3650)] | None = Field(
-        default=90, description="null: never expires."
-    )
+    days: Annotated[float, Field(gt=0, le=3650)] | None = Field(default=90, description="null: never expires.")
 
 
 class TokenOut(BaseModel):

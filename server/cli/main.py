@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from server.cli import bench_server, demo, export_command, import_command, serve, worker_command
+from server.cli import account_command, bench_server, demo, export_command, import_command, serve, worker_command
 from tracker import add_commands
 
 COMMANDS = (serve, worker_command, demo, import_command, export_command, account_command)

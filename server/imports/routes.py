@@ -11,7 +11,7 @@ from fastapi import APIRouter, Depends, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
-from server.accounts.service import AccountIdDep
+from server.accounts.service import AccountIdDep, require_lead
 from server.database import DatabaseDep
 from server.errors import TooLargeError, error_responses
 from server.imports import service
@@ -32,6 +32,8 @@ from server.storage import StorageDep
 from tracker import IMPORT_FORMATS, ImportOptions
 
 router = APIRouter(prefix="/imports", tags=["imports"], responses=error_responses())
+
+by_lead = [Depends(require_lead)]
 
 _BODY: dict[str, Any] = {
     "requestBody": {
@@ -82,7 +84,14 @@ def _name_type(hint: Any) -> str:
     return f"{inner}[]" if "tuple" in text else inner
 
 
-@router.post("", status_code=201, response_model=ImportOut, responses=error_responses(413, 507), openapi_extra=_BODY)
+@router.post(
+    "",
+    status_code=201,
+    response_model=ImportOut,
+    responses=error_responses(413, 507),
+    openapi_extra=_BODY,
+    dependencies=by_lead,
+)
 async def create_import(request: Request, desk: DeskDep, account_id: AccountIdDep) -> ImportRow:
     """Upload a recording and have it checked. Nothing becomes a recording before it is confirmed."""
     length = request.headers.get("content-length", "")
@@ -108,13 +117,13 @@ def get_import(import_id: uuid.UUID, desk: DeskDep) -> ImportRow:
     return service.get_import(desk, import_id)
 
 
-@router.post("/{import_id}/check", response_model=ImportOut, responses=error_responses(404, 409))
+@router.post("/{import_id}/check", response_model=ImportOut, dependencies=by_lead, responses=error_responses(404, 409))
 def check_import(import_id: uuid.UUID, body: ImportCheck, desk: DeskDep) -> ImportRow:
     """Check again with other options."""
     return service.check_again(desk, import_id, body.options)
 
 
-@router.post("/{import_id}/confirm", status_code=201, responses=error_responses(404, 409))
+@router.post("/{import_id}/confirm", status_code=201, dependencies=by_lead, responses=error_responses(404, 409))
 def confirm_import(
     import_id: uuid.UUID, body: ImportConfirm, desk: DeskDep, account_id: AccountIdDep, facts: FactsDep
 ) -> SequenceOut:
@@ -124,7 +133,7 @@ def confirm_import(
         return describe_sequences(session, [row], facts)[0]
 
 
-@router.delete("/{import_id}", status_code=204, responses=error_responses(404, 409))
+@router.delete("/{import_id}", status_code=204, dependencies=by_lead, responses=error_responses(404, 409))
 def delete_import(import_id: uuid.UUID, desk: DeskDep) -> None:
     """Drop an upload."""
     service.drop_import(desk, import_id)

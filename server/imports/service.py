@@ -18,6 +18,7 @@ from weakref import WeakValueDictionary
 
 from sqlalchemy import delete, select, update
 
+from server.accounts.audit import record_act
 from server.annotations.service import add_imported_annotations
 from server.database import Database, utc_now
 from server.errors import ConflictError, InvalidError, NotFoundError
@@ -180,6 +181,7 @@ def import_recording(
         annotations = load_annotations(path) if path is not None and path.exists() else None
         with desk.database.writing() as session:
             row = sequences.add_sequence(session, sequence_id, columns, _clean(report, source), account_id)
+            record_act(session, account_id, "recording.import", "recording", sequence_id, name=row.name)
             if annotations is not None:
                 add_imported_annotations(session, row, annotations, account_id)
             if import_id is not None:

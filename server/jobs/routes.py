@@ -11,7 +11,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.accounts.audit import record_act
-from server.accounts.service import CurrentAccount
+from server.accounts.service import ReviewerAccount
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import StudioError, error_responses
@@ -42,7 +42,7 @@ EVENT_STREAM: dict[int | str, dict[str, Any]] = {
 
 
 @router.post("/jobs", status_code=201, responses=error_responses(404))
-def create_job(body: JobCreate, session: SessionDep, account: CurrentAccount) -> JobOut:
+def create_job(body: JobCreate, session: SessionDep, account: ReviewerAccount) -> JobOut:
     """Queue a job."""
     params = service.check_track_params(session, body.sequence_id, body.params)
     job = service.create_job(session, body.kind, body.sequence_id, params, created_by=account.id)
@@ -51,7 +51,7 @@ def create_job(body: JobCreate, session: SessionDep, account: CurrentAccount) ->
 
 
 @router.post("/jobs/batch", status_code=201)
-def create_batch(body: BatchCreate, session: SessionDep, account: CurrentAccount) -> BatchMade:
+def create_batch(body: BatchCreate, session: SessionDep, account: ReviewerAccount) -> BatchMade:
     """Queue one job for each of several recordings: all or, when one of them cannot be, none (422 with `refused`)."""
     batch_id, jobs = batches.create_batch(session, body.kind, body.sequence_ids, body.params, account.id)
     record_act(session, account.id, "batch.start", "batch", batch_id, jobs=len(jobs))
@@ -59,7 +59,7 @@ def create_batch(body: BatchCreate, session: SessionDep, account: CurrentAccount
 
 
 @router.post("/jobs/bulk")
-def act_on_jobs(body: BulkAct, session: SessionDep, account: CurrentAccount) -> BulkDone:
+def act_on_jobs(body: BulkAct, session: SessionDep, account: ReviewerAccount) -> BulkDone:
     """Cancel, retry or resume several jobs. Each by itself: `refused` says which could not be, and why."""
     done, refused = [], []
     for job_id in dict.fromkeys(body.job_ids):
@@ -121,19 +121,19 @@ def get_job(job_id: uuid.UUID, session: SessionDep) -> JobOut:
 
 
 @router.post("/jobs/{job_id}/cancel", responses=error_responses(404, 409))
-def cancel_job(job_id: uuid.UUID, session: SessionDep, account: CurrentAccount) -> JobOut:
+def cancel_job(job_id: uuid.UUID, session: SessionDep, account: ReviewerAccount) -> JobOut:
     """End a job that is queued or running."""
     return describe_job(session, _act(session, "cancel", job_id, account.id))
 
 
 @router.post("/jobs/{job_id}/retry", status_code=201, responses=error_responses(404, 409))
-def retry_job(job_id: uuid.UUID, session: SessionDep, account: CurrentAccount) -> JobOut:
+def retry_job(job_id: uuid.UUID, session: SessionDep, account: ReviewerAccount) -> JobOut:
     """A new job with the parameters of one that has ended."""
     return describe_job(session, _act(session, "retry", job_id, account.id))
 
 
 @router.post("/jobs/{job_id}/resume", responses=error_responses(404, 409))
-def resume_job(job_id: uuid.UUID, session: SessionDep, account: CurrentAccount) -> JobOut:
+def resume_job(job_id: uuid.UUID, session: SessionDep, account: ReviewerAccount) -> JobOut:
     """Go on with a cancelled or failed job where it stopped."""
     return describe_job(session, _act(session, "resume", job_id, account.id))
 

@@ -7,6 +7,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
+from server.accounts.audit import record_act
+from server.accounts.service import LeadAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.database.revision import IfMatch, read_if_match, write_etag
@@ -47,6 +49,7 @@ def update_sequence(
     session: SessionDep,
     storage: StorageDep,
     facts: FactsDep,
+    lead: LeadAccount,
     response: Response,
     if_match: IfMatch = None,
 ) -> SequenceOut:
@@ -57,19 +60,22 @@ def update_sequence(
     except service.StaleSequenceError as stale:
         theirs = describe_sequences(session, [stale.row], facts)[0].model_dump(mode="json")
         raise ConflictError(stale.detail, headers={"ETag": write_etag(stale.row.revision)}, theirs=theirs) from None
+    record_act(session, lead.id, "recording.change", "recording", row.id)
     response.headers["ETag"] = write_etag(row.revision)
     return describe_sequences(session, [row], facts)[0]
 
 
 @router.delete("/{sequence_id}", status_code=204)
-def delete_sequence(sequence_id: uuid.UUID, session: SessionDep) -> None:
+def delete_sequence(sequence_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> None:
     """Hide a recording. Nothing of it is lost: `restore` brings it back."""
     service.delete_sequence(session, service.get_sequence(session, sequence_id))
+    record_act(session, lead.id, "recording.delete", "recording", sequence_id)
 
 
 @router.post("/{sequence_id}/restore")
-def restore_sequence(sequence_id: uuid.UUID, session: SessionDep, facts: FactsDep) -> SequenceOut:
+def restore_sequence(sequence_id: uuid.UUID, session: SessionDep, facts: FactsDep, lead: LeadAccount) -> SequenceOut:
     """Undo a deletion."""
     row = service.get_sequence(session, sequence_id, deleted_too=True)
     service.restore_sequence(session, row)
+    record_act(session, lead.id, "recording.restore", "recording", row.id)
     return describe_sequences(session, [row], facts)[0]

@@ -9,6 +9,8 @@ from fastapi import APIRouter, Depends
 from fastapi.responses import FileResponse
 from starlette.requests import HTTPConnection
 
+from server.accounts.audit import record_act
+from server.accounts.service import LeadAccount
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import NotFoundError, error_responses
@@ -53,14 +55,16 @@ def get_track(track_id: uuid.UUID, session: SessionDep) -> TrackOut:
 
 
 @router.delete("/tracks/{track_id}", responses=error_responses(404))
-def delete_track(track_id: uuid.UUID, session: SessionDep) -> TrackOut:
+def delete_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> TrackOut:
     """Delete a track; it can be restored."""
+    record_act(session, lead.id, "track.delete", "track", track_id)
     return TrackOut.model_validate(service.delete_track(session, track_id))
 
 
 @router.post("/tracks/{track_id}/restore", responses=error_responses(404, 409))
-def restore_track(track_id: uuid.UUID, session: SessionDep) -> TrackOut:
+def restore_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> TrackOut:
     """Bring a deleted track back."""
+    record_act(session, lead.id, "track.restore", "track", track_id)
     return TrackOut.model_validate(service.restore_track(session, track_id))
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import httpx
 
 JOINTS = 21
-SHARED_PART, DOUBLED_PART = 0.05, 0.02
+SHARED_PART, DOUBLED_PART, SHARED_FRAMES = 0.1, 0.02, 5
 """Of the gestures: those on frames that everybody works on, and those whose request is sent twice at once."""
 
 RETRY_SECONDS, REQUEST_SECONDS = 0.25, 30.0
@@ -149,7 +149,7 @@ async def annotate_together(
     async with httpx.AsyncClient(base_url=f"{url}/api/v1", timeout=REQUEST_SECONDS, limits=limits) as client:
         recording = (await client.get(f"/sequences/{sequence_id}")).json()
         base = f"/sequences/{sequence_id}/annotations/{recording['cameras'][0]['id']}"
-        shared = range(min(20, frame_count))
+        shared = range(min(SHARED_FRAMES, frame_count))
         each = max(1, (frame_count - len(shared)) // annotators)
         people = [
             SimulatedAnnotator(

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
@@ -29,6 +30,7 @@ class Database:
         self.is_sqlite = make_url(url).get_backend_name() == "sqlite"
         self.engine = _create_sqlite_engine(url) if self.is_sqlite else create_engine(url, pool_pre_ping=True)
         self._sessions = sessionmaker(self.engine, expire_on_commit=False)
+        self._turn = Lock() if self.is_sqlite else nullcontext()
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
@@ -41,9 +43,10 @@ class Database:
         """A session that commits when the block ends, and keeps nothing when it raises.
 
         On SQLite it waits at its start until no other writes: a transaction that reads first and writes later could not
-        be made to wait, it would fail.
+        be made to wait, it would fail. Threads of one process take turns: SQLite itself has those that wait look again
+        after ever longer naps, and whoever is unlucky waits for seconds.
         """
-        with self._sessions() as session, session.begin():
+        with self._turn, self._sessions() as session, session.begin():
             if self.is_sqlite:
                 session.connection(execution_options={"is_writing": True})
             yield session

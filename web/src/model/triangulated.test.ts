@@ -27,6 +27,7 @@ test("two views must share a joint", () => {
 const view = (camera: string, x: number | null, own: number | null, leftOut: number | null = null) => ({
   camera, x, y: x, is_seen: x !== null && x >= 0, is_used: own !== null, residual_px: own, left_out_px: leftOut,
 });
+const aside = (one: ReturnType<typeof view>) => ({ ...one, is_used: false });
 const joint = (...views: ReturnType<typeof view>[]): TriangulatedJoint => ({ point: [0, 0, 0], angle_deg: 40, std_mm: 1, refusal: "", views });
 
 test("the other views are filled with suggestions, inside the image and where nobody has marked", () => {
@@ -50,6 +51,11 @@ test("the worst mark comes first, judged by the others where there are enough of
   expect(worstMarks(joints).map(({ joint, camera, error }) => [joint, camera, error])).toEqual([
     [1, "cam1", 9], [1, "cam2", 4], [1, "cam0", 3], [0, "cam0", 0.5], [0, "cam1", 0.4],
   ]);
-  expect(errorOf(view("cam0", 1, null))).toBeNull();
+  expect(errorOf(joint(view("cam0", 1, null)), view("cam0", 1, null))).toBeNull();
   expect([1.9, 4.9, 5.1].map(gradeOf)).toEqual(["good", "fair", "bad"]);
+});
+
+test("where one view is set aside the others are not blamed for it", () => {
+  const one = joint(view("cam0", 1, 0.4, 4.6), view("cam1", 1, 0.3, 4.9), aside(view("cam2", 1, 10, 10)), view("cam3", 1, 0.2, 0.9));
+  expect(worstMarks([one]).map(({ camera, error }) => `${camera} ${error}`)).toEqual(["cam2 10", "cam0 0.4", "cam1 0.3", "cam3 0.2"]);
 });

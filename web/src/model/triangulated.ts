@@ -41,8 +41,14 @@ export function suggestViews(found: Triangulation, views: readonly MarkedView[],
   });
 }
 
-/** What to believe of a mark: left out of the point when there are enough others, else as part of it. */
-export const errorOf = (view: TriangulatedView): number | null => view.left_out_px ?? view.residual_px;
+/**
+ * How far a mark is off: from the point that the other views alone make, when there are enough of them. Where one view
+ * was set aside, the good ones are not blamed for it: theirs is the distance to the point without it.
+ */
+export function errorOf(joint: TriangulatedJoint, view: TriangulatedView): number | null {
+  const isOneSetAside = joint.views.some((one) => one.residual_px !== null && !one.is_used);
+  return isOneSetAside && view.is_used ? view.residual_px : (view.left_out_px ?? view.residual_px);
+}
 
 export interface WorstMark {
   readonly joint: number;
@@ -53,10 +59,10 @@ export interface WorstMark {
 /** Every mark that takes part, the one that is farthest off first. */
 export const worstMarks = (joints: readonly TriangulatedJoint[]): WorstMark[] =>
   joints
-    .flatMap(({ views }, joint) =>
-      views.flatMap((view): WorstMark[] => {
-        const error = errorOf(view);
-        return error === null ? [] : [{ joint, camera: view.camera, error }];
+    .flatMap((joint, index) =>
+      joint.views.flatMap((view): WorstMark[] => {
+        const error = errorOf(joint, view);
+        return error === null ? [] : [{ joint: index, camera: view.camera, error }];
       }),
     )
     .sort((a, b) => b.error - a.error);

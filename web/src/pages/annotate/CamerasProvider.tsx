@@ -2,6 +2,7 @@ import { useLocalStorage } from "@mantine/hooks";
 import { notifications } from "@mantine/notifications";
 import { useCallback, useMemo, useRef, useState, type ReactNode } from "react";
 import { acceptAll } from "../../actions/annotate/accept";
+import { activateCamera } from "../../actions/annotate/cameras";
 import type { Size } from "../../canvas/view";
 import { jointLabel } from "../../model/joints";
 import { lookAt } from "../../model/look";
@@ -64,9 +65,17 @@ export function CamerasProvider({ children }: { children: ReactNode }) {
     if (mark) act((now) => ({ ...now, camera: mark.camera, joint: mark.joint, draft: null }), undefined);
   };
 
+  /** Among the pictures that are shown, with the joint kept; where one alone is shown, the annotator's own keys go through all cameras. */
+  const step = (by: 1 | -1) => () => {
+    const at = shown.findIndex((camera) => camera.id === state.camera);
+    const next = shown[(at + by + shown.length) % shown.length];
+    if (next) act(activateCamera, next.id);
+  };
+
   useActions({
+    ...(shown.length > 1 ? { "camera.next": step(1), "camera.previous": step(-1) } : {}),
     "views.triangulate": () => void triangulate(),
-    "views.acceptAll": () => act(acceptAll, { suggestions: session.suggestions.get(), cameras: shown.map((camera) => camera.id) }),
+    "suggestion.frame": () => act(acceptAll, { suggestions: session.suggestions.get(), cameras: shown.map((camera) => camera.id) }),
     "views.epipolar": () => setLinesShown(!areLinesShown),
     "views.look": look,
     "views.large": () => setLarge(large === state.camera ? null : state.camera),

@@ -13,6 +13,7 @@ import { emptyPose, keyText } from "../../model/pose";
 import { pointerOn } from "../../state/pointer";
 import { useAnnotating } from "./annotating";
 import classes from "./Annotator.module.css";
+import { CursorCurve } from "./EpipolarLayer";
 import { LAYERS } from "./mounts";
 
 interface PaneProps {
@@ -72,6 +73,7 @@ export function Pane({ camera, label, layers, isBusy, overlay }: PaneProps) {
         here();
         act(cycleVisibility, joint);
       }}
+      withCursor={(view) => <CursorCurve view={view} camera={camera} />}
       overlay={overlay ?? <span className={classes.paneLabel}>{label}</span>}
     >
       {(view) => LAYERS.map((Layer, index) => <Layer key={index} view={view} camera={camera} />)}

@@ -21,7 +21,8 @@ function Pixels({ error }: { error: number }) {
 /** How far a joint's marks are off at worst, in its line of the joints. */
 export function JointError({ joint }: { joint: number }) {
   const { joints } = useCameras();
-  const errors = joints?.[joint]?.views.flatMap((view) => errorOf(view) ?? []) ?? [];
+  const here = joints?.[joint];
+  const errors = here?.views.flatMap((view) => errorOf(here, view) ?? []) ?? [];
   return errors.length > 0 ? <Pixels error={Math.max(...errors)} /> : null;
 }
 
@@ -50,12 +51,12 @@ export function ViewErrors() {
           <Tooltip
             key={view.camera}
             position="left"
-            label={left === null ? "From the mark to the point of both views" : `${left.toFixed(2)} px to the point of the other views, ${own?.toFixed(2)} px to the point of all that count`}
+            label={left === null ? "From the mark to the point that both views make" : `${left.toFixed(2)} px to the point of the other views, ${own?.toFixed(2)} px to the point of all that count`}
           >
             <button type="button" className={classes.view} aria-current={view.camera === state.camera} onClick={() => act((now) => ({ ...now, camera: view.camera, draft: null }), undefined)}>
               <span className="one-line">{view.camera}</span>
               {!view.is_used && <span className={classes.aside}>set aside</span>}
-              <Pixels error={errorOf(view) ?? 0} />
+              <Pixels error={(here && errorOf(here, view)) ?? 0} />
             </button>
           </Tooltip>
         );

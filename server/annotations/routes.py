@@ -9,8 +9,10 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Path, Query, Response
 from sqlalchemy.orm import Session
 
+from server.accounts.models import Account
 from server.accounts.service import CurrentAccount, find_names
-from server.annotations import service
+from server.annotations import guards, service
+from server.annotations.guards import GuardsDep, PlaceGuard
 from server.annotations.models import AnnotationRevisionRow, AnnotationRow
 from server.annotations.schemas import (
     AnnotationConflict,
@@ -35,6 +37,9 @@ CONFLICTS: dict[int | str, dict[str, Any]] = {409: {"model": AnnotationConflict}
 CameraPath = Annotated[str, Path(max_length=64)]
 FramePath = Annotated[int, Path(ge=0, le=10**9)]
 FrameQuery = Annotated[int | None, Query(ge=0, le=10**9)]
+ReplicaQuery = Annotated[
+    uuid.UUID | None, Query(description="The assignment of a blind replica; none for the annotations of everybody.")
+]
 
 
 def get_annotated_sequence(sequence_id: uuid.UUID, session: SessionDep) -> SequenceRow:
@@ -45,18 +50,38 @@ def get_annotated_sequence(sequence_id: uuid.UUID, session: SessionDep) -> Seque
 SequenceDep = Annotated[SequenceRow, Depends(get_annotated_sequence)]
 
 
-def get_place(sequence: SequenceDep, camera: CameraPath, frame: FramePath, hand: Hand) -> Place:
+def name_replica(replica: ReplicaQuery = None) -> str:
+    """Where the annotations of a request lie: empty for those of everybody."""
+    return "" if replica is None else str(replica)
+
+
+ReplicaDep = Annotated[str, Depends(name_replica)]
+
+
+def get_place(sequence: SequenceDep, camera: CameraPath, frame: FramePath, hand: Hand, replica: ReplicaDep) -> Place:
     """The place of the address."""
-    return service.check_place(sequence, camera, frame, hand)
+    return service.check_place(sequence, camera, frame, hand, replica)
 
 
 PlaceDep = Annotated[Place, Depends(get_place)]
+
+
+def get_readable_place(place: PlaceDep, session: SessionDep, account: CurrentAccount, guarding: GuardsDep) -> Place:
+    """The place of the address, if whoever asks may read it."""
+    guards.check_read(guarding, session, account, place)
+    return place
+
+
+ReadablePlaceDep = Annotated[Place, Depends(get_readable_place)]
 
 
 @router.get("/annotations")
 def list_annotations(
     sequence: SequenceDep,
     session: SessionDep,
+    account: CurrentAccount,
+    guarding: GuardsDep,
+    replica: ReplicaDep,
     camera: Annotated[str | None, Query(max_length=64)] = None,
     from_: Annotated[FrameQuery, Query(alias="from", description="First frame.")] = None,
     to: Annotated[FrameQuery, Query(description="Last frame.")] = None,
@@ -65,20 +90,35 @@ def list_annotations(
 ) -> Page[AnnotationOut]:
     """Annotations of a recording by frame, camera and hand."""
     rows, next_cursor = service.list_annotations(
-        session, sequence.id, camera=camera, frames=(from_, to), cursor=cursor, limit=limit
+        session,
+        sequence.id,
+        camera=camera,
+        frames=(from_, to),
+        cursor=cursor,
+        limit=limit,
+        replica=replica,
+        hidden=guards.find_hidden(guarding, session, account, sequence.id, replica),
     )
     return Page(items=_describe(session, rows), next_cursor=next_cursor)
 
 
 @router.get("/annotations.json")
-def get_annotation_file(sequence: SequenceDep, session: SessionDep, response: Response) -> AnnotationFile:
+def get_annotation_file(
+    sequence: SequenceDep,
+    session: SessionDep,
+    account: CurrentAccount,
+    guarding: GuardsDep,
+    replica: ReplicaDep,
+    response: Response,
+) -> AnnotationFile:
     """All annotations as the file `annotations.json` of a recording folder."""
+    hidden = guards.find_hidden(guarding, session, account, sequence.id, replica)
     response.headers["Content-Disposition"] = 'attachment; filename="annotations.json"'
-    return AnnotationFile.model_validate(service.export_annotations(session, sequence.id))
+    return AnnotationFile.model_validate(service.export_annotations(session, sequence.id, replica, hidden))
 
 
 @router.get("/annotations/{camera}/{frame}/{hand}")
-def get_annotation(place: PlaceDep, session: SessionDep, response: Response) -> AnnotationOut:
+def get_annotation(place: ReadablePlaceDep, session: SessionDep, response: Response) -> AnnotationOut:
     """One annotation; its `ETag` is what a change must send as `If-Match`."""
     row = service.get_annotation(session, place)
     response.headers["ETag"] = write_etag(row.revision)
@@ -92,6 +132,7 @@ def put_annotation(
     body: AnnotationPut,
     session: SessionDep,
     account: CurrentAccount,
+    guarding: GuardsDep,
     response: Response,
     if_match: IfMatch = None,
     if_none_match: IfNoneMatch = None,
@@ -103,7 +144,7 @@ def put_annotation(
     points = service.check_points(sequence, place, body.points)
     expected = _read_expected(if_match, if_none_match)
     change = Change("put", points, expected, body.operation_id, account.id)
-    return _describe_made(session, place, _change(session, place, change, response))
+    return _describe_made(session, place, _change(session, account, guarding, place, change, response))
 
 
 @router.delete("/annotations/{camera}/{frame}/{hand}", status_code=204, responses=CONFLICTS)
@@ -111,6 +152,7 @@ def delete_annotation(
     place: PlaceDep,
     session: SessionDep,
     account: CurrentAccount,
+    guarding: GuardsDep,
     response: Response,
     if_match: IfMatch = None,
     operation_id: Annotated[uuid.UUID | None, Query(description="As in PUT.")] = None,
@@ -118,11 +160,13 @@ def delete_annotation(
     """Delete an annotation; its history stays, and every revision of it can be restored."""
     expected = read_if_match(if_match)
     change = Change("delete", None, expected, operation_id or uuid.uuid4(), account.id)
-    _change(session, place, change, response)
+    _change(session, account, guarding, place, change, response)
 
 
 @router.get("/annotations/{camera}/{frame}/{hand}/history")
-def list_annotation_history(place: PlaceDep, session: SessionDep, response: Response) -> Page[AnnotationRevision]:
+def list_annotation_history(
+    place: ReadablePlaceDep, session: SessionDep, response: Response
+) -> Page[AnnotationRevision]:
     """Every revision, newest first, of a deleted annotation too."""
     row = service.get_annotation(session, place, deleted_too=True)
     history = service.list_history(session, row)
@@ -133,11 +177,12 @@ def list_annotation_history(place: PlaceDep, session: SessionDep, response: Resp
 
 @router.post("/annotations/{camera}/{frame}/{hand}/history/{revision}/restore", responses=CONFLICTS)
 def restore_annotation(
-    place: PlaceDep,
+    place: ReadablePlaceDep,
     revision: Annotated[int, Path(ge=1, le=10**9)],
     body: AnnotationRestore,
     session: SessionDep,
     account: CurrentAccount,
+    guarding: GuardsDep,
     response: Response,
     if_match: IfMatch = None,
 ) -> AnnotationOut:
@@ -145,7 +190,7 @@ def restore_annotation(
     row = service.get_annotation(session, place, deleted_too=True)
     points = service.get_past_points(session, row, revision)
     change = Change("restore", points, read_if_match(if_match), body.operation_id, account.id)
-    return _describe_made(session, place, _change(session, place, change, response))
+    return _describe_made(session, place, _change(session, account, guarding, place, change, response))
 
 
 def _read_expected(if_match: str | None, if_none_match: str | None) -> int | None:
@@ -156,10 +201,19 @@ def _read_expected(if_match: str | None, if_none_match: str | None) -> int | Non
     return None
 
 
-def _change(session: Session, place: Place, change: Change, response: Response) -> AnnotationRevisionRow:
+def _change(
+    session: Session,
+    account: Account,
+    guarding: Sequence[PlaceGuard],
+    place: Place,
+    change: Change,
+    response: Response,
+) -> AnnotationRevisionRow:
     """Do it; when somebody else was first, the answer carries theirs."""
     try:
-        made = service.change_annotation(session, place, change)
+        made = service.change_annotation(
+            session, place, change, lambda: guards.check_change(guarding, session, account, place)
+        )
     except StaleAnnotationError as stale:
         row = stale.row
         theirs = None if row is None or row.points is None else _describe(session, [row])[0].model_dump(mode="json")

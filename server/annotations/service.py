@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from sqlalchemy import and_, distinct, func, null, select, tuple_
+from sqlalchemy import and_, distinct, func, not_, null, select, tuple_
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
@@ -32,6 +32,18 @@ class Place:
 
     def __str__(self) -> str:
         return f"the {self.hand} hand in frame {self.frame} of {self.camera}"
+
+
+@dataclass(frozen=True)
+class HiddenPlaces:
+    """Places that somebody must not read: every one of these hands in every one of these cameras and frames."""
+
+    frames: frozenset[int]
+    cameras: frozenset[str]
+    hands: frozenset[str]
+
+    def __contains__(self, place: Place) -> bool:
+        return place.frame in self.frames and place.camera in self.cameras and place.hand in self.hands
 
 
 @dataclass(frozen=True)
@@ -62,13 +74,13 @@ class StaleAnnotationError(ConflictError):
         self.row = row
 
 
-def check_place(sequence: SequenceRow, camera: str, frame: int, hand: str) -> Place:
+def check_place(sequence: SequenceRow, camera: str, frame: int, hand: str, replica: str = "") -> Place:
     """The place, if the recording has it."""
     if camera not in (known := [item["id"] for item in sequence.cameras]):
         raise NotFoundError(f"{sequence.name} has no camera {camera!r}; it has {known}.")
     if not 0 <= frame < sequence.frame_count:
         raise NotFoundError(f"{sequence.name} has no frame {frame}; they go from 0 to {sequence.frame_count - 1}.")
-    return Place(sequence.id, camera, frame, hand)
+    return Place(sequence.id, camera, frame, hand, replica)
 
 
 def check_points(sequence: SequenceRow, place: Place, points: Sequence[Sequence[float]]) -> list[Any]:
@@ -106,11 +118,20 @@ def get_annotation(session: Session, place: Place, *, deleted_too: bool = False)
     return row
 
 
-def change_annotation(session: Session, place: Place, change: Change) -> AnnotationRevisionRow:
-    """Do it, if the annotation is as expected. A repeated operation does nothing and gives what it made at first."""
+def change_annotation(
+    session: Session, place: Place, change: Change, check: Callable[[], None] | None = None
+) -> AnnotationRevisionRow:
+    """Do it, if the annotation is as expected. A repeated operation does nothing and gives what it made at first.
+
+    Args:
+        check: Raises when it must not be done (`guards.check_change`). A repeated operation is not asked again: its
+            work may have been locked since.
+    """
     row = find_annotation(session, place, for_update=True)
     if (done := _find_operation(session, row, place, change)) is not None:
         return done
+    if check is not None:
+        check()
     if change.act == "delete" and (row is None or row.points is None):
         raise NotFoundError(f"There is no annotation of {place}.")
     if row is None:
@@ -122,7 +143,7 @@ def change_annotation(session: Session, place: Place, change: Change) -> Annotat
                 session.add(row)
                 session.flush()
         except IntegrityError:  # another request made it between our look and now
-            return change_annotation(session, place, change)
+            return change_annotation(session, place, change, check)
     elif not (row.points is None if change.expected is None else row.revision == change.expected):
         raise StaleAnnotationError(place, row)
     return _write(session, row, change)
@@ -191,6 +212,7 @@ def list_annotations(
     cursor: str | None = None,
     limit: int | None = None,
     replica: str = "",
+    hidden: Sequence[HiddenPlaces] = (),
 ) -> tuple[Sequence[AnnotationRow], str | None]:
     """Annotations of a recording by frame, camera, hand; `frames` are the first and the last, both taken in."""
     order = (AnnotationRow.frame, AnnotationRow.camera, AnnotationRow.hand)
@@ -205,6 +227,16 @@ def list_annotations(
         query = query.where(AnnotationRow.frame >= frames[0])
     if frames[1] is not None:
         query = query.where(AnnotationRow.frame <= frames[1])
+    for places in hidden:
+        query = query.where(
+            not_(
+                and_(
+                    AnnotationRow.frame.in_(places.frames),
+                    AnnotationRow.camera.in_(places.cameras),
+                    AnnotationRow.hand.in_(places.hands),
+                )
+            )
+        )
     if cursor is not None:
         query = query.where(tuple_(*order) > tuple(read_cursor(cursor, int, str, str)))
     query = query.order_by(*order)
@@ -215,17 +247,21 @@ def list_annotations(
     return rows[:limit], write_cursor(last.frame, last.camera, last.hand)
 
 
-def load_annotations(session: Session, sequence_id: uuid.UUID, replica: str = "") -> Annotations:
+def load_annotations(
+    session: Session, sequence_id: uuid.UUID, replica: str = "", hidden: Sequence[HiddenPlaces] = ()
+) -> Annotations:
     """All annotations of a recording, or of a blind replica, as they are now."""
-    rows, _ = list_annotations(session, sequence_id, replica=replica)
+    rows, _ = list_annotations(session, sequence_id, replica=replica, hidden=hidden)
     return Annotations(
         tuple(Annotation(row.frame, row.camera, row.hand, np.array(row.points, dtype=np.float64)) for row in rows)
     )
 
 
-def export_annotations(session: Session, sequence_id: uuid.UUID) -> dict[str, Any]:
+def export_annotations(
+    session: Session, sequence_id: uuid.UUID, replica: str = "", hidden: Sequence[HiddenPlaces] = ()
+) -> dict[str, Any]:
     """The content of `annotations.json`."""
-    return load_annotations(session, sequence_id).to_json()
+    return load_annotations(session, sequence_id, replica, hidden).to_json()
 
 
 def add_imported_annotations(

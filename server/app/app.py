@@ -15,7 +15,7 @@ from server.app.browser_app import BrowserApp
 from server.app.door import Door
 from server.app.error_handler import install_error_handler
 from server.app.guard import Guard
-from server.app.parts import LIFESPANS, PAGE_ROUTERS, ROUTERS, SEQUENCE_FACTS
+from server.app.parts import LIFESPANS, PAGE_ROUTERS, PLACE_GUARDS, ROUTERS, SEQUENCE_FACTS
 from server.database import Database
 from server.database.migrate import upgrade
 from server.errors import error_responses
@@ -44,6 +44,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.settings = settings
     app.state.failed_tries = FailedTries()
     app.state.sequence_facts = SEQUENCE_FACTS
+    app.state.place_guards = PLACE_GUARDS
     install_error_handler(app)
     for router in ROUTERS:
         app.include_router(router, prefix=API, responses=error_responses(401, 403, 500))

@@ -10,6 +10,7 @@ from fastapi import APIRouter, FastAPI
 from server.accounts import login_routes, people_routes, token_routes
 from server.accounts import routes as accounts
 from server.annotations import routes as annotations
+from server.annotations.guards import PlaceGuard
 from server.annotations.service import find_annotated_frames
 from server.app import health
 from server.evaluations import routes as evaluations
@@ -22,6 +23,8 @@ from server.sequences import routes as sequences
 from server.sequences.facts import FactFinder
 from server.suggestions import routes as suggestions
 from server.suggestions import triangulation_routes
+from server.teams import routes as teams
+from server.teams.guard import ASSIGNMENTS
 from server.tracks import routes as tracks
 from server.tracks.facts import find_best_tracks
 from server.viewer import routes as viewer
@@ -45,6 +48,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     evaluations.router,
     triangulation_routes.router,
     suggestions.router,
+    *teams.ROUTERS,
 )
 """All under `/api/v1`."""
 
@@ -56,3 +60,6 @@ LIFESPANS: tuple[Lifespan, ...] = (clean_imports, viewer.lifespan)
 
 SEQUENCE_FACTS: tuple[FactFinder, ...] = (find_annotated_frames, find_best_tracks)
 """What rooms above the recordings know of them."""
+
+PLACE_GUARDS: tuple[PlaceGuard, ...] = (ASSIGNMENTS,)
+"""What rooms above the annotations forbid at a place."""

@@ -51,6 +51,7 @@ class ReplicaSetRow(Base):
     hands: Mapped[list[Any]]
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     created_by: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))
+    deleted_at: Mapped[datetime | None]
 
 
 class AssignmentRow(Base):
@@ -79,6 +80,7 @@ class AssignmentRow(Base):
     updated_at: Mapped[datetime] = mapped_column(default=utc_now)
     reviewer_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))
     """Who accepted or returned it last."""
+    deleted_at: Mapped[datetime | None]
 
 
 class CommentRow(Base):

@@ -1,0 +1,165 @@
+"""What assignments forbid: finished work is locked, work of others is theirs, blind replicas stay blind."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Sequence
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from server.accounts.models import Account
+from server.accounts.service import find_names, has_role
+from server.annotations.guards import PlaceGuard
+from server.annotations.service import HiddenPlaces, Place
+from server.errors import ForbiddenError, NotFoundError
+from server.teams.models import AssignmentRow, ProjectRow, ReplicaSetRow
+
+
+class LockedError(ForbiddenError):
+    """The frame belongs to work that was handed in."""
+
+
+class NotYoursError(ForbiddenError):
+    """The frame was given to somebody else."""
+
+
+def check_change(session: Session, account: Account, place: Place) -> None:
+    """Raise when the account must not change the place.
+
+    The assignments are held (PostgreSQL: FOR SHARE; SQLite writes one at a time) until the change is stored, so that
+    nothing slips in after a submission.
+    """
+    if place.replica:
+        _check_replica_change(session, account, place)
+    else:
+        _check_shared_change(session, account, place)
+
+
+def _check_replica_change(session: Session, account: Account, place: Place) -> None:
+    assignment, replicas = _get_replica(session, place.sequence_id, place.replica, hold=True)
+    if assignment.account_id != account.id:
+        raise NotYoursError("A blind replica is changed by its own annotator only.")
+    if assignment.state in ("submitted", "accepted"):
+        raise LockedError(
+            f"You have submitted these frames of {replicas.name}. A reviewer can return them to you for changes."
+        )
+    if place not in _places(replicas):
+        raise NotFoundError(
+            f"{replicas.name} does not have {place}; it has {len(replicas.frames)} frames of {replicas.cameras}, "
+            f"hands {replicas.hands}."
+        )
+
+
+def _check_shared_change(session: Session, account: Account, place: Place) -> None:
+    if any(place in hidden for hidden in _find_blind(session, account, place.sequence_id)):
+        raise ForbiddenError(f"You mark {place} blindly: open your replica instead of everybody's annotations.")
+    query = (
+        select(AssignmentRow, ProjectRow.archived_at)
+        .join(ProjectRow, ProjectRow.id == AssignmentRow.project_id)
+        .where(
+            AssignmentRow.sequence_id == place.sequence_id,
+            AssignmentRow.replica_set_id.is_(None),
+            AssignmentRow.deleted_at.is_(None),
+            AssignmentRow.frame_first <= place.frame,
+            AssignmentRow.frame_last >= place.frame,
+        )
+        .with_for_update(read=True, of=AssignmentRow)
+    )
+    found = session.execute(query).all()
+    if any(row.state == "accepted" for row, _ in found):
+        raise LockedError(
+            f"Frame {place.frame} is finished: its assignment was accepted. A reviewer can return it for changes."
+        )
+    live = [row for row, archived_at in found if archived_at is None]
+    if not live or has_role(account, "reviewer"):
+        return
+    if any(row.state == "submitted" for row in live):
+        raise LockedError(
+            f"Frame {place.frame} was submitted and waits for its review. A reviewer can return it for changes."
+        )
+    if all(row.account_id != account.id for row in live):
+        names = find_names(session, [row.account_id for row in live])
+        raise NotYoursError(
+            f"Frame {place.frame} is assigned to {', '.join(sorted(names.values()))}. Ask a lead to assign it to you."
+        )
+
+
+def find_hidden(session: Session, account: Account, sequence_id: uuid.UUID, replica: str) -> Sequence[HiddenPlaces]:
+    """Places that the account must not read: those it marks blindly itself. Raises at somebody else's replica."""
+    if replica:
+        check_replica_read(session, account, *_get_replica(session, sequence_id, replica))
+        return []
+    return _find_blind(session, account, sequence_id)
+
+
+def check_replica_read(session: Session, account: Account, assignment: AssignmentRow, replicas: ReplicaSetRow) -> None:
+    """Raise unless the replica is the account's, or was handed in and the account may review it."""
+    if assignment.account_id == account.id:
+        return
+    if not has_role(account, "reviewer"):
+        raise ForbiddenError("A blind replica is shown to its annotator and to reviewers only.")
+    check_sees_set(session, account, replicas)
+    if assignment.state not in ("submitted", "accepted"):
+        raise ForbiddenError("This blind replica is being marked; reviewers see it when it was submitted.")
+
+
+def check_sees_set(session: Session, account: Account, replicas: ReplicaSetRow) -> None:
+    """Raise when the account marks this set itself and is not done with it."""
+    query = select(AssignmentRow.id).where(
+        AssignmentRow.replica_set_id == replicas.id,
+        AssignmentRow.account_id == account.id,
+        AssignmentRow.deleted_at.is_(None),
+        AssignmentRow.state != "accepted",
+    )
+    if session.scalar(query.limit(1)) is not None:
+        raise ForbiddenError(
+            f"You mark {replicas.name} blindly yourself: what others marked is shown to you when your work is accepted."
+        )
+
+
+def _get_replica(
+    session: Session, sequence_id: uuid.UUID, replica: str, hold: bool = False
+) -> tuple[AssignmentRow, ReplicaSetRow]:
+    query = (
+        select(AssignmentRow, ReplicaSetRow)
+        .join(ReplicaSetRow, ReplicaSetRow.id == AssignmentRow.replica_set_id)
+        .join(ProjectRow, ProjectRow.id == AssignmentRow.project_id)
+        .where(
+            AssignmentRow.id == uuid.UUID(replica),
+            AssignmentRow.sequence_id == sequence_id,
+            AssignmentRow.deleted_at.is_(None),
+            ReplicaSetRow.deleted_at.is_(None),
+            ProjectRow.archived_at.is_(None),
+        )
+    )
+    if hold:
+        query = query.with_for_update(read=True, of=AssignmentRow)
+    found = session.execute(query).one_or_none()
+    if found is None:
+        raise NotFoundError(f"The recording has no blind replica {replica}, or no longer.")
+    return found
+
+
+def _find_blind(session: Session, account: Account, sequence_id: uuid.UUID) -> list[HiddenPlaces]:
+    query = (
+        select(ReplicaSetRow)
+        .join(AssignmentRow, AssignmentRow.replica_set_id == ReplicaSetRow.id)
+        .join(ProjectRow, ProjectRow.id == AssignmentRow.project_id)
+        .where(
+            AssignmentRow.account_id == account.id,
+            AssignmentRow.sequence_id == sequence_id,
+            AssignmentRow.state != "accepted",
+            AssignmentRow.deleted_at.is_(None),
+            ReplicaSetRow.deleted_at.is_(None),
+            ProjectRow.archived_at.is_(None),
+        )
+    )
+    return [_places(replicas) for replicas in session.scalars(query)]
+
+
+def _places(replicas: ReplicaSetRow) -> HiddenPlaces:
+    return HiddenPlaces(frozenset(replicas.frames), frozenset(replicas.cameras), frozenset(replicas.hands))
+
+
+ASSIGNMENTS = PlaceGuard(check_change=check_change, find_hidden=find_hidden)

@@ -240,7 +240,7 @@ def _touch(session: Session, row: AssignmentRow) -> None:
 
 def _facts(row: AssignmentRow) -> dict[str, object]:
     return {
-        "account_id": str(row.account_id),
+        "given_to": str(row.account_id),
         "sequence_id": str(row.sequence_id),
         "frames": [row.frame_first, row.frame_last],
         "state": row.state,

@@ -146,7 +146,7 @@ def add_annotator(
     )
     session.add(made)
     session.flush()
-    detail = {"account_id": str(account_id), "replica_set_id": str(row.id)}
+    detail = {"given_to": str(account_id), "replica_set_id": str(row.id)}
     record_act(session, account.id, "assignment.create", "assignment", made.id, **detail)
     return made
 

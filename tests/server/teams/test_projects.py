@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import uuid
 
-import pytest
-
 
 def test_a_project_is_made_renamed_put_away_and_brought_back(lead, ann) -> None:
     made = lead.make("/projects", name=" Grasps ", description="Two people, six objects")
@@ -30,9 +28,10 @@ def test_two_projects_do_not_share_a_name(lead) -> None:
     assert lead.get(f"/projects/{other['id']}")["name"] == "Two"
 
 
-@pytest.mark.parametrize("body", [{"name": " "}, {"name": "a\nb"}, {"name": "x" * 201}, {"name": "a", "more": 1}, {}])
-def test_projects_that_make_no_sense_are_refused(lead, body) -> None:
-    assert lead.send("POST", "/projects", body).status_code == 422
+def test_projects_that_make_no_sense_are_refused(lead) -> None:
+    for body in ({"name": " "}, {"name": "a\nb"}, {"name": "x" * 201}, {"name": "a", "more": 1}, {}):
+        assert lead.send("POST", "/projects", body).status_code == 422
+    assert lead.get("/projects")["items"] == []
 
 
 def test_projects_come_in_pages(lead) -> None:

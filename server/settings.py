@@ -29,6 +29,22 @@ class Settings(BaseSettings):
         default=None,
         description="`postgresql://user@host/name`, or `sqlite:////path`; without it SQLite in the data folder.",
     )
+    store_url: str | None = Field(
+        default=None,
+        pattern=r"^(s3://[^/]+(/.*)?|file:///.+)$",
+        description="Where finished files are kept for several machines: `s3://bucket/prefix`, or `file:///folder`.",
+    )
+    store_endpoint: str | None = Field(
+        default=None, description="Address of an S3-compatible store that is not Amazon's: `http://store:8333`."
+    )
+    store_cache_gb: float = Field(
+        default=100.0, gt=0, description="GB of files that are safe in the store and may stay in the data folder too."
+    )
+    worker_host: str | None = Field(
+        default=None,
+        pattern=r"^[A-Za-z0-9._-]{1,100}$",
+        description="Name of this machine among those with workers; without it its host name.",
+    )
     host: str = Field(default="127.0.0.1", description="Address to listen at.")
     port: int = Field(default=8000, ge=0, le=65535, description="Port to listen at; 0 takes a free one.")
     log_level: Literal["DEBUG", "INFO", "WARNING", "ERROR"] = Field(

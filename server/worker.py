@@ -5,21 +5,23 @@ from __future__ import annotations
 import logging
 import os
 import signal
+import socket
 import threading
 import time
 from uuid import UUID
 
 from dbos import DBOS, DBOSConfig
-from sqlalchemy import make_url
+from sqlalchemy import make_url, select
 
 from server.database import Database
 from server.database.migrate import upgrade
 from server.jobs import workers
 from server.jobs.dispatcher import Dispatcher
+from server.jobs.models import JobRow
 from server.jobs.slot import WorkerSlot
 from server.jobs.workflow import APPLICATION, APPLICATION_VERSION, QUEUE, WorkerContext, register_workflow
 from server.settings import Settings
-from server.storage import Storage
+from server.storage import Storage, open_storage
 
 log = logging.getLogger(__name__)
 
@@ -35,13 +37,14 @@ def run_worker(settings: Settings) -> None:
     """Work until SIGTERM or SIGINT; never returns."""
     database = Database(settings.sqlalchemy_url)
     upgrade(database)
-    storage = Storage(settings.data_dir)
-    slot = WorkerSlot.acquire(storage.root / "workers")
+    storage = open_storage(settings)
+    _drop_leftovers(database, storage)
+    slot = WorkerSlot.acquire(storage.root / "workers", settings.worker_host or socket.gethostname())
     stopping = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stopping.set())
     with database.writing() as session:
-        worker_id = workers.register_worker(session, slot.name).id
+        worker_id = workers.register_worker(session, slot.name, slot.host).id
     workflow = register_workflow(WorkerContext(database, storage, worker_id))
     config: DBOSConfig = {
         "name": APPLICATION,
@@ -64,6 +67,15 @@ def run_worker(settings: Settings) -> None:
     logging.shutdown()
     # A step in progress is dropped: ended in order it would be recorded as failed. It is done again, as after a crash.
     os._exit(0)
+
+
+def _drop_leftovers(database: Database, storage: Storage) -> None:
+    """Remove working files of jobs that another machine has brought to their end."""
+    with database.reading() as session:
+        done = set(session.scalars(select(JobRow.id).where(JobRow.state == "succeeded")))
+    for job_id in storage.list_ids("jobs"):
+        if job_id in done:
+            storage.remove("jobs", job_id)
 
 
 def find_system_database(settings: Settings) -> str:

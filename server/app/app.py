@@ -21,7 +21,7 @@ from server.database.migrate import upgrade
 from server.errors import error_responses
 from server.sequences.frame_images import FrameImages
 from server.settings import Settings
-from server.storage import Storage
+from server.storage import open_storage
 
 log = logging.getLogger(__name__)
 
@@ -60,7 +60,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     settings: Settings = app.state.settings
     async with AsyncExitStack() as stack:
-        storage = app.state.storage = await run_in_threadpool(Storage, settings.data_dir)
+        storage = app.state.storage = await run_in_threadpool(open_storage, settings)
         database = app.state.database = Database(settings.sqlalchemy_url)
         stack.callback(database.close)
         await run_in_threadpool(upgrade, database)

@@ -29,10 +29,10 @@ def open_studio(settings: Settings | None = None) -> Iterator[OpenStudio]:
     """Open it, with its tables up to date; a studio that runs at the same time is not disturbed."""
     from server.database import Database
     from server.database.migrate import upgrade
-    from server.storage import Storage
+    from server.storage import open_storage
 
     settings = settings or load_settings()
-    storage = Storage(settings.data_dir)
+    storage = open_storage(settings)
     database = Database(settings.sqlalchemy_url)
     try:
         upgrade(database)

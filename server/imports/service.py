@@ -179,6 +179,7 @@ def import_recording(
         columns = sequences.describe_recording(recording)
         path = recording.annotations_path
         annotations = load_annotations(path) if path is not None and path.exists() else None
+        desk.storage.publish(sequences.AREA, sequence_id)
         with desk.database.writing() as session:
             row = sequences.add_sequence(session, sequence_id, columns, _clean(report, source), account_id)
             record_act(session, account_id, "recording.import", "recording", sequence_id, name=row.name)

@@ -2,21 +2,25 @@
 
 Layout of `jobs/<id>/`: `annotations.json` as they were when the job began, `setup/`, `state-0000.npz` before the first
 chunk, `state-0001.npz` and `chunk-0000.npz` after it, and so on. A step's manifest `<step>.json` is written last and
-names the SHA-256 of each file of that step: a step whose manifest holds is done and need not be done again.
+names the SHA-256 of each file of that step: a step whose manifest holds is done and need not be done again. With a
+store behind the data folder, files and manifests go there too, so that another machine can go on.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import shutil
 import uuid
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from server.errors import StudioError
+from server.storage.digest import compute_digest
+
+if TYPE_CHECKING:
+    from server.storage.remote import RemoteFolder
 
 
 class DamagedFileError(StudioError):
@@ -28,8 +32,8 @@ class DamagedFileError(StudioError):
 class JobFiles:
     """Paths, manifests and atomic writes below one job's folder."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, remote: RemoteFolder | None = None) -> None:
+        self.folder, self._remote = folder, remote
 
     @property
     def annotations(self) -> Path:
@@ -50,23 +54,47 @@ class JobFiles:
         """What `step` returned, or None when it was not finished or a file of it has changed."""
         try:
             manifest = json.loads((self.folder / f"{step}.json").read_text())
-            self.check(manifest["files"])
+            self._check_here(manifest["files"])
+            return manifest
         except (OSError, ValueError, KeyError, DamagedFileError):
-            return None
-        return manifest
+            return self._fetch_manifest(step)
 
     def write_manifest(self, step: str, paths: list[Path], facts: dict[str, Any]) -> dict[str, Any]:
         """Seal `step` with the digests of its files."""
-        manifest = {"files": {str(path.relative_to(self.folder)): digest(path) for path in paths}, **facts}
+        files = [file for path in paths for file in (sorted(path.rglob("*")) if path.is_dir() else [path])]
+        digests = {file.relative_to(self.folder).as_posix(): compute_digest(file) for file in files if file.is_file()}
+        manifest = {"files": digests, **facts}
+        if self._remote is not None:
+            self._remote.put_blobs({digest: self.folder / name for name, digest in digests.items()})
         self.write(self.folder / f"{step}.json", lambda path: path.write_text(json.dumps(manifest, indent=1)))
+        if self._remote is not None:
+            self._remote.write_document(step, manifest)
         return manifest
 
     def check(self, digests: dict[str, str]) -> None:
-        """Raise unless every file is there with the digest given."""
+        """Raise unless every file is there with the digest given; what another machine wrote is fetched."""
+        if self._remote is not None:
+            self._remote.get_blobs(
+                (digest, self.folder / name)
+                for name, digest in digests.items()
+                if self._find_digest(self.folder / name) != digest
+            )
+        self._check_here(digests)
+
+    def _fetch_manifest(self, step: str) -> dict[str, Any] | None:
+        """What another machine did of `step`, with its files; None when none did."""
+        manifest = None if self._remote is None else self._remote.read_document(step)
+        if manifest is not None:
+            self.check(manifest["files"])
+            self.write(self.folder / f"{step}.json", lambda path: path.write_text(json.dumps(manifest, indent=1)))
+        return manifest
+
+    def _find_digest(self, path: Path) -> str:
+        return compute_digest(path) if path.is_file() else "nothing"
+
+    def _check_here(self, digests: dict[str, str]) -> None:
         for name, expected in digests.items():
-            path = self.folder / name
-            found = digest(path) if path.exists() else "nothing"
-            if found != expected:
+            if (found := self._find_digest(self.folder / name)) != expected:
                 raise DamagedFileError(
                     f"The job's file {name} is damaged: found SHA-256 {found[:12]}, needed {expected[:12]}. "
                     "Retry the job: it starts from the recording again."
@@ -90,18 +118,10 @@ class JobFiles:
                 temporary.unlink(missing_ok=True)
 
     def remove(self) -> None:
+        """Remove them, in the store too."""
         shutil.rmtree(self.folder, ignore_errors=True)
-
-
-def digest(path: Path) -> str:
-    """SHA-256 of a file, or of a folder's relative names and contents."""
-    result = hashlib.sha256()
-    if path.is_dir():
-        for file in sorted(p for p in path.rglob("*") if p.is_file()):
-            result.update(str(file.relative_to(path)).encode() + b"\0" + file.read_bytes())
-    else:
-        result.update(path.read_bytes())
-    return result.hexdigest()
+        if self._remote is not None:
+            self._remote.remove("snapshot")
 
 
 def sync(path: Path) -> None:

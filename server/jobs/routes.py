@@ -179,11 +179,12 @@ def list_workers(session: SessionDep) -> Page[WorkerOut]:
     rows = workers.list_workers(session)
     query = select(JobRow.worker_id, JobRow.id).where(JobRow.state == "running", JobRow.worker_id.is_not(None))
     busy = {row.worker_id: row.id for row in session.execute(query)}
-    return Page(items=[_worker(row, busy.get(row.id)) for row in rows], next_cursor=None)
+    now = workers.find_database_time(session)
+    return Page(items=[_worker(row, workers.is_alive(row, now), busy.get(row.id)) for row in rows], next_cursor=None)
 
 
-def _worker(row: WorkerRow, job_id: uuid.UUID | None) -> WorkerOut:
-    state = "silent" if row.state == "running" and not workers.is_alive(row) else row.state
+def _worker(row: WorkerRow, is_alive: bool, job_id: uuid.UUID | None) -> WorkerOut:
+    state = "silent" if row.state == "running" and not is_alive else row.state
     return WorkerOut.model_validate(
         {
             "id": row.id,

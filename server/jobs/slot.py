@@ -7,7 +7,6 @@ system lets go of it at the very moment the process dies, however it dies.
 from __future__ import annotations
 
 import fcntl
-import socket
 from pathlib import Path
 from typing import IO
 
@@ -17,19 +16,19 @@ MAX_SLOTS = 64
 class WorkerSlot:
     """A held name; it lasts as long as this object."""
 
-    def __init__(self, name: str, lock: IO[str]) -> None:
-        self.name = name
+    def __init__(self, host: str, number: int, lock: IO[str]) -> None:
+        self.host, self.name = host, f"{host}-{number}"
         self._lock = lock
 
     @classmethod
-    def acquire(cls, folder: Path) -> WorkerSlot:
+    def acquire(cls, folder: Path, host: str) -> WorkerSlot:
         """Take the first free name of this machine.
 
         Args:
             folder: Where the locks are; shared by the workers of one studio on this machine.
+            host: Name of this machine. Two with different data folders must not share it.
         """
         folder.mkdir(parents=True, exist_ok=True)
-        host = socket.gethostname()
         for number in range(MAX_SLOTS):
             lock = open(folder / f"{host}-{number}.lock", "w")  # noqa: SIM115 (held until the process ends)
             try:
@@ -37,5 +36,5 @@ class WorkerSlot:
             except OSError:
                 lock.close()
                 continue
-            return cls(f"{host}-{number}", lock)
+            return cls(host, number, lock)
         raise RuntimeError(f"{MAX_SLOTS} workers run on this machine already; stop some of them.")

@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 
 QUEUE = "jobs"
 APPLICATION = "handloom"
-APPLICATION_VERSION = "1"
+APPLICATION_VERSION = "2"
 """Of the steps and their files. A job begun under one version is only continued by workers of that version."""
 
 MAX_CRASHES = 3
@@ -79,8 +79,9 @@ def register_workflow(context: WorkerContext) -> Workflow:
         run = _Run(context, UUID(job_id))
         try:
             if not run.claim(attempt):
+                run.clean_up()
                 return "not wanted"
-            snapshot(job_id)
+            run.files.check(snapshot(job_id)["files"])
             begun = start(job_id, attempt)
             run.files.check(begun["files"])
             for number in range(len(begun["chunks"])):
@@ -105,9 +106,13 @@ class _Run:
         self._context, self._job_id = context, job_id
         with context.database.reading() as session:
             self._row = service.get_job(session, job_id)
-        self.files = JobFiles(context.storage.folder("jobs", job_id))
-        recording = context.storage.folder("sequences", self._row.sequence_id)
-        self.job = TrackingJob(recording, self._row.params, self.files)
+        storage = context.storage
+        self.files = JobFiles(storage.folder("jobs", job_id), storage.remote_folder("jobs", job_id))
+
+    @property
+    def job(self) -> TrackingJob:
+        recording = self._context.storage.refresh("sequences", self._row.sequence_id)
+        return TrackingJob(recording, self._row.params, self.files)
 
     def progress(self, attempt: int) -> JobProgress:
         return JobProgress(self._context.database, self._job_id, attempt, self._context.worker_id)
@@ -124,6 +129,11 @@ class _Run:
             )
         return claimed is not None
 
+    def clean_up(self) -> None:
+        """Remove the working files of a job that is done: whoever ended it may have died before that."""
+        if self._row.state == "succeeded":
+            self.files.remove()
+
     def snapshot(self) -> dict[str, Any]:
         """Keep the annotations as they are now: doing a step again must not see later ones."""
         kept = self.files.read_manifest("snapshot")
@@ -139,6 +149,7 @@ class _Run:
         track_id = uuid.uuid5(TRACK_NAMESPACE, str(self._job_id))
         folder = self._context.storage.folder("tracks", track_id)
         self.job.finish(begun, folder, self.progress(attempt))
+        self._context.storage.publish("tracks", track_id)
         with self._context.database.writing() as session:
             add_track(session, folder, track_id, self._row.sequence_id, self._job_id)
             self._end(session, attempt, "succeeded", track_id=track_id, progress=1.0, frames_done=begun["frames"])

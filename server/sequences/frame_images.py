@@ -120,6 +120,7 @@ class FrameImages:
         with self._lock:
             if key in self._open:
                 self._open.move_to_end(key)
+                self._storage.folder(service.AREA, sequence_id)  # with a store behind it, it may have left this machine
                 return self._open[key]
         with self._database.reading() as session:
             row = service.get_sequence(session, sequence_id, deleted_too=True)

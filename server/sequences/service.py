@@ -124,6 +124,7 @@ def update_sequence(
     session.refresh(row)
     recording = open_sequence(storage, row.id)
     save_sequence_json(dataclasses.replace(recording, name=row.name, hands=tuple(row.hands)))
+    storage.publish(AREA, row.id)
     return row
 
 

@@ -9,10 +9,14 @@ from __future__ import annotations
 import shutil
 import uuid
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import Depends
 from starlette.requests import HTTPConnection
+
+if TYPE_CHECKING:
+    from server.settings import Settings
+    from server.storage.remote import RemoteFolder
 
 
 class Storage:
@@ -28,6 +32,17 @@ class Storage:
         parent = self.root / area
         parent.mkdir(exist_ok=True)
         return parent / str(id_)
+
+    def refresh(self, area: str, id_: uuid.UUID) -> Path:
+        """Folder of one thing, with what other machines have changed in it. Here no other has its files."""
+        return self.folder(area, id_)
+
+    def publish(self, area: str, id_: uuid.UUID) -> None:
+        """Say that the folder of one thing is whole: other machines may have it. Here there are none."""
+
+    def remote_folder(self, area: str, id_: uuid.UUID) -> RemoteFolder | None:
+        """Where working files of one thing are kept for other machines; None when there are none."""
+        return None
 
     def remove(self, area: str, id_: uuid.UUID) -> None:
         """Remove the folder of one thing, which may be gone already. It loses its name first: no half of it is seen."""
@@ -53,6 +68,17 @@ class Storage:
         """Finish removals that were interrupted."""
         for entry in (self.root / area).glob(".removed-*"):
             shutil.rmtree(entry, ignore_errors=True)
+
+
+def open_storage(settings: Settings) -> Storage:
+    """The storage that the settings ask for: this machine's data folder, with a store behind it when one is named."""
+    if settings.store_url is None:
+        return Storage(settings.data_dir)
+    from server.storage.remote import RemoteStore  # loads the libraries of the store: not before somebody asks
+    from server.storage.shared import SharedStorage
+
+    store = RemoteStore(settings.store_url, settings.store_endpoint)
+    return SharedStorage(settings.data_dir, store, int(settings.store_cache_gb * 1e9))
 
 
 def get_storage(connection: HTTPConnection) -> Storage:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import logging
 import shutil
 import uuid
 from collections.abc import Callable, Iterator
@@ -50,6 +51,41 @@ def postgres_url() -> Iterator[str]:
             yield url
     except NoPostgresError as problem:
         pytest.skip(str(problem))
+
+
+@dataclass(frozen=True)
+class S3:
+    """An S3-compatible store of this test run."""
+
+    endpoint: str
+    environment: dict[str, str]
+    """Keys, as the usual variables name them."""
+
+
+@pytest.fixture(scope="session")
+def s3_server() -> Iterator[S3]:
+    """A real HTTP server that speaks S3, on this machine."""
+    from moto.server import ThreadedMotoServer
+
+    logging.getLogger("werkzeug").setLevel(logging.WARNING)  # a line for each request otherwise
+    server = ThreadedMotoServer(ip_address="127.0.0.1", port=0, verbose=False)
+    server.start()
+    host, port = server.get_host_and_port()
+    environment = {
+        "AWS_ACCESS_KEY_ID": "handloom",
+        "AWS_SECRET_ACCESS_KEY": "not-secret-at-all",
+        "AWS_DEFAULT_REGION": "us-east-1",
+    }
+    yield S3(f"http://{host}:{port}", environment)
+    server.stop()
+
+
+@pytest.fixture
+def s3(s3_server: S3, monkeypatch: pytest.MonkeyPatch) -> S3:
+    """The store, with its keys in the environment."""
+    for name, value in s3_server.environment.items():
+        monkeypatch.setenv(name, value)
+    return s3_server
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])

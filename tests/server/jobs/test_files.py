@@ -19,7 +19,7 @@ def test_a_step_is_done_only_while_every_file_of_it_is_as_it_was_written(tmp_pat
     assert sealed["frames"] == 3
     (files.setup / "model.npz").write_bytes(b"other")
     assert files.read_manifest("start") is None
-    with pytest.raises(DamagedFileError, match="setup is damaged"):
+    with pytest.raises(DamagedFileError, match=r"setup/model\.npz is damaged"):
         files.check(sealed["files"])
 
 

@@ -10,15 +10,15 @@ from pathlib import Path
 from server.jobs.slot import WorkerSlot
 
 HOLD = "import sys, time; from pathlib import Path; from server.jobs.slot import WorkerSlot; \
-slot = WorkerSlot.acquire(Path(sys.argv[1])); print(slot.name, flush=True); time.sleep(60)"
+slot = WorkerSlot.acquire(Path(sys.argv[1]), 'desk'); print(slot.name, flush=True); time.sleep(60)"
 
 
 def test_a_name_is_free_again_the_moment_its_process_is_killed(tmp_path: Path) -> None:
     holder = subprocess.Popen([sys.executable, "-c", HOLD, str(tmp_path)], stdout=subprocess.PIPE, text=True)
     assert holder.stdout is not None
     name = holder.stdout.readline().strip()
-    other = WorkerSlot.acquire(tmp_path)
+    other = WorkerSlot.acquire(tmp_path, "desk")
     assert other.name != name
     holder.send_signal(signal.SIGKILL)
     holder.wait()
-    assert WorkerSlot.acquire(tmp_path).name == name
+    assert WorkerSlot.acquire(tmp_path, "desk").name == name

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from server.accounts.models import LOCAL_ACCOUNT_ID
-from server.database import Database
+from server.database import Database, utc_now
 from server.database.migrate import upgrade
 from server.imports.service import ImportDesk, import_recording
 from server.jobs import service, workers
@@ -56,7 +56,7 @@ class Bench:
         ends = time.monotonic() + 60.0
         while time.monotonic() < ends:
             with self.database.reading() as session:
-                if sum(workers.is_alive(row) for row in workers.list_workers(session)) == count:
+                if sum(workers.is_alive(row, utc_now()) for row in workers.list_workers(session)) == count:
                     return
             time.sleep(0.05)
         raise AssertionError("the workers do not start")

@@ -48,4 +48,4 @@ def test_the_work_of_a_slot_that_lives_again_is_left_to_it(database) -> None:
     assert find_abandoned(database) == []
     with database.reading() as session:
         assert session.get_one(WorkerRow, old.id).state == "lost"
-        assert workers.is_alive(session.get_one(WorkerRow, new.id))
+        assert workers.is_alive(session.get_one(WorkerRow, new.id), utc_now())

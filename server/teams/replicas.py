@@ -46,7 +46,8 @@ def describe_replica_sets(session: Session, rows: Sequence[ReplicaSetRow]) -> li
         .group_by(AssignmentRow.replica_set_id, AssignmentRow.state)
     )
     for id_, state, count in session.execute(query):
-        states[id_][state] = count
+        if id_ is not None:
+            states[id_][state] = count
     names = dict(
         session.execute(
             select(SequenceRow.id, SequenceRow.name).where(SequenceRow.id.in_({row.sequence_id for row in rows}))

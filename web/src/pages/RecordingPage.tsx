@@ -1,7 +1,7 @@
 import { ActionIcon, Button, Code, Group, Menu, SimpleGrid, Stack, Text, Title, Tooltip } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { notifications } from "@mantine/notifications";
-import { IconDots, IconDownload, IconFileReport, IconPencil, IconPlayerPlay, IconTrash } from "@tabler/icons-react";
+import { IconChartBar, IconDots, IconDownload, IconFileReport, IconPencil, IconPlayerPlay, IconTrash } from "@tabler/icons-react";
 import { useMemo } from "react";
 import { Link, useNavigate, useParams } from "react-router";
 import { useAnnotations } from "../api/annotations";
@@ -183,9 +183,14 @@ export function RecordingPage() {
         <Cameras recording={recording} />
 
         <section aria-label="Tracks">
-          <Title order={2} mb="sm">
-            Tracks
-          </Title>
+          <Group justify="space-between" mb="sm">
+            <Title order={2}>Tracks</Title>
+            {tracks.data && tracks.data.length > 0 && (
+              <Button size="xs" variant="subtle" component={Link} to={`/evaluations?recordings=${recording.id}`} leftSection={<IconChartBar size={16} aria-hidden />}>
+                Evaluate and compare
+              </Button>
+            )}
+          </Group>
           {tracks.data && tracks.data.length > 0 ? (
             <TrackTable tracks={tracks.data} />
           ) : (

@@ -18,6 +18,7 @@ const ROOMS = [
   { to: "/recordings", label: "Recordings" },
   { to: "/annotate", label: "Annotate" },
   { to: "/tracks", label: "Tracks" },
+  { to: "/evaluations", label: "Evaluations" },
   { to: "/jobs", label: "Jobs" },
 ] as const;
 

@@ -13,6 +13,7 @@ import { TracksPage } from "./TracksPage";
 
 const AnnotatePage = lazy(() => import("./AnnotatePage"));
 const AnnotateChooser = lazy(() => import("./AnnotateChooser"));
+const EvaluationsPage = lazy(() => import("./evaluations/EvaluationsPage"));
 const TrackPage = lazy(() => import("./TrackPage"));
 
 /** Addresses hold the state of a page, so that a link shows a colleague the same thing. */
@@ -33,6 +34,7 @@ export const router = createBrowserRouter([
           { path: "imports/:importId", element: <ImportPage /> },
           { path: "tracks", element: <TracksPage /> },
           { path: "tracks/:trackId", element: <TrackPage /> },
+          { path: "evaluations", element: <EvaluationsPage /> },
           { path: "jobs", element: <JobsPage /> },
           { path: "jobs/:jobId", element: <JobPage /> },
           { path: "*", element: <MissingPage /> },

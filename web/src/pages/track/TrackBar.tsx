@@ -2,6 +2,7 @@ import { ActionIcon, Button, Group, Menu, Select, Text, Tooltip } from "@mantine
 import { notifications } from "@mantine/notifications";
 import {
   IconAlertTriangle,
+  IconChartBar,
   IconChevronLeft,
   IconChevronRight,
   IconCircleCheck,
@@ -118,6 +119,11 @@ export function TrackBar(props: TrackBarProps) {
           <Button size="compact-sm" variant="default" ml="sm" leftSection={<IconPencil size={14} aria-hidden />} onClick={onAnnotate}>
             Annotate
           </Button>
+        </Tooltip>
+        <Tooltip label="Evaluate this track, or compare it with the others of its recording">
+          <ActionIcon component={Link} to={`/evaluations?recordings=${recording.id}&reference=${track.id}`} aria-label="Evaluate and compare">
+            <IconChartBar size={18} />
+          </ActionIcon>
         </Tooltip>
         <Menu position="bottom-end">
           <Menu.Target>

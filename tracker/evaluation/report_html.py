@@ -248,4 +248,5 @@ def _lineage(tracks: Sequence[Document], names: Mapping[str, str]) -> str:
         facts = {**track["labels"], **{f"track {name}": value for name, value in track["origin"].items()}}
         text = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in facts.items() if value is not None)
         rows.append(_row(names[track["key"]], [f'<td style="white-space:normal"><code>{escape(text)}</code></td>']))
-    return "<h2>What was judged, and by which labels</h2>" + _table(["Track", "Labels and track"], rows)
+    body = "".join(rows)
+    return f"<h2>What was judged, and by which labels</h2><div class=scroll><table><tbody>{body}</tbody></table></div>"

@@ -13,7 +13,7 @@ from tracker.model.joints import HAND_EDGES
 
 SIZE = (384, 288)
 """Width and height of a picture, px."""
-MARGIN = 0.2
+MARGIN = 0.12
 """Of the hand's box, on every side."""
 SMALLEST = 64
 """Width below which nothing is enlarged further, image px."""

@@ -22,7 +22,7 @@ function Tables({ comparison, choice, onChange }: { comparison: Comparison; choi
   return (
     <Stack gap="xl">
       <section aria-label="Error">
-        <SummaryTable comparison={comparison} onReference={(reference) => onChange({ reference })} />
+        <SummaryTable comparison={comparison} reference={choice.reference} onReference={(reference) => onChange({ reference })} />
         <Text size="sm" className="quiet" mt="sm">
           Distance in the image between marked and tracked joints, px. Lost frames count like any other.
           {comparison.tracks.length > 1 && " Differences are over the joints and frames that both tracks have; below zero is better."}

@@ -20,11 +20,13 @@ const valuesOf = (tracks: readonly JudgedTrack[], pick: (track: JudgedTrack) => 
 
 interface SummaryTableProps {
   comparison: Comparison;
+  /** As chosen; the comparison follows when the server has answered. */
+  reference: string | null;
   onReference: (track: string) => void;
 }
 
 /** A row for each track, as in the papers: mean, standard deviation, maximum, and what they hide. */
-export function SummaryTable({ comparison, onReference }: SummaryTableProps) {
+export function SummaryTable({ comparison, reference, onReference }: SummaryTableProps) {
   const { tracks, within_px: within } = comparison;
   const isSeveral = tracks.length > 1;
   const parts = [
@@ -103,7 +105,7 @@ export function SummaryTable({ comparison, onReference }: SummaryTableProps) {
                 <Table.Td>
                   <Radio
                     size="xs"
-                    checked={comparison.reference === track.key}
+                    checked={(reference ?? comparison.reference) === track.key}
                     onChange={() => onReference(track.key)}
                     aria-label={`${track.name} of ${track.recording} is the reference`}
                   />

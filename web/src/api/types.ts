@@ -21,6 +21,8 @@ export type Preset = Schemas["JobPreset"];
 export type TrackFrames = Schemas["TrackFrames"];
 export type FrameEnergy = Schemas["FrameEnergy"];
 export type TrackJoints = Schemas["TrackJoints"];
+/** A machine's proposal as the server gives it; `model/suggestion.ts` has it as the browser keeps it. */
+export type WireSuggestion = Schemas["Suggestion"];
 export type ViewerSession = Schemas["ViewerSessionOut"];
 
 export type Recording = Omit<Schemas["SequenceOut"], "report" | "best_track"> & {

@@ -14,6 +14,8 @@ export interface PaneGestures {
   onTurnHand?: (turn: { about: Point; angle: number; factor: number }) => void;
   onDragEnd?: () => void;
   onCycle?: (joint: number) => void;
+  /** A double click; whether it meant something. */
+  onDouble?: (view: View, screen: Point) => boolean;
   /** Space is held for panning, so it was not meant for playing. */
   onSpacePan?: () => void;
 }
@@ -176,7 +178,9 @@ export function usePaneGestures(
 
     onDoubleClick(event: ReactMouseEvent<HTMLElement>) {
       const box = event.currentTarget.getBoundingClientRect();
-      if (!isInImage(toPixel(view, { x: event.clientX - box.left, y: event.clientY - box.top }), image)) onView(null);
+      const screen = { x: event.clientX - box.left, y: event.clientY - box.top };
+      if (gestures.onDouble?.(view, screen)) return;
+      if (!isInImage(toPixel(view, screen), image)) onView(null);
     },
 
     onPointerLeave() {

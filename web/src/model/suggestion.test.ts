@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { acceptFrame, acceptHand, acceptJoint } from "../actions/annotate/accept";
+import { acceptAll, acceptHand, acceptJoint } from "../actions/annotate/accept";
 import type { AnnotatorState } from "../state/annotator";
 import { createStore } from "../state/store";
 import { createSuggestionStore, openJointsAt, setHidden, suggest, withdraw } from "../state/suggestions";
@@ -50,7 +50,7 @@ test("accepting the frame takes both hands in one step of undo", () => {
   suggest(store, [suggestion("track", 5), suggestion("track", 6, 21, { ...place, hand: "left" }), suggestion("track", 9, 21, { ...place, frame: 4 })]);
   const annotator = createStore(start());
   const undo = createUndoStack(annotator);
-  annotator.set(acceptFrame(annotator.get(), store.get()), "person");
+  annotator.set(acceptAll(annotator.get(), { suggestions: store.get(), cameras: ["cam0"] }), "person");
   expect(Object.keys(annotator.get().poses).sort()).toEqual(["3|left|cam0", "3|right|cam0"]);
   undo.undo();
   expect(annotator.get().poses).toEqual({});
@@ -65,5 +65,5 @@ test("suggestions are withdrawn by source and by hand, and hidden without being 
   setHidden(store, ["fit"]);
   expect(openJointsAt(store.get(), start(), place)[0]?.source).toBe("track");
   withdraw(store, "track");
-  expect(acceptFrame(start(), store.get()).poses).toEqual({});
+  expect(acceptAll(start(), { suggestions: store.get(), cameras: ["cam0"] }).poses).toEqual({});
 });

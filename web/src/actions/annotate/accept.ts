@@ -20,10 +20,7 @@ export const acceptHand: Action<SuggestionsState> = (state, suggestions) => {
   return { ...withActivePose(state, pose), joint: nextOpenJoint(pose, state.joint) };
 };
 
-/** Take over what is suggested for both hands of the image: one step for undo, one save a hand. */
-export const acceptFrame: Action<SuggestionsState> = (state, suggestions) => acceptAll(state, { suggestions, cameras: [state.camera] });
-
-/** The same in the images of several cameras. */
+/** Take over what is suggested for both hands in the images of some cameras: one step for undo, one save a hand. */
 export const acceptAll: Action<{ suggestions: SuggestionsState; cameras: readonly string[] }> = (state, { suggestions, cameras }) => {
   const poses = { ...state.poses };
   for (const camera of cameras) {

@@ -6,6 +6,7 @@ import { decidedCount, keyText, statusOf, type JointStatus } from "../../model/p
 import { useHint } from "../../state/keys";
 import { HandMark } from "../parts/HandBadge";
 import { useAnnotating } from "./annotating";
+import { SuggestLine } from "./SuggestLine";
 import classes from "./JointsPanel.module.css";
 import { JointError, ViewErrors } from "./ViewErrors";
 
@@ -79,6 +80,7 @@ export function JointsPanel() {
         })}
       </ScrollArea>
       <ViewErrors />
+      <SuggestLine />
     </div>
   );
 }

@@ -15,6 +15,7 @@ import { useAnnotating } from "./annotating";
 import classes from "./Annotator.module.css";
 import { CursorCurve } from "./EpipolarLayer";
 import { LAYERS } from "./mounts";
+import { useSuggestDouble } from "./useSuggestDouble";
 
 interface PaneProps {
   camera: Camera;
@@ -33,6 +34,7 @@ export function Pane({ camera, label, layers, isBusy, overlay }: PaneProps) {
   const shown = isActive ? pose : (state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })] ?? emptyPose());
   const here = (): void => act(activateCamera, camera.id);
   const pointer = useMemo(() => pointerOn(hover, camera.id), [hover, camera.id]);
+  const { notePlace, onDouble } = useSuggestDouble(camera);
   return (
     <ImagePane
       label={`${label} of frame ${state.frame}, ${camera.id}. Next click places ${jointLabel(state.joint)}.`}
@@ -47,7 +49,9 @@ export function Pane({ camera, label, layers, isBusy, overlay }: PaneProps) {
       isMagnified={isMagnified}
       isBusy={isBusy}
       hitJoint={(view, screen) => (options.areHandsShown ? jointAt(shown, view, screen, isActive ? state.joint : -1) : -1)}
+      onDouble={onDouble}
       onPlace={(pixel) => {
+        notePlace();
         here();
         act(placeIn[options.placeMode], pixel);
       }}

@@ -14,7 +14,8 @@ import { HandsLayer } from "./HandsLayer";
 import { JointsPanel } from "./JointsPanel";
 import { PictureFailure } from "./PictureFailure";
 import { RefusalCards } from "./RefusalCards";
-import { SuggestionsLayer } from "./SuggestionsLayer";
+import { SuggestLayer } from "./SuggestLayer";
+import { SuggestTool } from "./SuggestTool";
 
 /** Something drawn on a picture (Konva), in screen coordinates of the view. */
 export interface LayerProps {
@@ -29,7 +30,7 @@ export interface Panel {
 }
 
 /** Drawn on every picture, in order, the last one on top. */
-export const LAYERS: readonly ComponentType<LayerProps>[] = [EpipolarLayer, SuggestionsLayer, HandsLayer];
+export const LAYERS: readonly ComponentType<LayerProps>[] = [EpipolarLayer, SuggestLayer, HandsLayer];
 
 /** Tabs of the panel on the right. */
 export const PANELS: readonly Panel[] = [{ id: "joints", label: "Joints", Component: JointsPanel }];
@@ -41,7 +42,7 @@ export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, Pic
 export const BARS: readonly ComponentType[] = [];
 
 /** Buttons at the end of the frame bar. */
-export const FRAME_TOOLS: readonly ComponentType[] = [CamerasTool];
+export const FRAME_TOOLS: readonly ComponentType[] = [CamerasTool, SuggestTool];
 
 /** Buttons at the end of the tool rail. */
 export const TOOLS: readonly ComponentType[] = [CameraTools];

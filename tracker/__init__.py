@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from tracker.label_formats.image_names import list_image_names
     from tracker.label_formats.label_files import pack_files, read_label_files, save_label_files
     from tracker.label_formats.label_set import ExportedLabels, ImportedLabels, ImportHints, LabelSet
+    from tracker.label_formats.orders import JOINT_ORDERS
     from tracker.model.articulated import ArticulatedModel
     from tracker.model.default_hand import default_hand
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
@@ -80,6 +81,7 @@ _HOMES = {
     "ImportRefusedError": "tracker.errors",
     "ImportReport": "tracker.capture.import_report",
     "ImportedLabels": "tracker.label_formats.label_set",
+    "JOINT_ORDERS": "tracker.label_formats.orders",
     "LABEL_FORMATS": "tracker.label_formats.formats",
     "LabelFormat": "tracker.label_formats.formats",
     "LabelSet": "tracker.label_formats.label_set",
@@ -141,6 +143,7 @@ __all__ = [
     "HAND_EDGES",
     "HAND_JOINTS",
     "IMPORT_FORMATS",
+    "JOINT_ORDERS",
     "LABEL_FORMATS",
     "MIN_FIT_JOINTS",
     "PRESETS",

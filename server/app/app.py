@@ -43,6 +43,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.settings = settings
     app.state.failed_tries = FailedTries()
+    app.state.place_guards = PLACE_GUARDS
     app.state.sequence_facts = SEQUENCE_FACTS
     app.state.place_guards = PLACE_GUARDS
     install_error_handler(app)

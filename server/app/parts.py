@@ -14,6 +14,8 @@ from server.annotations.guards import PlaceGuard
 from server.annotations.service import find_annotated_frames
 from server.app import health
 from server.evaluations import routes as evaluations
+from server.exchange import routes as exchange
+from server.exchange import snapshot_routes
 from server.hand_models import routes as hand_models
 from server.imports import routes as imports
 from server.imports.lifespan import clean_imports
@@ -49,6 +51,8 @@ ROUTERS: tuple[APIRouter, ...] = (
     triangulation_routes.router,
     suggestions.router,
     *teams.ROUTERS,
+    exchange.router,
+    snapshot_routes.router,
 )
 """All under `/api/v1`."""
 

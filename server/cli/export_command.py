@@ -1,4 +1,4 @@
-"""`handloom export`: annotations, a recording or a track out of the studio."""
+"""`handloom export`: labels, a recording or a track out of the studio."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 import json
 import os
 import shutil
+import sys
 import uuid
 from collections.abc import Callable
 from pathlib import Path
@@ -22,20 +23,32 @@ if TYPE_CHECKING:
     from server.tracks.models import TrackRow
 
 TRACK_FILES = ("npz", "csv", "glb", "mano")
-FORMATS = ("annotations", "recording", "track", *TRACK_FILES)
+LABELS = ("annotations", "coco_keypoints", "coco_wholebody", "freihand", "interhand", "deeplabcut", "t16")
+"""A test holds them equal to the tracker's `LABEL_FORMATS`, which would take long to load here."""
+FORMATS = (*LABELS, "recording", "track", *TRACK_FILES)
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "export",
         help="copy something out of the studio",
-        description="Copy a recording's annotations (annotations.json), the recording (a folder, with its annotations) "
-        "or its newest track out of the studio: the folder that tracking wrote (track), its arrays (npz), a table of "
-        "joints (csv), an animation (glb: glTF) or MANO-style parameters (mano: npz).",
+        description="Copy a recording's labels (annotations.json or a format of others), the recording (a folder, with "
+        "its annotations) or its newest track out of the studio: the folder that tracking wrote (track), its arrays "
+        "(npz), a table of joints (csv), an animation (glb: glTF) or MANO-style parameters (mano: npz). What a format "
+        "of labels cannot hold is said on stderr.",
     )
-    parser.add_argument("name", metavar="NAME", help="name or id of a recording; for a track also the track's id")
+    parser.add_argument(
+        "name",
+        metavar="NAME",
+        nargs="+",
+        help="name or id of a recording; for a track also the track's id; for COCO several recordings",
+    )
     parser.add_argument("--format", choices=FORMATS, required=True)
     parser.add_argument("--out", type=Path, required=True, metavar="PATH", help="a name that does not exist yet")
+    parser.add_argument(
+        "--snapshot", type=int, metavar="V", help="labels: those of this snapshot's version, not of now"
+    )
+    parser.add_argument("--track", metavar="ID", help="labels in 3D: take the joints in space from this track")
     add_json(parser)
     parser.set_defaults(run=run_guarded(run))
 
@@ -46,16 +59,21 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"{out}: is there already; give a name that does not exist yet.")
     if not out.parent.is_dir():
         raise CommandError(f"{out.parent}: is no folder; make it first.")
+    is_labels, names = args.format in LABELS, ", ".join(args.name)
+    if not is_labels and (args.snapshot is not None or args.track is not None):
+        raise CommandError(f"--snapshot and --track are for labels ({', '.join(LABELS)}), not for {args.format}.")
+    if len(args.name) > 1 and (not is_labels or args.snapshot is not None or args.track is not None):
+        raise CommandError(f"{len(args.name)} names ({names}); this exports one thing at a time.")
     with open_studio() as studio, studio.database.reading() as session:
-        if args.format == "track":
-            result = _export_track(session, studio.storage, args.name, out)
+        if is_labels:
+            result = _export_labels(session, studio.storage, args, out)
+        elif args.format == "track":
+            result = _export_track(session, studio.storage, args.name[0], out)
         elif args.format in TRACK_FILES:
-            result = _export_track_file(session, studio.storage, args.name, args.format, out)
+            result = _export_track_file(session, studio.storage, args.name[0], args.format, out)
         else:
-            sequence = find_recording(session, args.name)
-            export = _export_annotations if args.format == "annotations" else _export_recording
-            result = export(session, studio.storage, sequence, out)
-    return answer(args, {"out": str(out), "format": args.format, **result}, f"{args.format} of {args.name}: {out}")
+            result = _export_recording(session, studio.storage, find_recording(session, args.name[0]), out)
+    return answer(args, {"out": str(out), "format": args.format, **result}, f"{args.format} of {names}: {out}")
 
 
 def find_recording(session: Session, name: str) -> SequenceRow:
@@ -79,12 +97,26 @@ def find_recording(session: Session, name: str) -> SequenceRow:
     raise CommandError(f"There is no recording {name!r}; {known}.")
 
 
-def _export_annotations(session: Session, storage: Storage, sequence: SequenceRow, out: Path) -> dict[str, Any]:
-    from server.annotations.service import export_annotations
+def _export_labels(session: Session, storage: Storage, args: argparse.Namespace, out: Path) -> dict[str, Any]:
+    from server.exchange.label_sets import check_track, open_label_set, read_labels
+    from server.exchange.snapshots import find_snapshot
+    from tracker import export_labels, save_label_files
 
-    document = export_annotations(session, sequence.id)
-    _appear(out, lambda path: path.write_text(json.dumps(document) + "\n"))
-    return {"items": len(document["items"])}
+    rows = [find_recording(session, name) for name in args.name]
+    if len({row.id for row in rows}) != len(rows):
+        raise CommandError("A recording is named twice.")
+    track_id = _read_id(args.track) if args.track is not None else None
+    if args.track is not None:
+        if track_id is None:
+            raise CommandError(f"--track {args.track!r} is no id of a track.")
+        check_track(session, rows[0].id, track_id)
+    snapshot = None if args.snapshot is None else find_snapshot(session, rows[0].id, args.snapshot)
+    sets = [open_label_set(storage, row, read_labels(session, storage, row.id, snapshot), track_id) for row in rows]
+    made = export_labels(args.format, sets)
+    for note in made.notes:
+        sys.stderr.write(f"handloom: {note}\n")
+    _appear(out, lambda path: save_label_files(path, made.files))
+    return {"items": made.items, "joints": made.joints, "notes": list(made.notes)}
 
 
 def _export_recording(session: Session, storage: Storage, sequence: SequenceRow, out: Path) -> dict[str, Any]:

@@ -1,11 +1,13 @@
-"""`handloom import`: a recording from files on this machine into the studio."""
+"""`handloom import`: a recording, or labels of one, from files on this machine into the studio."""
 
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from server.cli.export_command import LABELS, find_recording
 from server.cli.guarded import CommandError, add_json, answer, run_guarded
 from server.cli.open_studio import open_studio
 
@@ -34,12 +36,27 @@ TEXTS = {
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "import",
-        help="bring a recording into the studio",
-        description="Bring a recording into the studio: all of it, or nothing and why. The format is recognised "
-        "when it can be.",
+        help="bring a recording, or labels of one, into the studio",
+        description="Bring a recording into the studio, or with --into the labels of recordings that are there: all of "
+        "it, or nothing and why. The format is recognised when it can be.",
     )
     parser.add_argument("path", type=Path, metavar="PATH", help="a folder or file")
-    parser.add_argument("--format", metavar="F", help="recording_folder, rgbd_folder, tum_rgbd or synced_videos")
+    parser.add_argument(
+        "--format",
+        metavar="F",
+        help=f"recording_folder, rgbd_folder, tum_rgbd or synced_videos; of labels: {', '.join(LABELS)}",
+    )
+    labels = parser.add_argument_group("labels")
+    labels.add_argument("--into", nargs="+", metavar="NAME", help="labels: names or ids of the recordings they are of")
+    labels.add_argument(
+        "--policy",
+        choices=("keep", "replace"),
+        help="labels: what becomes of hands that are labelled otherwise; without it such labels are refused",
+    )
+    labels.add_argument("--hand", choices=("right", "left"), help="labels: of files that know one hand only")
+    labels.add_argument("--camera", metavar="ID", help="labels: of files that don't name it")
+    labels.add_argument("--pixel-centre", type=float, metavar="N", help="labels: 0 or 0.5, of the top-left pixel")
+    labels.add_argument("--joint-order", metavar="ORDER", help="labels: of files that number the joints")
     for name, help_text in NUMBERS.items():
         parser.add_argument(f"--{name}", type=float, metavar="N", help=help_text)
     for name, help_text in TEXTS.items():
@@ -55,6 +72,8 @@ def run(args: argparse.Namespace) -> int:
     path: Path = args.path.expanduser().absolute()
     if not path.exists():
         raise CommandError(f"{args.path}: does not exist; needed a recording's folder or a video.")
+    if args.into or args.format in LABELS:
+        return _import_labels(args, path)
     names = ("format", *NUMBERS, *TEXTS, "distortion", "hands", "allow-gaps")
     given = {name.replace("-", "_"): getattr(args, name.replace("-", "_")) for name in names}
     options = {name: value for name, value in given.items() if value is not None}
@@ -62,6 +81,57 @@ def run(args: argparse.Namespace) -> int:
         row = import_recording(studio, path, options)
     result = {"id": str(row.id), "name": row.name, "frames": row.frame_count, "report": row.report}
     return answer(args, result, f"{row.name}: {row.frame_count} frames imported as {row.id}")
+
+
+def _import_labels(args: argparse.Namespace, path: Path) -> int:
+    from server.accounts.models import LOCAL_ACCOUNT_ID, Account
+    from server.app.parts import PLACE_GUARDS
+    from server.exchange.importing import apply_import, find_problems, plan_import, read_files
+    from tracker import ImportHints
+
+    if not args.into:
+        raise CommandError(f"Labels in {args.format} belong to a recording; say which with --into NAME.")
+    hints = ImportHints(args.hand, args.camera, args.pixel_centre, args.joint_order)
+    with open_studio() as studio:
+        with studio.database.reading() as session:
+            rows = [find_recording(session, name) for name in dict.fromkeys(args.into)]
+            account = session.get(Account, LOCAL_ACCOUNT_ID)
+            assert account is not None
+        labels = read_files(studio.storage, path, rows, args.format, hints)
+        for warning in labels.found.warnings:
+            sys.stderr.write(f"handloom: {warning}\n")
+        with studio.database.writing() as session:
+            plans = plan_import(session, rows, labels, account, PLACE_GUARDS)
+            if problems := find_problems(labels, plans):
+                raise CommandError(f"{args.path}: nothing was imported. {' '.join(problems)}")
+            conflicts = [f"frame {c.frame} of {c.camera}, {c.hand}" for p in plans for c in p.conflicts.values()]
+            if conflicts and args.policy is None:
+                raise CommandError(
+                    f"{args.path}: {len(conflicts)} hands are labelled otherwise already ({'; '.join(conflicts[:5])}); "
+                    "nothing was imported. Say --policy keep to leave those as they are, or --policy replace."
+                )
+            done = apply_import(
+                session, studio.storage, rows, labels, account, PLACE_GUARDS, args.policy or "keep", None
+            )
+    recordings = [
+        {
+            "id": str(item.sequence.id),
+            "name": item.sequence.name,
+            "added": item.added,
+            "replaced": item.replaced,
+            "kept": item.kept,
+            "locked": item.locked,
+            "before": item.before.version if item.before else None,
+        }
+        for item in done
+    ]
+    told = "; ".join(
+        f"{item['name']}: {item['added']} hands added, {item['replaced']} replaced, {item['kept']} kept as they were"
+        + (f", {item['locked']} locked" if item["locked"] else "")
+        for item in recordings
+    )
+    result = {"format": labels.format, "warnings": list(labels.found.warnings), "recordings": recordings}
+    return answer(args, result, told)
 
 
 def import_recording(studio: OpenStudio, path: Path, options: dict[str, Any]) -> SequenceRow:

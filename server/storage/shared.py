@@ -25,6 +25,7 @@ SHARED_AREAS = frozenset({"sequences", "tracks", "snapshots", "models"})
 """Whose folders are finished when they are published. Jobs keep their working files in the store step by step."""
 
 MANIFEST = "manifest"
+DOCUMENT = "document"
 IDLE_SECONDS = 3600.0
 """A folder asked for more recently than this is never dropped from this machine: somebody may be reading it."""
 
@@ -85,6 +86,21 @@ class SharedStorage(Storage):
         manifest = {"version": 1, "files": files}
         remote.write_document(MANIFEST, manifest)
         self._write_note(area, id_, manifest)
+
+    def document(self, area: str, id_: uuid.UUID) -> Path:
+        """File of a thing that is one document, fetched when it is in the store only."""
+        path = super().document(area, id_)
+        if not path.exists() and (described := self._store.folder(area, id_).read_document(DOCUMENT)) is not None:
+            self._store.folder(area, id_).get_blobs([(described["sha256"], path)])
+        return path
+
+    def add_document(self, area: str, id_: uuid.UUID, data: bytes) -> None:
+        """Write such a file here and in the store."""
+        super().add_document(area, id_, data)
+        path, remote = super().document(area, id_), self._store.folder(area, id_)
+        digest = compute_digest(path)
+        remote.put_blobs({digest: path})
+        remote.write_document(DOCUMENT, {"version": 1, "sha256": digest, "bytes": len(data)})
 
     def remove(self, area: str, id_: uuid.UUID) -> None:
         """Remove it here and in the store."""

@@ -6,6 +6,7 @@ folders), `uploads`, and those of other rooms.
 
 from __future__ import annotations
 
+import os
 import shutil
 import uuid
 from pathlib import Path
@@ -43,6 +44,28 @@ class Storage:
     def remote_folder(self, area: str, id_: uuid.UUID) -> RemoteFolder | None:
         """Where working files of one thing are kept for other machines; None when there are none."""
         return None
+
+    def document(self, area: str, id_: uuid.UUID) -> Path:
+        """File `<area>/<id>.json` of a thing that is one document; it need not exist yet."""
+        return Storage.folder(self, area, id_).with_suffix(".json")
+
+    def add_document(self, area: str, id_: uuid.UUID, data: bytes) -> None:
+        """Write such a file, whole and on the disk before this returns. One that is there is never written again."""
+        path = Storage.document(self, area, id_)
+        unfinished = path.with_name(f".unfinished-{uuid.uuid4().hex}")
+        try:
+            with unfinished.open("xb") as file:
+                file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+            os.link(unfinished, path)
+        finally:
+            unfinished.unlink(missing_ok=True)
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
 
     def remove(self, area: str, id_: uuid.UUID) -> None:
         """Remove the folder of one thing, which may be gone already. It loses its name first: no half of it is seen."""

@@ -31,9 +31,6 @@ class ImageNames:
     stored: dict[Place, str]
     _ends: list[dict[str, set[Place]]] = field(default_factory=list)
 
-    def __post_init__(self) -> None:
-        self._ends.extend(_index_ends(names) for names in (self.originals, self.stored))
-
     def name(self, place: Place) -> str:
         """What to call the image of a place in a file for others: as it was called originally, where that is known."""
         return self.originals.get(place) or self.stored[place]
@@ -41,6 +38,8 @@ class ImageNames:
     def find(self, name: str, camera: str | None = None) -> list[Place]:
         """Places that a name may mean. The longest end of it that is known decides, original names before stored ones;
         then the camera, told or in its path."""
+        if not self._ends:
+            self._ends.extend(_index_ends(names) for names in (self.originals, self.stored))
         parts = PurePosixPath(name.replace("\\", "/")).parts
         for start in range(len(parts)):
             for ends in self._ends:

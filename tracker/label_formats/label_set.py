@@ -60,7 +60,7 @@ class ImportHints:
         hand: `right` or `left`, of files that know one hand only.
         camera: Id of the camera, of files that don't name one.
         pixel_centre: Coordinate of the centre of the top-left pixel in the file: 0 or 0.5; None takes the format's.
-        joint_order: One of ORDERS, of files that number the joints.
+        joint_order: One of JOINT_ORDERS, of files that number the joints.
     """
 
     hand: str | None = None

@@ -22,7 +22,7 @@ def _list_finger(finger: str) -> tuple[str, ...]:
 
 WRIST_FIRST: tuple[str, ...] = ("wrist", *(joint for finger in FINGERS for joint in _list_finger(finger)))
 
-ORDERS: dict[str, tuple[str, ...]] = {
+JOINT_ORDERS: dict[str, tuple[str, ...]] = {
     "handloom": HAND_JOINTS,
     "openpose": WRIST_FIRST,
     "mediapipe": WRIST_FIRST,
@@ -45,13 +45,13 @@ _THUMB_NAMES = {"tm": "cmc", "dip": "ip", "pip": "ip"}
 def to_order(values: Array, order: str) -> Array:
     """(21, n) values of our joints in the order of others."""
     assert values.shape[0] == len(HAND_JOINTS), values.shape
-    return values[[HAND_JOINTS.index(name) for name in ORDERS[order]]]
+    return values[[HAND_JOINTS.index(name) for name in JOINT_ORDERS[order]]]
 
 
 def from_order(values: Array, order: str) -> Array:
     """(21, n) values of others' joints in our order."""
     assert values.shape[0] == len(HAND_JOINTS), values.shape
-    return values[[ORDERS[order].index(name) for name in HAND_JOINTS]]
+    return values[[JOINT_ORDERS[order].index(name) for name in HAND_JOINTS]]
 
 
 def find_joint(name: str) -> int | None:

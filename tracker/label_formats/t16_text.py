@@ -23,7 +23,7 @@ from tracker.label_formats.label_set import (
     Notes,
     note_flat_visibility,
 )
-from tracker.label_formats.orders import ORDERS, find_joint
+from tracker.label_formats.orders import JOINT_ORDERS, find_joint
 from tracker.model.joints import HAND_JOINTS
 
 PIXEL_CENTRE = 0
@@ -124,10 +124,12 @@ def _find_camera(number: str | None, labels: LabelSet, hints: ImportHints) -> st
 
 def _read_slots(files: dict[str, bytes], folder: str, hints: ImportHints) -> Slots:
     if hints.joint_order is not None:
-        if hints.joint_order not in ORDERS:
-            raise AnnotationError(f"There is no joint order {hints.joint_order!r}; there are {', '.join(ORDERS)}.")
+        if hints.joint_order not in JOINT_ORDERS:
+            raise AnnotationError(
+                f"There is no joint order {hints.joint_order!r}; there are {', '.join(JOINT_ORDERS)}."
+            )
         hands = (hints.hand,) if hints.hand else HANDS
-        order = [(hand, HAND_JOINTS.index(joint)) for hand in hands for joint in ORDERS[hints.joint_order]]
+        order = [(hand, HAND_JOINTS.index(joint)) for hand in hands for joint in JOINT_ORDERS[hints.joint_order]]
         return dict(enumerate(order))
     name = f"{folder}{NAMES_FILE}"
     if name not in files:

@@ -22,7 +22,7 @@ from tracker.label_formats.formats import LABEL_FORMATS, export_labels, import_l
 from tracker.label_formats.image_names import list_image_names
 from tracker.label_formats.label_files import pack_files, read_label_files
 from tracker.label_formats.label_set import ImportedLabels, LabelSet
-from tracker.label_formats.orders import ORDERS, find_joint, from_order, to_order
+from tracker.label_formats.orders import JOINT_ORDERS, find_joint, from_order, to_order
 from tracker.model.joints import HAND_JOINTS
 
 Keep = Callable[[np.ndarray], np.ndarray]
@@ -134,9 +134,9 @@ def test_several_recordings_go_into_one_coco_file_and_come_apart_again(name: str
         export_labels("deeplabcut", sets)
 
 
-@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("order", JOINT_ORDERS)
 def test_every_order_holds_each_joint_once_and_goes_there_and_back(order: str) -> None:
-    assert sorted(ORDERS[order]) == sorted(HAND_JOINTS)
+    assert sorted(JOINT_ORDERS[order]) == sorted(HAND_JOINTS)
     values = np.arange(42.0).reshape(21, 2)
     np.testing.assert_array_equal(from_order(to_order(values, order), order), values)
 

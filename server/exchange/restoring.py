@@ -1,0 +1,64 @@
+"""A snapshot made the current labels again: as new revisions, with what was there kept in a snapshot before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy.orm import Session
+
+from server.accounts.audit import record_act
+from server.accounts.models import Account
+from server.annotations.bulk import BulkChange, change_annotations, find_annotations
+from server.annotations.guards import PlaceGuard, check_change
+from server.annotations.service import Place
+from server.exchange.models import SnapshotRow
+from server.exchange.snapshots import create_snapshot, read_snapshot
+from server.sequences.models import SequenceRow
+from server.storage import Storage
+
+
+@dataclass(frozen=True)
+class Restored:
+    """What a restore did.
+
+    Attributes:
+        changed: Hands that were written again.
+        deleted: Hands that the snapshot did not have.
+        before: What undoes it.
+    """
+
+    changed: int
+    deleted: int
+    before: SnapshotRow
+
+
+def restore_snapshot(
+    session: Session,
+    storage: Storage,
+    sequence: SequenceRow,
+    snapshot: SnapshotRow,
+    account: Account,
+    guards: Sequence[PlaceGuard],
+) -> Restored:
+    """All of it or nothing: a place that is locked refuses the whole."""
+    wanted = {item.key: item.to_json()["points"] for item in read_snapshot(storage, snapshot).items}
+    before, _ = create_snapshot(
+        session, storage, sequence, f"Before version {snapshot.version} was restored", account.id
+    )
+    held = find_annotations(session, sequence.id, hold=True)
+    current: dict[Any, Any] = {key: row.points for key, row in held.items() if row.points is not None}
+    changes = []
+    for key in sorted(wanted.keys() | current.keys()):
+        if wanted.get(key) != current.get(key):
+            frame, camera, hand = key
+            place = Place(sequence.id, camera, frame, hand)
+            check_change(guards, session, account, place)
+            changes.append(BulkChange(place, "restore" if key in wanted else "delete", wanted.get(key)))
+    change_annotations(session, held, changes, account.id)
+    deleted = sum(change.points is None for change in changes)
+    record_act(
+        session, account.id, "snapshot.restore", "snapshot", snapshot.id, version=snapshot.version, changed=len(changes)
+    )
+    return Restored(len(changes) - deleted, deleted, before)

@@ -1,0 +1,296 @@
+"""Labels to and from the formats of others."""
+
+from __future__ import annotations
+
+import json
+import uuid
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from anyio import CancelScope
+from fastapi import APIRouter, Query, Request, Response
+from pydantic import ValidationError
+from starlette.concurrency import run_in_threadpool
+
+from server.accounts.service import CurrentAccount, LeadAccount
+from server.annotations.guards import GuardsDep
+from server.database import Database, DatabaseDep
+from server.errors import InvalidError, TooLargeError, error_responses
+from server.exchange import importing
+from server.exchange.describe import describe_imported, describe_report
+from server.exchange.label_sets import check_track, keep_visible, open_label_set, read_labels
+from server.exchange.schemas import (
+    ExportNotes,
+    LabelFormatOut,
+    LabelFormats,
+    LabelImportDone,
+    LabelImportOptions,
+    LabelImportReport,
+)
+from server.exchange.snapshots import get_snapshot
+from server.imports.upload import Upload, receive_upload
+from server.sequences.service import get_sequence
+from server.storage import Storage, StorageDep
+from tracker import JOINT_ORDERS, LABEL_FORMATS, ExportedLabels, ImportHints, export_labels, pack_files
+
+router = APIRouter(tags=["labels"], responses=error_responses(404))
+
+AREA = "label_uploads"
+MAX_UPLOAD_BYTES = 256 * 1024 * 1024
+MAX_UPLOAD_FILES = 100_000
+MAX_RECORDINGS = 100
+MEDIA_TYPES = {".json": "application/json", ".csv": "text/csv; charset=utf-8", ".zip": "application/zip"}
+
+_FILES = {
+    "type": "array",
+    "items": {"type": "string", "format": "binary"},
+    "description": "The files, each file name its relative path; or one .zip.",
+}
+_OPTIONS = {"type": "string", "description": "LabelImportOptions as JSON: what the files do not say."}
+
+
+def _describe_body(**more: dict[str, Any]) -> dict[str, Any]:
+    properties = {"files": _FILES, "options": _OPTIONS, **more}
+    schema = {"type": "object", "required": ["files"], "properties": properties}
+    return {"requestBody": {"required": True, "content": {"multipart/form-data": {"schema": schema}}}}
+
+
+_CHECK_BODY = _describe_body()
+_IMPORT_BODY = _describe_body(
+    check={"type": "string", "description": "`check` of the report that is confirmed."},
+    policy={"type": "string", "enum": ["keep", "replace"], "description": "Of hands that are labelled otherwise."},
+)
+FormatQuery = Annotated[str, Query(alias="format", max_length=40, description="One of `/label-formats`.")]
+SnapshotQuery = Annotated[uuid.UUID | None, Query(description="Labels of this snapshot instead of those of now.")]
+TrackQuery = Annotated[
+    uuid.UUID | None, Query(description="For formats in 3D: take the joints in space from this track of the recording.")
+]
+SequencesQuery = Annotated[
+    list[uuid.UUID], Query(alias="sequence_id", min_length=1, max_length=MAX_RECORDINGS, description="Each once.")
+]
+
+
+@router.get("/label-formats")
+def list_label_formats() -> LabelFormats:
+    """Formats that labels can be exported to and imported from, and what each of them loses."""
+    items = [LabelFormatOut.model_validate(item) for item in LABEL_FORMATS.values()]
+    return LabelFormats(items=items, joint_orders=list(JOINT_ORDERS))
+
+
+_FILE: dict[int | str, dict[str, Any]] = {
+    200: {"content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}}
+}
+
+
+@router.get(
+    "/sequences/{sequence_id}/labels/export", response_class=Response, responses=_FILE | error_responses(403, 409)
+)
+def export_recording_labels(
+    sequence_id: uuid.UUID,
+    database: DatabaseDep,
+    storage: StorageDep,
+    account: CurrentAccount,
+    guards: GuardsDep,
+    format_: FormatQuery,
+    snapshot_id: SnapshotQuery = None,
+    track_id: TrackQuery = None,
+) -> Response:
+    """The labels of a recording in a format, as one file: a zip where the format has several."""
+    made = _export(database, storage, account, guards, [sequence_id], format_, snapshot_id, track_id)
+    return _answer(made, format_)
+
+
+@router.get("/sequences/{sequence_id}/labels/export/notes", responses=error_responses(403, 409))
+def preview_export(
+    sequence_id: uuid.UUID,
+    database: DatabaseDep,
+    storage: StorageDep,
+    account: CurrentAccount,
+    guards: GuardsDep,
+    format_: FormatQuery,
+    snapshot_id: SnapshotQuery = None,
+    track_id: TrackQuery = None,
+) -> ExportNotes:
+    """What the export would hold and what would be lost in it."""
+    made = _export(database, storage, account, guards, [sequence_id], format_, snapshot_id, track_id)
+    return ExportNotes(
+        format=format_,
+        file=LABEL_FORMATS[format_].file,
+        items=made.items,
+        joints=made.joints,
+        bytes=len(_pack(made, format_)),
+        notes=list(made.notes),
+    )
+
+
+@router.get("/labels/export", response_class=Response, responses=_FILE | error_responses(403, 409))
+def export_several(
+    database: DatabaseDep,
+    storage: StorageDep,
+    account: CurrentAccount,
+    guards: GuardsDep,
+    format_: FormatQuery,
+    sequence_ids: SequencesQuery,
+) -> Response:
+    """The labels of several recordings in one file, in a format that can hold several."""
+    if len(set(sequence_ids)) != len(sequence_ids):
+        raise InvalidError("A recording is named twice.")
+    return _answer(_export(database, storage, account, guards, sequence_ids, format_, None, None), format_)
+
+
+def _export(
+    database: Database,
+    storage: Storage,
+    account: Any,
+    guards: Any,
+    ids: Sequence[uuid.UUID],
+    format_: str,
+    snapshot_id: uuid.UUID | None,
+    track_id: uuid.UUID | None,
+) -> ExportedLabels:
+    labels = []
+    with database.reading() as session:
+        snapshot = None if snapshot_id is None else get_snapshot(session, snapshot_id)
+        for sequence_id in ids:
+            row = get_sequence(session, sequence_id)
+            if track_id is not None:
+                check_track(session, sequence_id, track_id)
+            annotations = read_labels(session, storage, sequence_id, snapshot)
+            labels.append((row, keep_visible(guards, session, account, sequence_id, annotations)))
+    return export_labels(format_, [open_label_set(storage, row, found, track_id) for row, found in labels])
+
+
+def _pack(made: ExportedLabels, format_: str) -> bytes:
+    is_packed = LABEL_FORMATS[format_].file.endswith(".zip")
+    return pack_files(made.files) if is_packed else next(iter(made.files.values()))
+
+
+def _answer(made: ExportedLabels, format_: str) -> Response:
+    name = LABEL_FORMATS[format_].file
+    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+    return Response(_pack(made, format_), media_type=MEDIA_TYPES[Path(name).suffix], headers=headers)
+
+
+@router.post(
+    "/sequences/{sequence_id}/labels/check", responses=error_responses(403, 413, 507), openapi_extra=_CHECK_BODY
+)
+async def check_recording_labels(
+    sequence_id: uuid.UUID,
+    request: Request,
+    database: DatabaseDep,
+    storage: StorageDep,
+    account: LeadAccount,
+    guards: GuardsDep,
+) -> LabelImportReport:
+    """Look at files of labels: what is new, what is labelled otherwise, what is lost. Nothing is stored."""
+    return await _check([sequence_id], request, database, storage, account, guards)
+
+
+@router.post(
+    "/sequences/{sequence_id}/labels/import", responses=error_responses(403, 409, 413, 507), openapi_extra=_IMPORT_BODY
+)
+async def import_recording_labels(
+    sequence_id: uuid.UUID,
+    request: Request,
+    database: DatabaseDep,
+    storage: StorageDep,
+    account: LeadAccount,
+    guards: GuardsDep,
+) -> LabelImportDone:
+    """Take files of labels into a recording, as their report said: with its `check`, and a `policy` for conflicts."""
+    return await _import([sequence_id], request, database, storage, account, guards)
+
+
+@router.post("/labels/check", responses=error_responses(403, 413, 507), openapi_extra=_CHECK_BODY)
+async def check_several(
+    request: Request,
+    database: DatabaseDep,
+    storage: StorageDep,
+    account: LeadAccount,
+    guards: GuardsDep,
+    sequence_ids: SequencesQuery,
+) -> LabelImportReport:
+    """Look at files with labels of several recordings. Stores nothing."""
+    return await _check(sequence_ids, request, database, storage, account, guards)
+
+
+@router.post("/labels/import", responses=error_responses(403, 409, 413, 507), openapi_extra=_IMPORT_BODY)
+async def import_several(
+    request: Request,
+    database: DatabaseDep,
+    storage: StorageDep,
+    account: LeadAccount,
+    guards: GuardsDep,
+    sequence_ids: SequencesQuery,
+) -> LabelImportDone:
+    """Take files with labels of several recordings in: into all of them or none."""
+    return await _import(sequence_ids, request, database, storage, account, guards)
+
+
+async def _check(
+    ids: Sequence[uuid.UUID], request: Request, database: Database, storage: Storage, account: Any, guards: Any
+) -> LabelImportReport:
+    def work(folder: Path, fields: dict[str, str]) -> LabelImportReport:
+        with database.reading() as session:
+            rows = [get_sequence(session, id_) for id_ in dict.fromkeys(ids)]
+        labels = _read(storage, folder, rows, fields)
+        with database.reading() as session:
+            return describe_report(labels, importing.plan_import(session, rows, labels, account, guards))
+
+    return await _with_upload(request, storage, work)
+
+
+async def _import(
+    ids: Sequence[uuid.UUID], request: Request, database: Database, storage: Storage, account: Any, guards: Any
+) -> LabelImportDone:
+    def work(folder: Path, fields: dict[str, str]) -> LabelImportDone:
+        policy, check = fields.get("policy", ""), fields.get("check", "")
+        if policy not in ("keep", "replace"):
+            raise InvalidError(f"The field `policy` is {policy[:40]!r}; needed keep or replace.")
+        if not check:
+            raise InvalidError("The field `check` is missing: have the files looked at first, then send its `check`.")
+        with database.reading() as session:
+            rows = [get_sequence(session, id_) for id_ in dict.fromkeys(ids)]
+        labels = _read(storage, folder, rows, fields)
+        with database.writing() as session:
+            done = importing.apply_import(session, storage, rows, labels, account, guards, policy, check)
+            return LabelImportDone(format=labels.format, recordings=describe_imported(session, done))
+
+    return await _with_upload(request, storage, work)
+
+
+def _read(storage: Storage, folder: Path, rows: Any, fields: dict[str, str]) -> importing.ReadLabels:
+    options = parse_options(fields.get("options", ""))
+    hints = ImportHints(options.hand, options.camera, options.pixel_centre, options.joint_order)
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return importing.read_files(storage, files[0] if len(files) == 1 else folder, rows, options.format, hints)
+
+
+def parse_options(text: str) -> LabelImportOptions:
+    """Options from a form's field: a JSON object, or nothing."""
+    try:
+        return LabelImportOptions.model_validate(json.loads(text) if text.strip() else {})
+    except (ValidationError, ValueError, RecursionError) as fault:
+        first = fault.errors()[0] if isinstance(fault, ValidationError) else {"loc": (), "msg": "it is no JSON object"}
+        where = ".".join(map(str, first["loc"]))
+        raise InvalidError(f"The field `options` {f'({where}) ' if where else ''}is wrong: {first['msg']}.") from None
+
+
+async def _with_upload(request: Request, storage: Storage, work: Any) -> Any:
+    """Receive the files into a folder of their own, work on them in a thread, and remove them whatever happens."""
+    length = request.headers.get("content-length", "")
+    if length.isdecimal() and int(length) > MAX_UPLOAD_BYTES + 2**20:
+        raise TooLargeError(f"The upload has {length} bytes; labels have at most {MAX_UPLOAD_BYTES}.")
+    id_ = uuid.uuid4()
+    folder = storage.folder(AREA, id_)
+    try:
+        await run_in_threadpool(folder.mkdir)
+        upload = Upload(folder, MAX_UPLOAD_FILES, MAX_UPLOAD_BYTES)
+        await receive_upload(request.stream(), request.headers.get("content-type", ""), upload)
+        if not upload.names:
+            raise InvalidError("The upload holds no files. Choose the labels: a .json, .csv, .txt, or a .zip of them.")
+        return await run_in_threadpool(work, folder, upload.fields)
+    finally:
+        with CancelScope(shield=True):
+            await run_in_threadpool(storage.remove, AREA, id_)

@@ -45,7 +45,6 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.failed_tries = FailedTries()
     app.state.place_guards = PLACE_GUARDS
     app.state.sequence_facts = SEQUENCE_FACTS
-    app.state.place_guards = PLACE_GUARDS
     install_error_handler(app)
     for router in ROUTERS:
         app.include_router(router, prefix=API, responses=error_responses(401, 403, 500))

@@ -175,3 +175,15 @@ def test_what_is_removed_is_gone_from_the_store_too(machine: OpenMachine) -> Non
 def test_an_address_that_is_no_store_is_refused(url: str) -> None:
     with pytest.raises(ValueError, match="store_url"):
         Settings(store_url=url)
+
+
+def test_a_document_is_written_once_and_found_on_every_machine(machine: OpenMachine) -> None:
+    one, other = machine("one"), machine("other")
+    id_ = uuid.uuid4()
+    assert not other.document("snapshots", id_).exists()
+    one.add_document("snapshots", id_, b"labels\n")
+    assert other.document("snapshots", id_).read_bytes() == b"labels\n"
+    with pytest.raises(FileExistsError):
+        one.add_document("snapshots", id_, b"others\n")
+    assert one.document("snapshots", id_).read_bytes() == b"labels\n"
+    assert [path.name for path in (one.root / "snapshots").iterdir()] == [f"{id_}.json"]

@@ -1,6 +1,6 @@
 /** Which cameras' pictures are shown side by side: in the address, and remembered for each recording. */
 
-import { useCallback, useMemo } from "react";
+import { useCallback, useMemo, useState } from "react";
 import { useSearchParams } from "react-router";
 import { useLocalStorage } from "@mantine/hooks";
 import type { Camera, Recording } from "../api/types";
@@ -21,15 +21,18 @@ export function chooseShown(cameras: readonly string[], address: string | null, 
 export function useShownCameras(recording: Recording, active: string): [readonly Camera[], (names: readonly string[]) => void] {
   const [address, setAddress] = useSearchParams();
   const [remembered, setRemembered] = useLocalStorage<readonly string[]>({ key: `handloom/cameras/${recording.id}`, defaultValue: [], getInitialValueInEffect: false });
-  const names = chooseShown(recording.cameras.map((camera) => camera.id), address.get("cameras"), remembered, active).join();
+  // The address is read once and follows from then on: it changes later than what is clicked.
+  const [chosen, setChosen] = useState(address.get("cameras"));
+  const names = chooseShown(recording.cameras.map((camera) => camera.id), chosen, remembered, active).join();
   const shown = useMemo(() => recording.cameras.filter((camera) => names.split(",").includes(camera.id)), [recording.cameras, names]);
   const setShown = useCallback(
-    (chosen: readonly string[]) => {
-      if (chosen.length === 0) return;
-      setRemembered(chosen);
-      const next = new URLSearchParams(window.location.search);
-      next.set("cameras", chosen.join());
-      setAddress(next, { replace: true });
+    (next: readonly string[]) => {
+      if (next.length === 0) return;
+      setRemembered(next);
+      setChosen(next.join());
+      const now = new URLSearchParams(window.location.search);
+      now.set("cameras", next.join());
+      setAddress(now, { replace: true });
     },
     [setAddress, setRemembered],
   );

@@ -43,8 +43,7 @@ def make_golden() -> dict[str, Any]:
         for end in cameras:
             if start is end:
                 continue
-            seen = [p for p in rng.uniform([-0.12, -0.12, 0.3], [0.12, 0.12, 0.7], (8, 3))]
-            for point in seen:
+            for point in rng.uniform([-0.12, -0.12, 0.3], [0.12, 0.12, 0.7], (8, 3)):
                 if start.can_see(point[None])[0] and end.can_see(point[None])[0]:
                     pixels = [camera.project(point[None])[0].tolist() for camera in (start, end)]
                     points.append({"from": start.id, "pixel": pixels[0], "to": end.id, "seen": pixels[1]})

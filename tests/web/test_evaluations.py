@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 import uuid
+from pathlib import Path
 
 import pytest
 
@@ -12,6 +13,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(600)]
 
 MARKED = (0, 3, 6, 9, 12, 15)
 WORST = 9
+AXE = Path(__file__).resolve().parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
+HEAVY = ("serious", "critical")
 
 
 @pytest.fixture(scope="module")
@@ -166,3 +169,23 @@ def test_the_report_is_one_file_that_opens_from_disk_without_a_network(
                 report.screenshot(path=screenshots.folder / f"34-report-{scheme}.png", full_page=True)
         finally:
             context.close()
+
+
+def test_a_project_is_judged_as_a_whole_and_the_page_has_no_serious_fault(studio, judged, open_page):
+    from playwright.sync_api import expect
+
+    recording, tracks = judged
+    project = studio.send("POST", "/projects", json={"name": f"Hands {uuid.uuid4()}"}).json()
+    studio.send("PUT", f"/projects/{project['id']}/sequences/{recording['id']}").raise_for_status()
+    page = open_page()
+    page.goto("/evaluations")
+    page.get_by_role("combobox", name="A whole project").click()
+    page.get_by_role("option", name=f"{project['name']} (1)").click()
+    expect(page).to_have_url(re.compile(f"project={project['id']}"))
+    rows = page.get_by_role("table", name="Error of each track").get_by_role("row")
+    expect(rows).to_have_count(1 + len(tracks))
+    page.wait_for_function("() => document.querySelector('article img')?.naturalWidth === 384")
+    page.evaluate(AXE.read_text())
+    found = page.evaluate("async () => (await axe.run('#main', {resultTypes: ['violations']})).violations")
+    serious = [(one["id"], [node["html"][:200] for node in one["nodes"]]) for one in found if one["impact"] in HEAVY]
+    assert serious == []

@@ -1,5 +1,6 @@
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { API, request } from "./client";
+import { fetchAll } from "./recordings";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];
@@ -89,6 +90,10 @@ export const useComparison = (choice: EvaluationChoice) =>
     retry: false,
     staleTime: 0,
   });
+
+/** Projects whose recordings can be judged together. */
+export const useEvaluableProjects = () =>
+  useQuery({ queryKey: ["evaluations", "projects"], queryFn: () => fetchAll<Schemas["ProjectOut"]>("/projects") });
 
 export const REPORTS = [
   { kind: "html", label: "Page (HTML)", help: "one file with tables, curves and pictures" },

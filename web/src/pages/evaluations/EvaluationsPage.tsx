@@ -73,6 +73,10 @@ export default function EvaluationsPage() {
     const reference = choice.reference && tracks.includes(choice.reference) ? choice.reference : null;
     change({ tracks, recordings: [], project: null, reference });
   };
+  const chooseProject = (project: string): void => {
+    chooser.close();
+    change({ tracks: [], recordings: [], project, reference: null });
+  };
 
   if (!isChosen(choice)) {
     return (
@@ -81,7 +85,7 @@ export default function EvaluationsPage() {
         <Text className="quiet" mb="lg">
           How far tracks are from the joints that people marked, one track or several side by side.
         </Text>
-        <TrackChooser initial={[]} onChoose={choose} />
+        <TrackChooser initial={[]} onChoose={choose} onProject={chooseProject} />
       </div>
     );
   }
@@ -140,7 +144,7 @@ export default function EvaluationsPage() {
         </div>
       )}
       <Modal opened={isChoosing} onClose={chooser.close} title="Tracks to compare" size="xl">
-        <TrackChooser initial={data?.tracks.map((track) => track.key) ?? choice.tracks} onChoose={choose} />
+        <TrackChooser initial={data?.tracks.map((track) => track.key) ?? choice.tracks} onChoose={choose} onProject={chooseProject} />
       </Modal>
     </div>
   );

@@ -1,7 +1,8 @@
-import { Button, Checkbox, Group, Skeleton, Stack, Text, TextInput } from "@mantine/core";
+import { Button, Checkbox, Group, Select, Skeleton, Stack, Text, TextInput } from "@mantine/core";
 import { IconRoute, IconSearch } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link } from "react-router";
+import { useEvaluableProjects } from "../../api/evaluations";
 import { useRecordings } from "../../api/recordings";
 import { useTracks } from "../../api/tracks";
 import { formatAgo, formatNumber } from "../../model/format";
@@ -12,12 +13,14 @@ import classes from "./Evaluations.module.css";
 interface TrackChooserProps {
   initial: readonly string[];
   onChoose: (tracks: string[]) => void;
+  onProject: (project: string) => void;
 }
 
 /** Tracks by recording, to be ticked; the first one ticked is the reference until another is chosen. */
-export function TrackChooser({ initial, onChoose }: TrackChooserProps) {
+export function TrackChooser({ initial, onChoose, onProject }: TrackChooserProps) {
   const tracks = useTracks();
   const recordings = useRecordings();
+  const projects = (useEvaluableProjects().data ?? []).filter((project) => project.recordings > 0);
   const [ticked, setTicked] = useState<readonly string[]>(initial);
   const [search, setSearch] = useState("");
   const error = tracks.error ?? recordings.error;
@@ -57,7 +60,7 @@ export function TrackChooser({ initial, onChoose }: TrackChooserProps) {
 
   return (
     <Stack gap="md">
-      <Group justify="space-between">
+      <Group gap="sm">
         <TextInput
           w={280}
           aria-label="Search recordings"
@@ -66,7 +69,17 @@ export function TrackChooser({ initial, onChoose }: TrackChooserProps) {
           value={search}
           onChange={(event) => setSearch(event.currentTarget.value)}
         />
-        <Button disabled={ticked.length === 0} onClick={() => onChoose([...ticked])}>
+        {projects.length > 0 && (
+          <Select
+            w={232}
+            aria-label="A whole project"
+            placeholder="or a whole project"
+            data={projects.map((project) => ({ value: project.id, label: `${project.name} (${project.recordings})` }))}
+            value={null}
+            onChange={(id) => id && onProject(id)}
+          />
+        )}
+        <Button ml="auto" disabled={ticked.length === 0} onClick={() => onChoose([...ticked])}>
           {ticked.length === 0 ? "Tick tracks to evaluate" : ticked.length === 1 ? "Evaluate 1 track" : `Compare ${ticked.length} tracks`}
         </Button>
       </Group>

@@ -23,7 +23,8 @@ export class ApiError extends Error {
 export interface RequestOptions {
   body?: unknown;
   headers?: Record<string, string>;
-  query?: Record<string, string | number | undefined | null>;
+  /** A list gives its name several times. */
+  query?: Record<string, string | number | readonly string[] | undefined | null>;
   signal?: AbortSignal;
   /** Let the request outlive the page (for good-byes). */
   keepalive?: boolean;
@@ -38,9 +39,11 @@ const unreachable = (): ApiError =>
   new ApiError(0, "Unreachable", "The studio's server does not answer. Check that `handloom serve` is still running.");
 
 function addressOf(path: string, query: RequestOptions["query"]): string {
-  const known = Object.entries(query ?? {}).filter(([, value]) => value !== undefined && value !== null);
+  const known = Object.entries(query ?? {}).flatMap(([name, value]) =>
+    value === undefined || value === null ? [] : [value].flat().map((one) => [name, String(one)]),
+  );
   if (known.length === 0) return API + path;
-  return `${API}${path}?${new URLSearchParams(known.map(([name, value]) => [name, String(value)]))}`;
+  return `${API}${path}?${new URLSearchParams(known)}`;
 }
 
 function parseFailure(status: number, text: string): ApiError {

@@ -1,40 +1,120 @@
-import { useMutation, useQuery, useQueryClient, type QueryClient } from "@tanstack/react-query";
+import { keepPreviousData, useInfiniteQuery, useMutation, useQuery, useQueryClient, type InfiniteData, type QueryClient } from "@tanstack/react-query";
 import { useEffect, useState } from "react";
 import { listen, request } from "./client";
 import { fetchAll, recordingKeys } from "./recordings";
-import type { Job, JobForm, LogLine } from "./types";
+import type { Batch, BatchMade, BulkAct, BulkDone, Job, JobForm, JobState, LogLine, Page, Worker } from "./types";
 
 export const jobKeys = {
   all: ["jobs"] as const,
-  one: (id: string) => ["jobs", id] as const,
+  one: (id: string) => ["jobs", "one", id] as const,
+  /** Every list of jobs, whatever it is filtered by. */
+  lists: ["jobs", "list"] as const,
+  active: ["jobs", "active"] as const,
+  ofRecording: (id: string) => ["jobs", "recording", id] as const,
+  batches: ["jobs", "batches"] as const,
 };
 
 export const isActive = (job: Job): boolean => job.state === "queued" || job.state === "running";
 
 const newestFirst = (a: Job, b: Job): number => b.created_at.localeCompare(a.created_at);
 
-export const useJobs = () =>
-  useQuery({
-    queryKey: jobKeys.all,
-    queryFn: async () => (await fetchAll<Job>("/jobs")).sort(newestFirst),
-    // The event stream is faster; this only helps when a proxy swallows it.
-    refetchInterval: (query) => (query.state.data?.some(isActive) ? 5000 : false),
+/** What a list of jobs is narrowed to; what is left out narrows nothing. */
+export interface JobFilters {
+  states: JobState[];
+  recording?: string | undefined;
+  person?: string | undefined;
+  batch?: string | undefined;
+  search?: string | undefined;
+}
+
+const PAGE = 50;
+
+/** Jobs page by page, newest first. */
+export const useJobList = (filters: JobFilters) =>
+  useInfiniteQuery({
+    queryKey: [...jobKeys.lists, filters],
+    queryFn: ({ pageParam }) =>
+      request<Page<Job>>("GET", "/jobs", {
+        query: {
+          state: filters.states,
+          sequence_id: filters.recording,
+          created_by: filters.person,
+          batch_id: filters.batch,
+          search: filters.search,
+          cursor: pageParam,
+          limit: PAGE,
+        },
+      }),
+    initialPageParam: null as string | null,
+    getNextPageParam: (page) => page.next_cursor,
+    placeholderData: keepPreviousData,
   });
+
+/** Those that wait or run. */
+export const useActiveJobs = () =>
+  useQuery({ queryKey: jobKeys.active, queryFn: () => fetchAll<Job>("/jobs", { state: ["queued", "running"] }) });
+
+export const useRecordingJobs = (recording: string) =>
+  useQuery({ queryKey: jobKeys.ofRecording(recording), queryFn: () => fetchAll<Job>("/jobs", { sequence_id: recording }) });
+
+/** Workers of the last day; asked again and again, since a silent one says nothing. */
+export const useWorkers = () =>
+  useQuery({
+    queryKey: ["workers"],
+    queryFn: async () => (await request<Page<Worker>>("GET", "/workers")).items,
+    refetchInterval: 3000,
+  });
+
+export const useBatches = () =>
+  useQuery({
+    queryKey: jobKeys.batches,
+    queryFn: async () => (await request<Page<Batch>>("GET", "/jobs/batches", { query: { limit: 20 } })).items,
+    refetchInterval: (query) => (query.state.data?.some((batch) => !batch.ended_at) ? 2000 : false),
+  });
+
+export function useStartBatch() {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: ({ recordings, params }: { recordings: readonly string[]; params: Record<string, unknown> }) =>
+      request<BatchMade>("POST", "/jobs/batch", { body: { kind: "track", sequence_ids: recordings, params } }),
+    onSuccess: () => client.invalidateQueries({ queryKey: jobKeys.all }),
+  });
+}
+
+/** Cancel, retry or resume several. */
+export function useBulkAct() {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: ({ act, ids }: { act: BulkAct; ids: readonly string[] }) =>
+      request<BulkDone>("POST", "/jobs/bulk", { body: { act, job_ids: ids } }),
+    onSettled: () => client.invalidateQueries({ queryKey: jobKeys.all }),
+  });
+}
 
 export const useJob = (id: string) =>
   useQuery({
     queryKey: jobKeys.one(id),
     queryFn: () => request<Job>("GET", `/jobs/${id}`),
+    enabled: id !== "",
     refetchInterval: (query) => (query.state.data && isActive(query.state.data) ? 5000 : false),
   });
 
+const put = (jobs: Job[] | undefined, job: Job): Job[] | undefined => jobs && [job, ...jobs.filter((other) => other.id !== job.id)].sort(newestFirst);
+
+/** Take a job as the server says it is now into everything that shows it. */
 function takeIn(client: QueryClient, job: Job): void {
   const before = client.getQueryData<Job>(jobKeys.one(job.id));
+  if (before && before.version > job.version) return;
   client.setQueryData(jobKeys.one(job.id), job);
-  client.setQueryData<Job[]>(jobKeys.all, (jobs) =>
-    jobs && [job, ...jobs.filter((other) => other.id !== job.id)].sort(newestFirst),
+  client.setQueryData<Job[]>(jobKeys.active, (jobs) => (isActive(job) ? put(jobs, job) : jobs?.filter((other) => other.id !== job.id)));
+  client.setQueryData<Job[]>(jobKeys.ofRecording(job.sequence_id), (jobs) => put(jobs, job));
+  client.setQueriesData<InfiniteData<Page<Job>>>({ queryKey: jobKeys.lists }, (list) =>
+    list && { ...list, pages: list.pages.map((page) => ({ ...page, items: page.items.map((other) => (other.id === job.id ? job : other)) })) },
   );
-  if (!isActive(job) && before?.state !== job.state) {
+  if (before?.state === job.state) return;
+  void client.invalidateQueries({ queryKey: jobKeys.lists }); // it may be in other lists now
+  void client.invalidateQueries({ queryKey: jobKeys.batches });
+  if (!isActive(job)) {
     void client.invalidateQueries({ queryKey: ["tracks"] });
     void client.invalidateQueries({ queryKey: recordingKeys.all });
   }
@@ -85,7 +165,7 @@ export function useJobAction(action: "cancel" | "retry" | "resume") {
     mutationFn: (id: string) => request<Job>("POST", `/jobs/${id}/${action}`),
     onSuccess: (job) => {
       if (job) takeIn(client, job);
-      void client.invalidateQueries({ queryKey: jobKeys.all });
+      void client.invalidateQueries({ queryKey: jobKeys.lists });
     },
   });
 }

@@ -8,7 +8,7 @@ export const recordingKeys = {
 };
 
 /** Every recording, page after page; a studio holds hundreds, not millions. */
-export async function fetchAll<T>(path: string, query: Record<string, string | number | undefined> = {}): Promise<T[]> {
+export async function fetchAll<T>(path: string, query: Record<string, string | number | readonly string[] | undefined> = {}): Promise<T[]> {
   const items: T[] = [];
   let cursor: string | null = null;
   do {

@@ -16,7 +16,7 @@ export const useTracks = (recording?: string) =>
   });
 
 export const useTrack = (id: string) =>
-  useQuery({ queryKey: trackKeys.one(id), queryFn: () => request<Track>("GET", `/tracks/${id}`), retry: false });
+  useQuery({ queryKey: trackKeys.one(id), queryFn: () => request<Track>("GET", `/tracks/${id}`), retry: false, enabled: id !== "" });
 
 export const useTrackFrames = (id: string | undefined) =>
   useQuery({

@@ -3,7 +3,10 @@ import { useEffect, useRef } from "react";
 import { Link, useParams } from "react-router";
 import { isActive, useJob, useJobLog } from "../api/jobs";
 import { useRecording } from "../api/recordings";
+import { showValue } from "../model/compareJobs";
 import { formatAgo, formatDuration, formatName } from "../model/format";
+import { CompareWith } from "./jobs/CompareWith";
+import { JobResult } from "./jobs/JobResult";
 import { Failure } from "./parts/Failure";
 import { JobActions, JobBadge, jobProgress } from "./parts/JobRow";
 import { PageSkeleton } from "./parts/PageSkeleton";
@@ -30,11 +33,6 @@ function Log({ jobId, isLive }: { jobId: string; isLive: boolean }) {
   );
 }
 
-const showValue = (value: unknown): string => {
-  if (typeof value === "boolean") return value ? "yes" : "no";
-  return value === "" || value === null ? "–" : typeof value === "string" ? value : JSON.stringify(value);
-};
-
 export function JobPage() {
   const { jobId = "" } = useParams();
   const { data: job, error, refetch } = useJob(jobId);
@@ -58,10 +56,21 @@ export function JobPage() {
               <Link to={`/recordings/${recording.id}`} className={classes.link}>
                 To the recording
               </Link>
+              {job.batch_id && (
+                <>
+                  {" · "}
+                  <Link to={`/jobs?batch=${job.batch_id}`} className={classes.link}>
+                    To its batch
+                  </Link>
+                </>
+              )}
             </Text>
           )}
         </div>
-        <JobActions job={job} />
+        <Group gap="sm" wrap="nowrap">
+          <CompareWith job={job} />
+          <JobActions job={job} />
+        </Group>
       </Group>
       {isActive(job) && (
         <Stack gap="sm" className="card" p="md" mb="md" role="status" aria-live="polite">
@@ -83,14 +92,17 @@ export function JobPage() {
           </Text>
         </Stack>
       )}
-      <SimpleGrid cols={{ base: 2, sm: 4 }} spacing="md" mb="lg">
+      <SimpleGrid cols={{ base: 2, sm: 6 }} spacing="md" mb="lg">
         <Fact label="Made">{formatAgo(job.created_at)}</Fact>
         <Fact label="Started">{job.started_at ? formatAgo(job.started_at) : "–"}</Fact>
         <Fact label="Took">
           {job.started_at && job.ended_at ? formatDuration((Date.parse(job.ended_at) - Date.parse(job.started_at)) / 1000) : "–"}
         </Fact>
+        <Fact label="Started by">{job.created_by_name ?? "–"}</Fact>
+        <Fact label={job.state === "running" ? "Runs on" : "Ran on"}>{job.worker ? job.worker.name : "–"}</Fact>
         <Fact label="Frames">{job.frames_total ? `${job.frames_done ?? 0} of ${job.frames_total}` : "–"}</Fact>
       </SimpleGrid>
+      {job.track_id && <JobResult trackId={job.track_id} />}
       <div className={classes.columns}>
         <section aria-label="Log">
           <Title order={2} mb="sm">

@@ -6,7 +6,7 @@ import { useMemo } from "react";
 import { Link, useNavigate, useParams } from "react-router";
 import { useAnnotations } from "../api/annotations";
 import { API } from "../api/client";
-import { useJobs } from "../api/jobs";
+import { useRecordingJobs } from "../api/jobs";
 import { useDeleteRecording, useRecording, useRestoreRecording } from "../api/recordings";
 import { useTracks } from "../api/tracks";
 import type { Recording } from "../api/types";
@@ -63,7 +63,7 @@ export function RecordingPage() {
   const { data: recording, error, refetch } = useRecording(recordingId);
   const annotations = useAnnotations(recordingId);
   const tracks = useTracks(recordingId);
-  const jobs = useJobs().data?.filter((job) => job.sequence_id === recordingId) ?? [];
+  const jobs = useRecordingJobs(recordingId).data ?? [];
   const remove = useDeleteRecording();
   const restore = useRestoreRecording();
   const navigate = useNavigate();

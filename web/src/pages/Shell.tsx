@@ -4,7 +4,7 @@ import { useQueryClient } from "@tanstack/react-query";
 import { Suspense, useEffect, useRef, useState } from "react";
 import { Link, Outlet, useLocation } from "react-router";
 import { useKeymap } from "../actions/useKeymap";
-import { isActive, useJobs, useJobStream } from "../api/jobs";
+import { useActiveJobs, useJobStream } from "../api/jobs";
 import { useHint } from "../state/keys";
 import { flushSaving } from "../state/saving";
 import { DropAnywhere } from "./parts/DropAnywhere";
@@ -72,7 +72,7 @@ export function Shell() {
   const room = roomOf(useLocation().pathname);
   const isLinked = useJobStream();
   useReturn(isLinked);
-  const running = useJobs().data?.filter(isActive).length ?? 0;
+  const running = useActiveJobs().data?.length ?? 0;
   const hint = useHint();
   useKeymap("everywhere", { help: () => setHelpOpen(true), settings: () => setSettingsOpen(true), search: openSearch });
 

@@ -2,6 +2,7 @@ import { lazy } from "react";
 import { createBrowserRouter, Navigate } from "react-router";
 import { BrokenPage } from "./BrokenPage";
 import { ImportPage } from "./ImportPage";
+import { ComparePage } from "./jobs/ComparePage";
 import { JobPage } from "./JobPage";
 import { JobsPage } from "./JobsPage";
 import { MissingPage } from "./MissingPage";
@@ -36,6 +37,7 @@ export const router = createBrowserRouter([
           { path: "tracks/:trackId", element: <TrackPage /> },
           { path: "evaluations", element: <EvaluationsPage /> },
           { path: "jobs", element: <JobsPage /> },
+          { path: "jobs/compare", element: <ComparePage /> },
           { path: "jobs/:jobId", element: <JobPage /> },
           { path: "*", element: <MissingPage /> },
         ],

@@ -39,6 +39,7 @@ const tookOf = (job: Job): string =>
 export function JobActions({ job }: { job: Job }) {
   const cancel = useJobAction("cancel");
   const retry = useJobAction("retry");
+  const resume = useJobAction("resume");
   return (
     <Group gap="sm" wrap="nowrap">
       {job.track_id && (
@@ -49,6 +50,11 @@ export function JobActions({ job }: { job: Job }) {
       {isActive(job) && (
         <Button size="xs" variant="default" loading={cancel.isPending} onClick={() => cancel.mutate(job.id)}>
           Cancel
+        </Button>
+      )}
+      {(job.state === "failed" || job.state === "cancelled") && job.frames_done > 0 && (
+        <Button size="xs" variant="default" loading={resume.isPending} onClick={() => resume.mutate(job.id)}>
+          Resume
         </Button>
       )}
       {(job.state === "failed" || job.state === "cancelled") && (
@@ -70,6 +76,8 @@ export function JobRow({ job, recording }: { job: Job; recording: string | undef
         </Text>
         <Text size="xs" className={job.error ? "one-line" : "quiet one-line"} c={job.error ? "var(--bad-text)" : undefined}>
           {job.error ?? (isActive(job) ? jobProgress(job) : `ended ${formatAgo(job.ended_at ?? job.created_at)}${tookOf(job)}`)}
+          {job.state === "running" && job.worker ? ` · ${job.worker.name}` : ""}
+          {job.created_by_name ? ` · ${job.created_by_name}` : ""}
         </Text>
       </Link>
       {isActive(job) && (

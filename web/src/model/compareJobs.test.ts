@@ -1,0 +1,19 @@
+import { expect, test } from "vitest";
+import type { Job, JobForm } from "../api/types";
+import { compareParams } from "./compareJobs";
+
+const job = (params: Record<string, unknown>): Job => ({ params }) as unknown as Job;
+const form = { fields: [{ name: "iterations", label: "Iterations" }, { name: "calibrate", label: "Fit the shape" }] } as unknown as JobForm;
+
+test("what differs comes first and is marked, also what only one of them has", () => {
+  const rows = compareParams(job({ calibrate: true, iterations: 10 }), job({ calibrate: false, iterations: 10, threads: 2 }), form);
+  expect(rows.map((row) => [row.label, row.first, row.second, row.isDifferent])).toEqual([
+    ["Fit the shape", "yes", "no", true],
+    ["Threads", "–", "2", true],
+    ["Iterations", "10", "10", false],
+  ]);
+});
+
+test("10 and \"10\" are not the same", () => {
+  expect(compareParams(job({ a: 10 }), job({ a: "10" }), undefined)[0]?.isDifferent).toBe(true);
+});

@@ -1,0 +1,31 @@
+/** Two runs side by side: what was asked of each, and where that differs. */
+
+import type { Job, JobForm } from "../api/types";
+import { formatName } from "./format";
+
+export interface ParamRow {
+  name: string;
+  label: string;
+  first: string;
+  second: string;
+  isDifferent: boolean;
+}
+
+/** A value as people read it. */
+export function showValue(value: unknown): string {
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  return value === undefined || value === "" || value === null ? "–" : typeof value === "string" ? value : JSON.stringify(value);
+}
+
+/** Every parameter of either, in the order of the form; the ones that differ first. */
+export function compareParams(first: Job, second: Job, form: JobForm | undefined): ParamRow[] {
+  const labels = new Map(form?.fields.map((field) => [field.name, field.label]));
+  const names = [...new Set([...labels.keys(), ...Object.keys(first.params), ...Object.keys(second.params)])];
+  const rows = names
+    .filter((name) => name in first.params || name in second.params)
+    .map((name) => {
+      const [a, b] = [first.params[name], second.params[name]];
+      return { name, label: labels.get(name) ?? formatName(name), first: showValue(a), second: showValue(b), isDifferent: JSON.stringify(a) !== JSON.stringify(b) };
+    });
+  return [...rows.filter((row) => row.isDifferent), ...rows.filter((row) => !row.isDifferent)];
+}

@@ -1,0 +1,127 @@
+import { Button, Checkbox, Group, Modal, ScrollArea, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
+import { IconSearch } from "@tabler/icons-react";
+import { useState } from "react";
+import { ApiError } from "../../api/client";
+import { useStartBatch } from "../../api/jobs";
+import { useRecordings } from "../../api/recordings";
+import type { Recording } from "../../api/types";
+import { formatCount } from "../../model/format";
+import { TrackingForm, useTrackingOptions } from "../parts/TrackingForm";
+import classes from "./StartBatch.module.css";
+
+interface Refusal {
+  id: string;
+  detail: string;
+}
+
+const refusalsOf = (error: unknown): Refusal[] => (error instanceof ApiError ? ((error.body["refused"] as Refusal[] | undefined) ?? []) : []);
+
+const isTrackable = (recording: Recording): boolean => recording.cameras.some((camera) => camera.has_depth);
+
+interface StartBatchProps {
+  isOpen: boolean;
+  onClose: () => void;
+  onStarted: (batch: string) => void;
+}
+
+/** One form for many recordings: all of them are started, or none. */
+export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
+  const recordings = useRecordings().data;
+  const options = useTrackingOptions(isOpen);
+  const start = useStartBatch();
+  const [search, setSearch] = useState("");
+  const [chosen, setChosen] = useState<ReadonlySet<string>>(new Set());
+
+  const shown = recordings?.filter((recording) => recording.name.toLowerCase().includes(search.trim().toLowerCase())) ?? [];
+  const selectable = shown.filter(isTrackable);
+  const areAllChosen = selectable.length > 0 && selectable.every((recording) => chosen.has(recording.id));
+  const choose = (ids: string[], isChosen: boolean): void => {
+    const next = new Set(chosen);
+    for (const id of ids) if (isChosen) next.add(id); else next.delete(id);
+    setChosen(next);
+  };
+  const refusals = refusalsOf(start.error);
+  const nameOf = (id: string): string => recordings?.find((recording) => recording.id === id)?.name ?? "A recording that is gone";
+  const submit = (): void =>
+    start.mutate(
+      { recordings: [...chosen], params: options.changed },
+      {
+        onSuccess: ({ batch }) => {
+          setChosen(new Set());
+          onClose();
+          onStarted(batch.id);
+        },
+      },
+    );
+
+  return (
+    <Modal opened={isOpen} onClose={onClose} size={920} title={<Title order={2}>Track several recordings</Title>}>
+      <form
+        onSubmit={(event) => {
+          event.preventDefault();
+          submit();
+        }}
+      >
+        <Stack gap="md">
+          <section aria-label="Recordings to track">
+            <Group justify="space-between" mb="sm">
+              <Checkbox
+                label={search ? "All that are shown" : "All recordings"}
+                checked={areAllChosen}
+                indeterminate={!areAllChosen && selectable.some((recording) => chosen.has(recording.id))}
+                onChange={(event) => choose(selectable.map((recording) => recording.id), event.currentTarget.checked)}
+              />
+              <TextInput
+                value={search}
+                onChange={(event) => setSearch(event.currentTarget.value)}
+                placeholder="Filter by name"
+                aria-label="Filter recordings by name"
+                leftSection={<IconSearch size={16} aria-hidden />}
+                w={240}
+              />
+            </Group>
+            <ScrollArea.Autosize mah={200} className={classes.list} tabIndex={0} aria-label="Recordings">
+              {!recordings && <Skeleton height={120} />}
+              {recordings && shown.length === 0 && <Text className="quiet">Nothing is called “{search}”.</Text>}
+              {shown.map((recording) => (
+                <Checkbox
+                  key={recording.id}
+                  py={4}
+                  label={recording.name}
+                  description={isTrackable(recording) ? formatCount(recording.frame_count, "frame") : "cannot be tracked: none of its cameras has depth"}
+                  disabled={!isTrackable(recording)}
+                  checked={chosen.has(recording.id)}
+                  onChange={(event) => choose([recording.id], event.currentTarget.checked)}
+                />
+              ))}
+            </ScrollArea.Autosize>
+          </section>
+          {recordings?.[0] && <TrackingForm options={options} recording={recordings[0]} isForSeveral />}
+          {start.error && (
+            <Stack gap={4} role="alert">
+              <Text size="sm" c="var(--bad-text)">
+                {start.error.message}
+              </Text>
+              {refusals.map((refusal) => (
+                <Text key={refusal.id} size="sm">
+                  {nameOf(refusal.id)}: {refusal.detail}
+                </Text>
+              ))}
+            </Stack>
+          )}
+          <Group justify="flex-end" gap="sm">
+            <Text size="sm" className="quiet" role="status">
+              {chosen.size === 0 ? "Choose recordings above" : "All start together, or none"}
+            </Text>
+            <Button variant="default" onClick={onClose}>
+              Cancel
+            </Button>
+            <Button type="submit" loading={start.isPending} disabled={chosen.size === 0}>
+              Track {formatCount(chosen.size, "recording")}
+            </Button>
+          </Group>
+        </Stack>
+      </form>
+    </Modal>
+  );
+}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import os
 import signal
-import socket
 import threading
 import time
 from uuid import UUID
@@ -39,7 +38,7 @@ def run_worker(settings: Settings) -> None:
     upgrade(database)
     storage = open_storage(settings)
     _drop_leftovers(database, storage)
-    slot = WorkerSlot.acquire(storage.root / "workers", settings.worker_host or socket.gethostname())
+    slot = WorkerSlot.acquire(storage.root / "workers", workers.find_own_host(settings.worker_host))
     stopping = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stopping.set())

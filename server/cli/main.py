@@ -11,8 +11,8 @@ from tracker import add_commands
 COMMANDS = (serve, worker_command, demo, import_command, export_command, account_command)
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run `handloom`; the exit code: 0, 2 for bad input, 1 for any other failure."""
+def make_parser() -> argparse.ArgumentParser:
+    """Every command with its arguments."""
     parser = argparse.ArgumentParser(
         prog="handloom",
         description="A studio that captures hands in action. Everything it keeps is under $HANDLOOM_DATA_DIR.",
@@ -21,7 +21,12 @@ def main(arguments: list[str] | None = None) -> int:
     for command in COMMANDS:
         command.add_command(subparsers)
     bench_server.add_subject(add_commands(subparsers))
-    args = parser.parse_args(arguments)
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run `handloom`; the exit code: 0, 2 for bad input, 1 for any other failure."""
+    args = make_parser().parse_args(arguments)
     try:
         return args.run(args)
     except KeyboardInterrupt:

@@ -22,6 +22,11 @@ SHOWN_FOR = timedelta(hours=24)
 """How long a worker that ended stays in lists."""
 
 
+def find_own_host(named: str | None) -> str:
+    """Name of this machine among those with workers: the one that the settings give it, else its host name."""
+    return named or socket.gethostname()
+
+
 def find_database_time(session: Session) -> datetime:
     """Now, by the one clock that all machines share: PostgreSQL's own. SQLite is on this machine."""
     if session.get_bind().dialect.name == "sqlite":
@@ -34,7 +39,7 @@ def register_worker(session: Session, slot: str, host: str | None = None) -> Wor
     ended = update(WorkerRow).where(WorkerRow.slot == slot, WorkerRow.recovered.is_(False))
     session.execute(ended.values(recovered=True))
     session.execute(update(WorkerRow).where(WorkerRow.slot == slot, WorkerRow.state == "running").values(state="lost"))
-    worker = WorkerRow(slot=slot, pid=os.getpid(), host=host or socket.gethostname())
+    worker = WorkerRow(slot=slot, pid=os.getpid(), host=find_own_host(host))
     worker.started_at = worker.last_seen_at = find_database_time(session)
     session.add(worker)
     session.flush()

@@ -45,6 +45,7 @@ def test_a_batch_is_started_watched_stopped_and_run_again_and_two_runs_are_compa
     page.wait_for_url(re.compile(r"batch=[0-9a-f-]{36}"))
 
     # Seen as they go: the batch, its jobs, who works.
+    expect(page.get_by_role("dialog")).to_be_hidden()
     batch_id = page.url.split("batch=")[1][:36]
     batches = page.get_by_role("region", name="Batches")
     expect(batches.get_by_text("3 recordings").first).to_be_visible()

@@ -50,7 +50,7 @@ export function SelectionBar({ jobs, onClear }: { jobs: readonly Job[]; onClear:
         </Button>
       )}
       {jobs.length === 2 && (
-        <Button size="xs" component={Link} to={`/jobs/compare?a=${jobs[0]?.id}&b=${jobs[1]?.id}`} leftSection={<IconArrowsDiff size={14} aria-hidden />}>
+        <Button size="xs" component={Link} to={`/jobs/compare?a=${jobs[1]?.id}&b=${jobs[0]?.id}`} leftSection={<IconArrowsDiff size={14} aria-hidden />}>
           Compare
         </Button>
       )}

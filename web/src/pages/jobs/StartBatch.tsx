@@ -80,7 +80,7 @@ export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
                 w={240}
               />
             </Group>
-            <ScrollArea.Autosize mah={200} className={classes.list} tabIndex={0} aria-label="Recordings">
+            <ScrollArea.Autosize mah={152} className={classes.list} tabIndex={0} aria-label="Recordings">
               {!recordings && <Skeleton height={120} />}
               {recordings && shown.length === 0 && <Text className="quiet">Nothing is called “{search}”.</Text>}
               {shown.map((recording) => (

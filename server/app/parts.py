@@ -20,6 +20,7 @@ from server.hand_models import routes as hand_models
 from server.imports import routes as imports
 from server.imports.lifespan import clean_imports
 from server.jobs import routes as jobs
+from server.quality import routes as quality
 from server.sequences import frame_routes
 from server.sequences import routes as sequences
 from server.sequences.facts import FactFinder
@@ -50,6 +51,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     evaluations.router,
     triangulation_routes.router,
     suggestions.router,
+    quality.router,
     *teams.ROUTERS,
     exchange.router,
     snapshot_routes.router,

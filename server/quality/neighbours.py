@@ -1,0 +1,106 @@
+"""Checks of a label against those of the frames before and after."""
+
+from __future__ import annotations
+
+import warnings
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from server.quality.finding import Finding
+from server.quality.hand import joint_name
+from server.quality.labels import Label, find_median
+
+if TYPE_CHECKING:
+    pass
+
+Array = npt.NDArray[np.float64]
+
+REACH_FRAMES = 15
+"""Annotated frames farther apart say nothing about each other."""
+
+
+def check_handedness(labels: Sequence[Label], hands: Sequence[str]) -> Iterator[Finding]:
+    """Labels nearer to the other hand in the neighbouring frames than to their own."""
+    tracks = _by_hand(labels)
+    for label in labels:
+        other = "left" if label.hand == "right" else "right"
+        own_px = _nearest(label, tracks[label.camera, label.hand])
+        other_px = _nearest(label, tracks[label.camera, other])
+        if not np.isfinite(other_px) or other_px > 0.5 * label.size_px:
+            if hands and label.hand not in hands and not np.isfinite(own_px):
+                yield Finding(label, "handedness", 2.0, (), f"This recording is said to have no {label.hand} hand.")
+            continue
+        own_px = min(own_px, 2.0 * label.size_px)
+        if own_px > 2.0 * other_px + 4:
+            score = min(10.0, own_px / (2.0 * other_px + 4))
+            reason = (
+                f"In the neighbouring frames the {other} hand is here ({other_px:.0f} px away), the {label.hand} one "
+                f"{own_px:.0f} px away: are they swapped?"
+            )
+            yield Finding(label, "handedness", score, (), reason)
+
+
+def check_jumps(labels: Sequence[Label]) -> Iterator[Finding]:
+    """Joints far from where they are in the annotated frames before and after, the hand's own motion taken off."""
+    for track in _by_hand(labels).values():
+        jumps = [_jump(track, place) for place in range(len(track))]
+        for place, (label, jump) in enumerate(zip(track, jumps, strict=True)):
+            if not np.isfinite(jump).any():
+                continue
+            typical = float(np.nanmedian(jump))
+            limit = max(8.0, 0.1 * label.size_px, 5.0 * typical)
+            beside = [jumps[other] for other in (place - 1, place + 1) if 0 <= other < len(track)]
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", RuntimeWarning)
+                of_others = np.nanmax([*beside, np.zeros(21)], axis=0)
+            is_own = ~(of_others > 1.3 * jump)  # a neighbour that jumps more is the one to blame
+            joints = np.flatnonzero((jump > limit) & is_own)
+            if joints.size:
+                worst = joints[np.argmax(jump[joints])]
+                reason = f"The {joint_name(worst)} is {jump[worst]:.0f} px from where the neighbouring frames have it."
+                yield Finding(label, "jump", float(jump[worst] / limit), tuple(map(int, joints)), reason)
+
+
+def _by_hand(labels: Sequence[Label]) -> dict[tuple[str, str], list[Label]]:
+    """Labels of one hand in one camera, by frame."""
+    tracks: dict[tuple[str, str], list[Label]] = defaultdict(list)
+    for label in sorted(labels, key=lambda one: one.frame):
+        tracks[label.camera, label.hand].append(label)
+    return tracks
+
+
+def _nearest(label: Label, track: Sequence[Label]) -> float:
+    """Mean distance, px, to the nearest of the labels just before and after; infinite without any."""
+    before = [one for one in track if label.frame - REACH_FRAMES <= one.frame < label.frame][-1:]
+    after = [one for one in track if label.frame < one.frame <= label.frame + REACH_FRAMES][:1]
+    found = [np.linalg.norm(label.pixels - one.pixels, axis=1) for one in before + after]
+    means = [float(np.nanmean(d)) for d in found if np.isfinite(d).any()]
+    return min(means, default=np.inf)
+
+
+def _jump(track: Sequence[Label], place: int) -> Array:
+    """(21,) px from where the labels before and after would have each joint, the median shift taken off."""
+    label = track[place]
+    before = track[place - 1] if place > 0 else None
+    after = track[place + 1] if place + 1 < len(track) else None
+    if before is not None and label.frame - before.frame > REACH_FRAMES:
+        before = None
+    if after is not None and after.frame - label.frame > REACH_FRAMES:
+        after = None
+    if before is not None and after is not None:
+        share = (label.frame - before.frame) / (after.frame - before.frame)
+        expected = before.pixels + share * (after.pixels - before.pixels)
+    elif before is not None or after is not None:
+        one = before or after
+        assert one is not None
+        expected = one.pixels
+    else:
+        return np.full(21, np.nan)
+    moved = label.pixels - expected
+    if not np.isfinite(moved).any():
+        return np.full(21, np.nan)
+    return np.linalg.norm(moved - find_median(moved, axis=0), axis=1)

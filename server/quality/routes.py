@@ -1,0 +1,94 @@
+"""`/sequences/{sequence_id}/flags`: labels that look wrong."""
+
+from __future__ import annotations
+
+import uuid
+from collections import Counter
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from server.accounts.service import CurrentAccount
+from server.annotations.routes import PlaceDep
+from server.annotations.service import list_annotations
+from server.database import DatabaseDep, SessionDep
+from server.database.paging import Cursor, Limit, read_cursor, write_cursor
+from server.errors import error_responses
+from server.quality import service
+from server.quality.finding import Finding, Kind
+from server.quality.schemas import FlagLook, FlagOut, FlagPage
+from server.quality.service import FlagFinderDep
+from server.sequences.service import get_sequence
+from server.tracks.facts import find_best_tracks
+
+router = APIRouter(prefix="/sequences/{sequence_id}", tags=["quality"], responses=error_responses(404))
+
+
+@router.get("/flags")
+def list_flags(
+    sequence_id: uuid.UUID,
+    database: DatabaseDep,
+    finder: FlagFinderDep,
+    kind: Annotated[Kind | None, Query(description="Only these.")] = None,
+    dismissed: Annotated[bool, Query(description="Those that were put away instead of the open ones.")] = False,
+    cursor: Cursor = None,
+    limit: Limit = 100,
+) -> FlagPage:
+    """Labels that look wrong as they are now, the worst first."""
+    with database.reading() as session:
+        sequence = get_sequence(session, sequence_id)
+        rows, _ = list_annotations(session, sequence_id)
+        put_away = service.find_dismissed(session, sequence_id)
+        best = find_best_tracks(session, [sequence_id]).get(sequence_id)
+        session.expunge_all()
+    track_id = best["best_track"]["id"] if best else None
+    flags = finder.find(sequence_id, sequence.content_key, sequence.hands, rows, track_id)
+    is_away = {id(flag): (flag.label.id, flag.label.revision, flag.kind) in put_away for flag in flags}
+    counts = Counter(flag.kind for flag in flags if not is_away[id(flag)])
+    wanted = [flag for flag in flags if is_away[id(flag)] == dismissed and kind in (None, flag.kind)]
+    if cursor is not None:
+        place = tuple(read_cursor(cursor, int, str, str))
+        wanted = [flag for flag in wanted if _order(flag) > place]
+    items = wanted[:limit]
+    return FlagPage(
+        items=[_describe(flag, is_away[id(flag)]) for flag in items],
+        next_cursor=write_cursor(*_order(items[-1])) if len(wanted) > limit else None,
+        counts=dict(counts),
+        dismissed=sum(is_away.values()),
+    )
+
+
+@router.put("/flags/{camera}/{frame}/{hand}/{kind}/dismissal", status_code=204, responses=error_responses(409))
+def dismiss_flag(place: PlaceDep, kind: Kind, body: FlagLook, session: SessionDep, account: CurrentAccount) -> None:
+    """The label is right: put the flag away for this revision of it. 409 when the label has changed meanwhile."""
+    service.dismiss(session, place, kind, body.revision, account.id)
+
+
+@router.delete("/flags/{camera}/{frame}/{hand}/{kind}/dismissal", status_code=204)
+def restore_flag(
+    place: PlaceDep, kind: Kind, session: SessionDep, revision: Annotated[int, Query(ge=1, le=10**9)]
+) -> None:
+    """Bring a flag back that was put away."""
+    service.restore(session, place, kind, revision)
+
+
+def _order(flag: Finding) -> tuple[int, str, str]:
+    return -round(1e6 * flag.score), str(flag.label.id), flag.kind
+
+
+def _describe(flag: Finding, is_dismissed: bool) -> FlagOut:
+    label = flag.label
+    return FlagOut.model_validate(
+        {
+            "kind": flag.kind,
+            "score": round(flag.score, 3),
+            "reason": flag.reason,
+            "camera": label.camera,
+            "frame": label.frame,
+            "hand": label.hand,
+            "joints": list(flag.joints),
+            "points": [[float(x), float(y), int(v)] for x, y, v in label.points],
+            "revision": label.revision,
+            "is_dismissed": is_dismissed,
+        }
+    )

@@ -1,0 +1,131 @@
+"""Flags of a recording's labels as they are now, and what people said of them."""
+
+from __future__ import annotations
+
+import threading
+import uuid
+from collections import OrderedDict
+from collections.abc import Sequence as Many
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+import numpy.typing as npt
+from fastapi import Depends
+from sqlalchemy import delete, select
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+from starlette.requests import HTTPConnection
+
+from server.annotations.models import AnnotationRow
+from server.annotations.service import Place, get_annotation
+from server.errors import ConflictError
+from server.quality.find import Setting, find_flags
+from server.quality.finding import Finding
+from server.quality.labels import DepthReader
+from server.quality.models import DismissalRow
+from server.storage import Storage
+
+if TYPE_CHECKING:
+    from tracker import Sequence
+
+KEPT = 16
+"""Recordings whose flags are remembered."""
+
+
+class FlagFinder:
+    """Finds flags, once for each state of a recording's labels."""
+
+    def __init__(self, storage: Storage) -> None:
+        self._storage = storage
+        self._reader = DepthReader()
+        self._known: OrderedDict[tuple, list[Finding]] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def find(
+        self, sequence_id: uuid.UUID, content_key: str, hands: Many[str], rows: Many[AnnotationRow], track_id: Any
+    ) -> list[Finding]:
+        """Flags of the labels, the worst first; `track_id` names the track that they are compared with, if any."""
+        from tracker import load_sequence
+
+        state = frozenset((row.id, row.revision) for row in rows)
+        key = (sequence_id, content_key, tuple(hands), track_id, state)
+        with self._lock:  # one at a time: several people open the same page
+            if key not in self._known:
+                recording = load_sequence(self._storage.folder("sequences", sequence_id))
+                tracked = {} if track_id is None else _read_track(self._storage.folder("tracks", track_id))
+                setting = Setting(tuple(hands), {c.id: c for c in recording.cameras}, tracked)
+                self._known[key] = find_flags(self._read(recording, rows), setting)
+                while len(self._known) > KEPT:
+                    self._known.popitem(last=False)
+            self._known.move_to_end(key)
+            return self._known[key]
+
+    def _read(self, recording: Sequence, rows: Many[AnnotationRow]) -> list[Any]:
+        cameras = {camera.id for camera in recording.cameras}
+        return self._reader.read(recording, [row for row in rows if row.camera in cameras])
+
+
+def _read_track(folder: Path) -> dict[tuple[str, int, str], npt.NDArray[np.float64]]:
+    """(21, 2) px of a track's hands by camera, frame and hand; frames that it lost are left out."""
+    with np.load(folder / "track.npz", allow_pickle=False) as arrays:
+        frames, status = arrays["frame"].tolist(), arrays["status"].tolist()
+        cameras = [str(name) for name in arrays["camera_ids"]]
+        names = [str(name) for name in arrays["joint_names"]]
+        joints = arrays["joints_2d"].astype(np.float64)
+    found = {}
+    for hand in ("right", "left"):
+        columns = [place for place, name in enumerate(names) if name.startswith(f"{hand}/")]
+        if len(columns) != 21:
+            continue
+        for row, frame in enumerate(frames):
+            if status[row] != "lost":
+                for index, camera in enumerate(cameras):
+                    found[camera, frame, hand] = joints[row, index, columns]
+    return found
+
+
+def find_dismissed(session: Session, sequence_id: uuid.UUID) -> set[tuple[uuid.UUID, int, str]]:
+    """Label, revision and kind of every flag that was put away."""
+    query = (
+        select(DismissalRow.annotation_id, DismissalRow.revision, DismissalRow.kind)
+        .join(AnnotationRow, AnnotationRow.id == DismissalRow.annotation_id)
+        .where(AnnotationRow.sequence_id == sequence_id)
+    )
+    return {(id_, revision, kind) for id_, revision, kind in session.execute(query)}
+
+
+def dismiss(session: Session, place: Place, kind: str, revision: int, account_id: uuid.UUID) -> None:
+    """The label is right, says somebody who looked at this revision of it. Saying it twice does no harm."""
+    row = get_annotation(session, place)
+    if row.revision != revision:
+        raise ConflictError(
+            f"You looked at revision {revision} of {place}; it is at {row.revision} now. Look at it again."
+        )
+    try:
+        with session.begin_nested():
+            session.add(DismissalRow(annotation_id=row.id, revision=revision, kind=kind, account_id=account_id))
+            session.flush()
+    except IntegrityError:
+        return  # somebody else has said so
+
+
+def restore(session: Session, place: Place, kind: str, revision: int) -> None:
+    """Take that back; nothing happens when nobody said it."""
+    row = get_annotation(session, place)
+    session.execute(
+        delete(DismissalRow).where(
+            DismissalRow.annotation_id == row.id, DismissalRow.revision == revision, DismissalRow.kind == kind
+        )
+    )
+
+
+def get_flag_finder(connection: HTTPConnection) -> FlagFinder:
+    """The app's."""
+    state = connection.app.state
+    if not hasattr(state, "flag_finder"):
+        state.flag_finder = FlagFinder(state.storage)
+    return state.flag_finder
+
+
+FlagFinderDep = Annotated[FlagFinder, Depends(get_flag_finder)]

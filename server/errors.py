@@ -44,6 +44,10 @@ class LoginNeededError(StudioError):
     status_code = 401
 
 
+class OtherAccountError(LoginNeededError):
+    """Somebody else is logged in by now than when the page was opened."""
+
+
 class ForbiddenError(StudioError):
     """The request comes from where it must not come."""
 

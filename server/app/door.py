@@ -16,7 +16,7 @@ from server.accounts.same_origin import SAFE_METHODS
 from server.accounts.visitor import LOCAL_VISITOR, Visitor, put_visitor
 from server.app.error_handler import answer_error
 from server.database import Database
-from server.errors import ForbiddenError, LoginNeededError, StudioError
+from server.errors import ForbiddenError, LoginNeededError, OtherAccountError, StudioError
 from server.settings import Settings
 
 CLOSED_PREFIXES = ("/api", "/viewer")
@@ -30,6 +30,9 @@ OPEN = frozenset(
     }
 )
 """Requests that need no login."""
+
+ACCOUNT_HEADER = "X-Handloom-Account"
+"""The id of the account that a page was opened for."""
 
 RECHECK_SECONDS = 30.0
 """A stream or socket that stays open ends so long after its login did, at the latest."""
@@ -52,7 +55,8 @@ class Door:
             await self.app(scope, receive, send)
             return
         try:
-            visitor = await self._let_in(scope)
+            visitor = await self.let_in(scope)
+            _check_is_meant(scope, visitor)
             if method not in SAFE_METHODS and not visitor.may_write:
                 raise ForbiddenError("This token may only read. Make one that may write on the page of your account.")
         except StudioError as error:
@@ -62,12 +66,14 @@ class Door:
             await answer_error(Request(scope), error)(scope, receive, send)
             return
         put_visitor(scope, visitor)
-        is_lasting = scope["type"] == "websocket" or method == "GET"
-        if is_lasting and (visitor.login_id or visitor.token_id):
-            receive = self._watch(scope, receive)
-        await self.app(scope, receive, send)
+        if visitor.login_id is None and visitor.token_id is None:
+            await self.app(scope, receive, send)
+        elif scope["type"] == "websocket" or method == "GET":
+            await _Stay(self, scope, receive, send).last(self.app)
+        else:
+            await self.app(scope, receive, send)
 
-    async def _let_in(self, scope: Scope) -> Visitor:
+    async def let_in(self, scope: Scope) -> Visitor:
         if not self.settings.is_login_needed and not _is_near(scope):
             raise LoginNeededError("This studio asks for no login, so it answers this machine only.")
         headers = Headers(scope=scope)
@@ -81,31 +87,54 @@ class Door:
             note.add_done_callback(self._notes.discard)
         return visitor
 
-    def _watch(self, scope: Scope, receive: Receive) -> Receive:
-        """`receive` for as long as the login lasts: to a stream or socket whose login ended the browser has gone."""
-        checked = time.monotonic()
-        gone: Message = {"type": "http.disconnect"}
-        if scope["type"] == "websocket":
-            gone = {"type": "websocket.disconnect", "code": 1008, "reason": "log in again"}
 
-        async def receive_while_let_in() -> Message:
-            nonlocal checked
-            waiting = asyncio.ensure_future(receive())
-            try:
-                while True:
-                    left = checked + RECHECK_SECONDS - time.monotonic()
-                    done, _ = await asyncio.wait({waiting}, timeout=max(0.0, left))
-                    if time.monotonic() - checked >= RECHECK_SECONDS:
-                        checked = time.monotonic()
-                        await self._let_in(scope)
-                    if done:
-                        return waiting.result()
-            except StudioError:
-                return gone
-            finally:
-                waiting.cancel()
+class _Stay:
+    """A request that may last: when its login ends, to a stream or socket it is as if the browser had gone."""
 
-        return receive_while_let_in
+    def __init__(self, door: Door, scope: Scope, receive: Receive, send: Send) -> None:
+        self._door, self._scope, self._receive, self._send = door, scope, receive, send
+        self._checked = time.monotonic()
+        self._has_ended = self._is_open = False
+
+    async def last(self, app: ASGIApp) -> None:
+        await app(self._scope, self.receive, self.send)
+        if self._has_ended and self._is_open and self._scope["type"] == "http":
+            await self._send({"type": "http.response.body", "body": b"", "more_body": False})
+
+    async def send(self, message: Message) -> None:
+        if message["type"] == "http.response.start":
+            self._is_open = True
+        elif message["type"] == "http.response.body":
+            self._is_open = message.get("more_body", False)
+        await self._send(message)
+
+    async def receive(self) -> Message:
+        waiting = asyncio.ensure_future(self._receive())
+        try:
+            while True:
+                left = self._checked + RECHECK_SECONDS - time.monotonic()
+                done, _ = await asyncio.wait({waiting}, timeout=max(0.0, left))
+                if time.monotonic() - self._checked >= RECHECK_SECONDS:
+                    self._checked = time.monotonic()
+                    await self._door.let_in(self._scope)
+                if done:
+                    return waiting.result()
+        except StudioError:
+            self._has_ended = True
+            if self._scope["type"] == "websocket":
+                return {"type": "websocket.disconnect", "code": 1008, "reason": "log in again"}
+            return {"type": "http.disconnect"}
+        finally:
+            waiting.cancel()
+
+
+def _check_is_meant(scope: Scope, visitor: Visitor) -> None:
+    """A page says whose it is: what one person did must not be stored under the name of the next one who logs in."""
+    meant = Headers(scope=scope).get(ACCOUNT_HEADER)
+    if meant is not None and meant != str(visitor.account_id):
+        raise OtherAccountError(
+            f"This page belongs to somebody else; {visitor.name} is logged in by now. Log in again, or load the page."
+        )
 
 
 def _is_near(scope: Scope) -> bool:

@@ -12,8 +12,8 @@ import { createRoot } from "react-dom/client";
 import { RouterProvider } from "react-router";
 import { ApiError } from "./api/client";
 import { router } from "./pages/routes";
-import { loadKeys } from "./state/keys";
-import { resumeSaving } from "./state/saving";
+import { Gate } from "./pages/parts/LoginGate";
+import { askWhoIAm } from "./state/me";
 import { cssVariables, theme } from "./theme";
 
 const queries = new QueryClient({
@@ -26,8 +26,7 @@ const queries = new QueryClient({
   },
 });
 
-resumeSaving();
-void loadKeys();
+void askWhoIAm();
 
 const root = document.getElementById("root");
 if (root) {
@@ -41,7 +40,9 @@ if (root) {
       >
         <Notifications position="top-right" limit={3} />
         <QueryClientProvider client={queries}>
-          <RouterProvider router={router} />
+          <Gate>
+            <RouterProvider router={router} />
+          </Gate>
         </QueryClientProvider>
       </MantineProvider>
     </StrictMode>,

@@ -31,14 +31,15 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
   try {
     if (save.points === null) {
       if (save.base === null) return { kind: "saved", revision: null };
-      await requestWithHeaders("DELETE", path, { headers, query: { operation_id: save.operationId } });
+      await requestWithHeaders("DELETE", path, { headers, whenOut: "fail", query: { operation_id: save.operationId } });
       return { kind: "saved", revision: null };
     }
     const body = { points: save.points, operation_id: save.operationId };
-    const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers });
+    const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers, whenOut: "fail" });
     return { kind: "saved", revision: revisionOf(answer.headers) ?? answer.data.revision };
   } catch (failure) {
     if (!(failure instanceof ApiError) || failure.isOffline || failure.status >= 500) return { kind: "unreachable" };
+    if (failure.status === 401) return { kind: "held" };
     if (failure.status === 409 || failure.status === 412) {
       const theirs = failure.body["theirs"] as Annotation | null | undefined;
       return { kind: "conflict", theirs: { points: theirs?.points ?? null, revision: theirs?.revision ?? null } };

@@ -20,12 +20,33 @@ export class ApiError extends Error {
   }
 }
 
+/** Stands at the way out: says in whose name requests go, and who has to log in before one can be tried again. */
+export interface Doorkeeper {
+  /** Whose page this is; the server refuses a request when somebody else is logged in by now. */
+  account(): string | null;
+  /** How often somebody has logged in here: a refusal from before the last time says nothing about now. */
+  loginCount(): number;
+  /** A request was refused because nobody is logged in. */
+  report(failure: ApiError): void;
+  /** Resolves when the same person is logged in again; rejects when `signal` aborts. */
+  wait(signal?: AbortSignal): Promise<void>;
+}
+
+let doorkeeper: Doorkeeper | null = null;
+export const setDoorkeeper = (keeper: Doorkeeper): void => {
+  doorkeeper = keeper;
+};
+
+const ACCOUNT_HEADER = "X-Handloom-Account";
+
 export interface RequestOptions {
   body?: unknown;
   headers?: Record<string, string>;
   /** A list gives its name several times. */
   query?: Record<string, string | number | readonly string[] | undefined | null>;
   signal?: AbortSignal;
+  /** What to do when nobody is logged in: wait for the login and try again, or fail at once. */
+  whenOut?: "wait" | "fail";
   /** Let the request outlive the page (for good-byes). */
   keepalive?: boolean;
 }
@@ -56,13 +77,17 @@ function parseFailure(status: number, text: string): ApiError {
   }
 }
 
+const isLoggingIn = (address: string): boolean => address.startsWith(`${API}/login`);
+
 async function send(method: string, address: string, options: RequestOptions, body?: BodyInit): Promise<Response> {
   let response: Response;
+  const account = doorkeeper?.account();
+  const loginCount = doorkeeper?.loginCount();
   try {
     response = await fetch(address, {
       method,
       body: body ?? null,
-      headers: options.headers ?? {},
+      headers: { ...options.headers, ...(account ? { [ACCOUNT_HEADER]: account } : {}) },
       signal: options.signal ?? null,
       keepalive: options.keepalive ?? false,
     });
@@ -70,8 +95,14 @@ async function send(method: string, address: string, options: RequestOptions, bo
     if (options.signal?.aborted) throw failure;
     throw unreachable();
   }
-  if (!response.ok) throw parseFailure(response.status, await response.text());
-  return response;
+  if (response.ok) return response;
+  const failure = parseFailure(response.status, await response.text());
+  if (failure.status !== 401 || !doorkeeper || isLoggingIn(address)) throw failure;
+  if (doorkeeper.loginCount() !== loginCount) return send(method, address, options, body);
+  doorkeeper.report(failure);
+  if (options.whenOut === "fail" || options.keepalive) throw failure;
+  await doorkeeper.wait(options.signal);
+  return send(method, address, options, body);
 }
 
 /** One JSON request with its answer's headers (for `ETag`). */
@@ -111,29 +142,58 @@ export function upload<T>(path: string, form: FormData, onProgress: (part: numbe
     const call = new XMLHttpRequest();
     call.open("POST", API + path);
     call.setRequestHeader("Accept", "application/json");
+    const account = doorkeeper?.account();
+    if (account) call.setRequestHeader(ACCOUNT_HEADER, account);
     call.upload.onprogress = (event) => event.lengthComputable && onProgress(event.loaded / event.total);
     call.onerror = () => reject(unreachable());
     call.onabort = () => reject(new DOMException("The upload was cancelled.", "AbortError"));
     call.onload = () => {
-      if (call.status >= 200 && call.status < 300) resolve(JSON.parse(call.responseText) as T);
-      else reject(parseFailure(call.status, call.responseText));
+      if (call.status >= 200 && call.status < 300) return resolve(JSON.parse(call.responseText) as T);
+      const failure = parseFailure(call.status, call.responseText);
+      if (call.status !== 401 || !doorkeeper) return reject(failure);
+      doorkeeper.report(failure);
+      doorkeeper.wait(signal).then(() => upload<T>(path, form, onProgress, signal)).then(resolve, reject);
     };
     signal.addEventListener("abort", () => call.abort());
     call.send(form);
   });
 }
 
-/** Server-sent events of one address; returns the way to stop. The browser reconnects by itself. */
+const REOPEN_MS = 3000;
+
+/** Server-sent events of one address; returns the way to stop. It opens again by itself, after a login too. */
 export function listen(
   path: string,
   handlers: Record<string, (data: unknown) => void>,
   onLink: (isUp: boolean) => void = () => undefined,
 ): () => void {
-  const source = new EventSource(API + path);
-  source.onopen = () => onLink(true);
-  source.onerror = () => onLink(false);
-  for (const [event, handle] of Object.entries(handlers)) {
-    source.addEventListener(event, (message) => handle(JSON.parse((message as MessageEvent<string>).data)));
-  }
-  return () => source.close();
+  const stopping = new AbortController();
+  let source: EventSource;
+  const open = (): void => {
+    if (stopping.signal.aborted) return;
+    source = new EventSource(API + path);
+    source.onopen = () => onLink(true);
+    source.onerror = () => {
+      onLink(false);
+      // The browser gives up on a refusal without saying which: a plain request finds out, and waits for a login.
+      if (source.readyState === EventSource.CLOSED) void reopen();
+    };
+    for (const [event, handle] of Object.entries(handlers)) {
+      source.addEventListener(event, (message) => handle(JSON.parse((message as MessageEvent<string>).data)));
+    }
+  };
+  const reopen = async (): Promise<void> => {
+    try {
+      await send("GET", `${API}/account`, { signal: stopping.signal });
+      await new Promise((resolve) => setTimeout(resolve, REOPEN_MS / 3));
+    } catch {
+      await new Promise((resolve) => setTimeout(resolve, REOPEN_MS));
+    }
+    open();
+  };
+  open();
+  return () => {
+    stopping.abort();
+    source.close();
+  };
 }

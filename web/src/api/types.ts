@@ -30,6 +30,16 @@ export type TrackJoints = Schemas["TrackJoints"];
 export type WireSuggestion = Schemas["Suggestion"];
 export type ViewerSession = Schemas["ViewerSessionOut"];
 
+export type Me = Schemas["MyAccount"];
+export type Role = Me["role"];
+export type Person = Schemas["PersonOut"];
+export type PersonAdded = Schemas["PersonAdded"];
+export type OneTimeCode = Schemas["CodeOut"];
+export type Login = Schemas["LoginOut"];
+export type Token = Schemas["TokenOut"];
+export type NewToken = Schemas["NewToken"];
+export type AuditLine = Schemas["AuditLine"];
+
 export type Recording = Omit<Schemas["SequenceOut"], "report" | "best_track"> & {
   report: ImportReport | null;
   best_track: BestTrack | null;

@@ -9,6 +9,7 @@ import { useHint } from "../state/keys";
 import { flushSaving } from "../state/saving";
 import { DropAnywhere } from "./parts/DropAnywhere";
 import { KeySettings } from "./parts/KeySettings";
+import { MeMenu } from "./account/MeMenu";
 import { KeyboardMap } from "./parts/KeyboardMap";
 import { PageSkeleton } from "./parts/PageSkeleton";
 import { openSearch, Search } from "./parts/Search";
@@ -115,6 +116,7 @@ export function Shell() {
             </ActionIcon>
           </Tooltip>
           <ThemeSwitch />
+          <MeMenu />
         </Group>
       </header>
       <main id="main" className={classes.main}>

@@ -15,6 +15,9 @@ import { TracksPage } from "./TracksPage";
 const AnnotatePage = lazy(() => import("./AnnotatePage"));
 const AnnotateChooser = lazy(() => import("./AnnotateChooser"));
 const EvaluationsPage = lazy(() => import("./evaluations/EvaluationsPage"));
+const AccountPage = lazy(() => import("./account/AccountPage"));
+const PeoplePage = lazy(() => import("./account/PeoplePage"));
+const AuditPage = lazy(() => import("./account/AuditPage"));
 const TrackPage = lazy(() => import("./TrackPage"));
 
 /** Addresses hold the state of a page, so that a link shows a colleague the same thing. */
@@ -39,6 +42,10 @@ export const router = createBrowserRouter([
           { path: "jobs", element: <JobsPage /> },
           { path: "jobs/compare", element: <ComparePage /> },
           { path: "jobs/:jobId", element: <JobPage /> },
+          { path: "account", element: <AccountPage /> },
+          { path: "people", element: <PeoplePage /> },
+          { path: "audit", element: <AuditPage /> },
+          { path: "login", element: <Navigate to="/recordings" replace /> },
           { path: "*", element: <MissingPage /> },
         ],
       },

@@ -12,6 +12,16 @@ export interface PendingSave {
   readonly isSent?: boolean;
 }
 
+/** Each person's own: nobody's work is sent in the name of somebody else who uses this browser after them. */
+const UNSAVED = "handloom/unsaved/";
+
+/** Recordings of which somebody's work waits in this browser. */
+export function findWaiting(storage: Storage, account: string): string[] {
+  const prefix = `${UNSAVED}${account}/`;
+  const names = Array.from({ length: storage.length }, (_, index) => storage.key(index) ?? "");
+  return [...new Set(names.filter((name) => name.startsWith(prefix)).map((name) => name.slice(prefix.length).split("/")[0] ?? ""))];
+}
+
 export interface Journal {
   load(): Map<string, PendingSave[]>;
   /** Returns false when it could not be kept (storage full or forbidden). */
@@ -19,8 +29,8 @@ export interface Journal {
 }
 
 /** In localStorage, because it is written before the next line runs; IndexedDB may lose the last gesture on a crash. */
-export function createJournal(storage: Storage, recording: string): Journal {
-  const prefix = `handloom/unsaved/${recording}/`;
+export function createJournal(storage: Storage, account: string, recording: string): Journal {
+  const prefix = `${UNSAVED}${account}/${recording}/`;
   return {
     load() {
       const found = new Map<string, PendingSave[]>();

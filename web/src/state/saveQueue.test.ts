@@ -1,6 +1,6 @@
 import { afterEach, expect, test, vi } from "vitest";
 import type { WirePoint } from "../api/types";
-import { createJournal, type Journal, type PendingSave } from "./journal";
+import { createJournal, findWaiting, type Journal, type PendingSave } from "./journal";
 import { createSaveQueue, type Outcome } from "./saveQueue";
 
 afterEach(() => void vi.useRealTimers());
@@ -52,7 +52,7 @@ const KEY = "0|right|cam0";
 
 test("gestures made while one is on its way become one more save, based on its revision", async () => {
   const server = aServer();
-  const queue = createSaveQueue((key, save) => server.send(key, save), createJournal(new MemoryStorage(), "r"));
+  const queue = createSaveQueue((key, save) => server.send(key, save), createJournal(new MemoryStorage(), "anna", "r"));
   queue.put(KEY, points(1));
   queue.put(KEY, points(2));
   queue.put(KEY, points(3));
@@ -65,26 +65,26 @@ test("what was not acknowledged survives a reload and is sent once", async () =>
   const server = aServer();
   const storage = new MemoryStorage();
   server.isDown = true;
-  const first = createSaveQueue((key, save) => server.send(key, save), createJournal(storage, "r"));
+  const first = createSaveQueue((key, save) => server.send(key, save), createJournal(storage, "anna", "r"));
   first.put(KEY, points(7));
   await settled();
   expect(first.status()).toMatchObject({ waiting: 1, isOffline: true });
   first.stop();
 
   server.isDown = false;
-  const second = createSaveQueue((key, save) => server.send(key, save), createJournal(storage, "r"));
+  const second = createSaveQueue((key, save) => server.send(key, save), createJournal(storage, "anna", "r"));
   expect(second.waiting().get(KEY)).toEqual(points(7));
   second.learn(new Map());
   await settled();
   expect(server.stored.get(KEY)).toEqual({ points: points(7), revision: 1 });
-  expect(createJournal(storage, "r").load().size).toBe(0);
+  expect(createJournal(storage, "anna", "r").load().size).toBe(0);
 });
 
 test("a save whose answer was lost is not taken for a conflict", async () => {
   vi.useFakeTimers();
   const server = aServer();
   server.losesAnswer = true;
-  const queue = createSaveQueue((key, save) => server.send(key, save), createJournal(new MemoryStorage(), "r"));
+  const queue = createSaveQueue((key, save) => server.send(key, save), createJournal(new MemoryStorage(), "anna", "r"));
   queue.put(KEY, points(1));
   await vi.advanceTimersByTimeAsync(10);
   queue.put(KEY, points(2));
@@ -98,7 +98,7 @@ test("a save whose answer was lost is not taken for a conflict", async () => {
 test("another person's change is never overwritten before somebody chose", async () => {
   const server = aServer();
   server.stored.set(KEY, { points: points(100), revision: 4 });
-  const queue = createSaveQueue((key, save) => server.send(key, save), createJournal(new MemoryStorage(), "r"));
+  const queue = createSaveQueue((key, save) => server.send(key, save), createJournal(new MemoryStorage(), "anna", "r"));
   queue.learn(new Map([[KEY, 3]]));
   queue.put(KEY, points(5));
   await settled();
@@ -114,7 +114,7 @@ test("another person's change is never overwritten before somebody chose", async
 test("taking theirs drops what waits and goes on from their revision", async () => {
   const server = aServer();
   server.stored.set(KEY, { points: points(100), revision: 4 });
-  const queue = createSaveQueue((key, save) => server.send(key, save), createJournal(new MemoryStorage(), "r"));
+  const queue = createSaveQueue((key, save) => server.send(key, save), createJournal(new MemoryStorage(), "anna", "r"));
   queue.put(KEY, points(5));
   await settled();
   queue.settle(KEY, "theirs");
@@ -128,7 +128,7 @@ test("hands and frames do not wait for each other", async () => {
   const held: string[] = [];
   const queue = createSaveQueue(
     (key) => (held.push(key), key === KEY ? new Promise(() => undefined) : Promise.resolve({ kind: "saved", revision: 1 })),
-    createJournal(new MemoryStorage(), "r"),
+    createJournal(new MemoryStorage(), "anna", "r"),
   );
   queue.put(KEY, points(1));
   queue.put("1|right|cam0", points(2));
@@ -140,7 +140,7 @@ test("hands and frames do not wait for each other", async () => {
 test("a refused save stays, says why, and can be discarded", async () => {
   const queue = createSaveQueue(
     () => Promise.resolve({ kind: "refused", reason: "21 points are needed." }),
-    createJournal(new MemoryStorage(), "r"),
+    createJournal(new MemoryStorage(), "anna", "r"),
   );
   queue.put(KEY, points(1));
   await settled();
@@ -158,4 +158,40 @@ test("a full browser storage is reported and the save still goes out", async () 
   await settled();
   expect(server.stored.get(KEY)?.points).toEqual(points(1));
   expect(queue.status().isKept).toBe(true);
+});
+
+test("work made after the login ended is held, kept, and sent once the person is back", async () => {
+  const server = aServer();
+  const storage = new MemoryStorage();
+  let isOut = true;
+  let asked = 0;
+  const send = (key: string, save: PendingSave): Promise<Outcome> => {
+    asked += 1;
+    return isOut ? Promise.resolve({ kind: "held" }) : server.send(key, save);
+  };
+  const queue = createSaveQueue(send, createJournal(storage, "anna", "r"));
+  queue.put(KEY, points(1));
+  await settled();
+  queue.put(KEY, points(2));
+  queue.put("1|left|cam0", points(3));
+  await settled();
+  expect(queue.status()).toMatchObject({ isHeld: true, waiting: 2, isOffline: false });
+  expect(queue.status().refusals.size).toBe(0);
+  expect(asked, "nobody knocks again before the login").toBe(1);
+  expect(createJournal(storage, "anna", "r").load().size).toBe(2);
+  isOut = false;
+  queue.flush();
+  await settled();
+  expect(queue.status()).toMatchObject({ isHeld: false, waiting: 0 });
+  expect(server.stored.get(KEY)?.points).toEqual(points(2));
+  expect(server.stored.get("1|left|cam0")?.points).toEqual(points(3));
+});
+
+test("each person has a journal of their own", () => {
+  const storage = new MemoryStorage();
+  createJournal(storage, "anna", "r").keep(KEY, [{ operationId: "1", points: points(1), base: null }]);
+  createJournal(storage, "anna", "s").keep(KEY, [{ operationId: "2", points: points(1), base: null }]);
+  expect(createJournal(storage, "ben", "r").load().size).toBe(0);
+  expect(findWaiting(storage, "ben")).toEqual([]);
+  expect(findWaiting(storage, "anna").sort()).toEqual(["r", "s"]);
 });

@@ -11,7 +11,9 @@ export type Outcome =
   | { readonly kind: "saved"; readonly revision: number | null }
   | { readonly kind: "conflict"; readonly theirs: Theirs }
   | { readonly kind: "refused"; readonly reason: string }
-  | { readonly kind: "unreachable" };
+  | { readonly kind: "unreachable" }
+  /** Nobody is logged in, or somebody else: it waits for the person who made it. */
+  | { readonly kind: "held" };
 
 /** The version that the server holds; points null when it was deleted. */
 export interface Theirs {
@@ -26,6 +28,8 @@ export interface SaveStatus {
   readonly waiting: number;
   readonly isSending: boolean;
   readonly isOffline: boolean;
+  /** True until the person is logged in again; nothing is sent meanwhile. */
+  readonly isHeld: boolean;
   /** False when the browser refuses to keep what waits. */
   readonly isKept: boolean;
   readonly conflicts: ReadonlyMap<string, Theirs>;
@@ -63,6 +67,7 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
   const refusals = new Map<string, string>();
   const watchers = new Set<() => void>();
   let failures = 0;
+  let isHeld = false;
   let isKept = true;
   let lastSavedAt: number | null = null;
   let timer: ReturnType<typeof setTimeout> | undefined;
@@ -74,6 +79,7 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
       waiting: pending.size,
       isSending: sending.size > 0,
       isOffline: failures > 0,
+      isHeld,
       isKept,
       conflicts: new Map(conflicts),
       refusals: new Map(refusals),
@@ -94,7 +100,7 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
 
   async function drain(key: string): Promise<void> {
     const save = pending.get(key)?.[0];
-    if (!save || sending.has(key) || conflicts.has(key) || refusals.has(key) || isStopped) return;
+    if (!save || sending.has(key) || conflicts.has(key) || refusals.has(key) || isHeld || isStopped) return;
     sending.add(key);
     if (!save.isSent) keep(key, [{ ...save, isSent: true }, ...(pending.get(key) ?? []).slice(1)]);
     tell();
@@ -117,6 +123,10 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
         failures = 0;
         refusals.set(key, outcome.reason);
         break;
+      case "held":
+        isHeld = true;
+        tell();
+        return;
       case "unreachable":
         failures += 1;
         clearTimeout(timer);
@@ -169,6 +179,7 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
       tell();
     },
     flush() {
+      isHeld = false;
       clearTimeout(timer);
       drainAll();
     },

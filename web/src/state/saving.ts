@@ -1,7 +1,8 @@
-/** The save queues of this browser, one for each recording; they outlive the pages and a reload. */
+/** The save queues of this browser's person, one for each recording; they outlive the pages and a reload. */
 
 import { sendAnnotation } from "../api/annotations";
-import { createJournal } from "./journal";
+import { createJournal, findWaiting } from "./journal";
+import { accountId } from "./me";
 import { createSaveQueue, type SaveQueue } from "./saveQueue";
 
 const queues = new Map<string, SaveQueue>();
@@ -9,7 +10,8 @@ const queues = new Map<string, SaveQueue>();
 export function queueOf(recording: string): SaveQueue {
   let queue = queues.get(recording);
   if (!queue) {
-    queue = createSaveQueue((key, save) => sendAnnotation(recording, key, save), createJournal(window.localStorage, recording));
+    const journal = createJournal(window.localStorage, accountId(), recording);
+    queue = createSaveQueue((key, save) => sendAnnotation(recording, key, save), journal);
     queues.set(recording, queue);
   }
   return queue;
@@ -18,13 +20,8 @@ export function queueOf(recording: string): SaveQueue {
 /** Try to send everything that waits, now. */
 export const flushSaving = (): void => queues.forEach((queue) => queue.flush());
 
-/** Send what an earlier visit could not; called once when the app starts. */
+/** Send what an earlier visit of this person could not; called once, when it is known who it is. */
 export function resumeSaving(): void {
-  const recordings = new Set<string>();
-  for (let index = 0; index < window.localStorage.length; index += 1) {
-    const match = /^handloom\/unsaved\/([^/]+)\//.exec(window.localStorage.key(index) ?? "");
-    if (match?.[1]) recordings.add(match[1]);
-  }
-  recordings.forEach((recording) => queueOf(recording).flush());
+  findWaiting(window.localStorage, accountId()).forEach((recording) => queueOf(recording).flush());
   window.addEventListener("online", flushSaving);
 }

@@ -1,5 +1,5 @@
 import { Text, Tooltip } from "@mantine/core";
-import { IconCheck, IconCloudOff, IconGitMerge, IconLoader2, IconAlertTriangle } from "@tabler/icons-react";
+import { IconCheck, IconCloudOff, IconGitMerge, IconLoader2, IconLock, IconAlertTriangle } from "@tabler/icons-react";
 import type { DepthImage } from "../../canvas/depth";
 import { depthAt } from "../../canvas/depth";
 import { formatCount } from "../../model/format";
@@ -15,6 +15,7 @@ import classes from "./StatusLine.module.css";
 function describeSaving(status: SaveStatus): { text: string; tone: "good" | "busy" | "bad"; icon: typeof IconCheck } {
   if (status.conflicts.size > 0) return { text: `${formatCount(status.conflicts.size, "change")} to settle`, tone: "bad", icon: IconGitMerge };
   if (status.refusals.size > 0) return { text: `not taken by the server, ${status.refusals.size} kept here`, tone: "bad", icon: IconAlertTriangle };
+  if (status.isHeld) return { text: `log in to save, ${status.waiting} waiting`, tone: "bad", icon: IconLock };
   if (status.isOffline) return { text: `offline, ${status.waiting} waiting`, tone: "bad", icon: IconCloudOff };
   if (status.waiting > 0 || status.isSending) return { text: "saving …", tone: "busy", icon: IconLoader2 };
   return { text: "saved", tone: "good", icon: IconCheck };

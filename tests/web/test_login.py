@@ -1,0 +1,274 @@
+"""People in real Chromium: logging in, a login that ends in mid-frame, somebody else at the same browser, people."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import socket
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from typing import Any
+
+import httpx
+import pytest
+
+from tests.web.conftest import ROOT, Picture, Screenshots, Studio, Synthesized, _lacking, _wait_until_up
+
+pytestmark = pytest.mark.browser
+PASSWORD = "four words in a row"
+
+
+@dataclass(frozen=True)
+class Lab(Studio):
+    """A studio where people log in."""
+
+    recording_id: str = ""
+
+    token: str = ""
+
+    def execute(self, statement: str) -> None:
+        with closing(sqlite3.connect(self.data_dir / "handloom.sqlite3", timeout=20)) as database, database:
+            database.execute(statement)
+
+    def annotations(self) -> list[dict[str, Any]]:
+        url = f"{self.url}/api/v1/sequences/{self.recording_id}/annotations"
+        return httpx.get(url, headers={"Authorization": f"Bearer {self.token}"}, timeout=60).json()["items"]
+
+
+@pytest.fixture(scope="module")
+def lab(chromium: str, synthesized: Synthesized, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
+    if not (ROOT / "web" / "dist" / "index.html").is_file():
+        _lacking("The browser app is not built: run `make setup` first.")
+    folder = tmp_path_factory.mktemp("lab")
+    environment = os.environ | {"HANDLOOM_DATA_DIR": str(folder / "data"), "HANDLOOM_LOGIN": "required"}
+    command = [sys.executable, "-m", "server.cli"]
+
+    def add(name: str, role: str) -> None:
+        subprocess.run(
+            [*command, "account", "add", name, "--role", role],
+            input=f"{PASSWORD}\n",
+            text=True,
+            cwd=ROOT,
+            env=environment,
+            check=True,
+            capture_output=True,
+            timeout=120,
+        )
+
+    for name, role in (("Lea", "admin"), ("Anna", "annotator"), ("Ben", "annotator")):
+        add(name, role)
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    log = folder / "studio.log"
+    with log.open("w") as output:
+        process = subprocess.Popen(
+            [*command, "serve", "--no-worker", "--port", str(port)],
+            cwd=ROOT,
+            env=environment,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+        )
+    lab = Lab(f"http://127.0.0.1:{port}", folder / "data", log)
+    try:
+        _wait_until_up(lab, process)
+        api = f"{lab.url}/api/v1"
+        with httpx.Client(base_url=api, timeout=60) as client, synthesized.archive.open("rb") as file:
+            client.post("/login", json={"name": "Lea", "password": PASSWORD}).raise_for_status()
+            token = client.post("/account/tokens", json={"name": "the tests"}).json()["secret"]
+            made = client.post("/imports", files={"files": ("opening-hand.zip", file)}).json()
+            stored = client.post(f"/imports/{made['id']}/confirm", json={"name": "Opening hand"})
+        yield Lab(lab.url, lab.data_dir, log, stored.json()["id"], token)
+    finally:
+        process.send_signal(signal.SIGTERM)
+        try:
+            process.wait(20)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+OpenLab = Callable[..., Any]
+
+
+@pytest.fixture
+def open_lab(browser: Any, lab: Lab) -> Iterator[OpenLab]:
+    """Opens a page of the lab in a browser profile of its own."""
+    contexts: list[Any] = []
+
+    def opened(scheme: str = "dark", width: int = 1280, height: int = 720) -> Any:
+        context = browser.new_context(viewport={"width": width, "height": height}, base_url=lab.url, locale="en-GB")
+        context.set_default_timeout(30_000)
+        context.add_init_script(f"localStorage.setItem('handloom/colours', '{scheme}')")
+        contexts.append(context)
+        return context.new_page()
+
+    yield opened
+    for context in contexts:
+        context.close()
+
+
+def log_in(page: Any, name: str, password: str = PASSWORD) -> None:
+    page.get_by_label("Name", exact=True).fill(name)
+    page.get_by_role("textbox", name="Password").fill(password)
+    page.get_by_role("button", name="Log in").click()
+    if password == PASSWORD:
+        page.get_by_role("button", name=f"Account of {name}").wait_for()
+
+
+def annotate(page: Any, lab: Lab, frame: int) -> Picture:
+    page.goto(f"/recordings/{lab.recording_id}/annotate?frame={frame}")
+    return Picture(page)
+
+
+def test_nothing_is_shown_before_somebody_logs_in(lab: Lab, open_lab: OpenLab, screenshots: Screenshots) -> None:
+    from playwright.sync_api import expect
+
+    page = open_lab()
+    page.goto(f"/recordings/{lab.recording_id}")
+    expect(page.get_by_role("button", name="Log in")).to_be_visible()
+    expect(page.get_by_text("Opening hand")).to_have_count(0)
+    screenshots.take(page, "login-dark-1280")
+    log_in(page, "Anna", "not her password")
+    expect(page.get_by_role("alert")).to_contain_text("The name or the password is wrong")
+    screenshots.take(page, "login-wrong-dark-1280")
+    log_in(page, "Anna")
+    expect(page.get_by_role("heading", name="Opening hand")).to_be_visible()
+    page.get_by_role("button", name="Account of Anna").click()
+    screenshots.take(page, "me-menu-dark-1280")
+    expect(page.get_by_role("menuitem", name="People")).to_have_count(0)
+    page.get_by_role("menuitem", name="Log out").click()
+    expect(page.get_by_role("button", name="Log in")).to_be_visible()
+
+
+def test_a_login_that_ends_in_mid_frame_loses_no_gesture(
+    lab: Lab, open_lab: OpenLab, synthesized: Synthesized, screenshots: Screenshots
+) -> None:
+    from playwright.sync_api import expect
+
+    page = open_lab()
+    picture = annotate(page, lab, 1)
+    log_in(page, "Anna")
+    picture.wait()
+    picture.click(*synthesized.joints[0])
+    picture.wait_until_saved()
+    lab.execute("DELETE FROM logins")
+    picture.click(*synthesized.joints[1])
+    dialog = page.get_by_role("dialog", name="Your login has ended")
+    expect(dialog).to_be_visible()
+    expect(page.get_by_test_id("save-state")).to_have_text(re.compile("log in to save, 1 waiting"))
+    screenshots.take(page, "login-ended-dark-1280")
+    assert lab_points(lab, 1) == 1
+    dialog.get_by_role("textbox", name="Password").fill(PASSWORD)
+    page.keyboard.press("Enter")
+    expect(dialog).to_have_count(0)
+    picture.wait_until_saved()
+    assert lab_points(lab, 1) == 2
+    picture.click(*synthesized.joints[2])
+    picture.wait_until_saved()
+    assert lab_points(lab, 1) == 3
+    assert {item["author"] for item in lab.annotations() if item["frame"] == 1} == {"Anna"}
+
+
+def lab_points(lab: Lab, frame: int) -> int:
+    """Joints that the studio has of a frame."""
+    items = [item for item in lab.annotations() if item["frame"] == frame]
+    return sum(point[2] > 0 for item in items for point in item["points"])
+
+
+def test_what_one_person_left_is_not_sent_in_the_name_of_the_next(
+    lab: Lab, open_lab: OpenLab, synthesized: Synthesized
+) -> None:
+    from playwright.sync_api import expect
+
+    page = open_lab()
+    picture = annotate(page, lab, 3)
+    log_in(page, "Anna")
+    picture.wait()
+    lab.execute("DELETE FROM logins")
+    picture.click(*synthesized.joints[0])
+    dialog = page.get_by_role("dialog", name="Your login has ended")
+    expect(dialog).to_be_visible()
+    dialog.get_by_label("Name", exact=True).fill("Ben")
+    dialog.get_by_role("textbox", name="Password").fill(PASSWORD)
+    dialog.get_by_role("button", name="Log in").click()
+    expect(page.get_by_role("button", name="Account of Ben")).to_be_visible()
+    picture.wait()
+    picture.wait_until_saved()
+    assert lab_points(lab, 3) == 0, "Anna's gesture waits for Anna"
+    page.get_by_role("button", name="Account of Ben").click()
+    page.get_by_role("menuitem", name="Log out").click()
+    log_in(page, "Anna")
+    picture = annotate(page, lab, 3)
+    picture.wait()
+    picture.wait_until_saved()
+    assert lab_points(lab, 3) == 1
+    assert [item["author"] for item in lab.annotations() if item["frame"] == 3] == ["Anna"]
+
+
+def test_a_page_of_the_person_before_cannot_write_as_the_next(
+    lab: Lab, open_lab: OpenLab, synthesized: Synthesized
+) -> None:
+    """Two tabs of one browser: in the second one somebody else logs in."""
+    from playwright.sync_api import expect
+
+    page = open_lab()
+    picture = annotate(page, lab, 5)
+    log_in(page, "Anna")
+    picture.wait()
+    other = page.context.new_page()
+    other.goto("/recordings")
+    other.get_by_role("button", name="Account of Anna").click()
+    other.get_by_role("menuitem", name="Log out").click()
+    log_in(other, "Ben")
+    expect(other.get_by_role("button", name="Account of Ben")).to_be_visible()
+    page.bring_to_front()
+    picture.click(*synthesized.joints[0])
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_be_visible()
+    assert lab_points(lab, 5) == 0
+    dialog.get_by_role("textbox", name="Password").fill(PASSWORD)
+    dialog.get_by_role("button", name="Log in").click()
+    expect(dialog).to_have_count(0)
+    picture.wait_until_saved()
+    assert [item["author"] for item in lab.annotations() if item["frame"] == 5] == ["Anna"]
+
+
+def test_people_are_added_by_link_and_shut_out(lab: Lab, open_lab: OpenLab, screenshots: Screenshots) -> None:
+    from playwright.sync_api import expect
+
+    page = open_lab()
+    page.goto("/people")
+    log_in(page, "Lea")
+    page.get_by_label("Name", exact=True).fill("Mia")
+    page.get_by_role("button", name="Add person").click()
+    link = page.get_by_test_id("secret").inner_text()
+    screenshots.take(page, "people-dark-1280")
+    hers = open_lab("light")
+    hers.goto(link)
+    hers.get_by_label("New password").fill("my own four words")
+    hers.get_by_label("Again").fill("my own four words")
+    screenshots.take(hers, "login-code-light-1280")
+    hers.get_by_role("button", name="Set password and log in").click()
+    expect(hers.get_by_role("button", name="Account of Mia")).to_be_visible()
+    assert "code" not in hers.url
+    hers.goto("/account")
+    hers.get_by_label("What it is for").fill("nightly export")
+    hers.get_by_role("button", name="Make token").click()
+    token = hers.get_by_test_id("secret").inner_text()
+    screenshots.take(hers, "account-light-1280")
+    answer = httpx.get(f"{lab.url}/api/v1/account", headers={"Authorization": f"Bearer {token}"})
+    assert answer.json()["name"] == "Mia"
+    page.get_by_role("button", name="Disable Mia").click()
+    expect(page.get_by_test_id("person-Mia")).to_contain_text("disabled")
+    hers.goto("/recordings")
+    expect(hers.get_by_role("button", name="Log in")).to_be_visible()
+    page.get_by_test_id("person-Mia").get_by_role("link", name="Acts").click()
+    expect(page.get_by_role("heading", name="Audit trail")).to_be_visible()
+    expect(page.get_by_role("cell", name="token · add")).to_be_visible()
+    screenshots.take(page, "audit-dark-1280")

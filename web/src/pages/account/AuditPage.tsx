@@ -1,0 +1,106 @@
+import { Button, Group, Select, Skeleton, Table, Text, TextInput, Title } from "@mantine/core";
+import { useInfiniteQuery } from "@tanstack/react-query";
+import { IconHistory } from "@tabler/icons-react";
+import { useSearchParams } from "react-router";
+import { fetchAudit, usePeople } from "../../api/account";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { useTitle } from "../parts/useTitle";
+import classes from "./account.module.css";
+import { formatMoment } from "./moment";
+
+const UUID = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/i;
+
+const describeDetail = (detail: Record<string, unknown>): string =>
+  Object.entries(detail)
+    .map(([name, value]) => `${name.replaceAll("_", " ")} ${typeof value === "string" ? value : JSON.stringify(value)}`)
+    .join(", ");
+
+const ACTS = ["account", "token", "recording", "track", "job", "batch", "project", "assignment", "labels"];
+
+/** Who did what, and when; annotations have their own history beside the picture. */
+export default function AuditPage() {
+  useTitle("Audit trail");
+  const [address, setAddress] = useSearchParams();
+  const filter = {
+    account_id: address.get("account_id") ?? undefined,
+    act: address.get("act") ?? undefined,
+    subject_id: UUID.test(address.get("subject_id") ?? "") ? (address.get("subject_id") ?? undefined) : undefined,
+  };
+  const people = usePeople().data ?? [];
+  const list = useInfiniteQuery({
+    queryKey: ["audit", filter],
+    queryFn: ({ pageParam }) => fetchAudit(filter, pageParam),
+    initialPageParam: null as string | null,
+    getNextPageParam: (page) => page.next_cursor,
+  });
+  const put = (name: string, value: string | null): void =>
+    setAddress(
+      (now) => {
+        if (value) now.set(name, value);
+        else now.delete(name);
+        return now;
+      },
+      { replace: true },
+    );
+  const lines = list.data?.pages.flatMap((page) => page.items);
+  if (list.error && !lines) return <Failure what="The trail could not be loaded" error={list.error} onRetry={() => void list.refetch()} />;
+  return (
+    <div className="page">
+      <Title order={1} mb="lg">
+        Audit trail
+      </Title>
+      <section className={classes.card}>
+        <Group gap="md" mb="md" align="end">
+          <Select w={208} label="Who" placeholder="everybody" clearable searchable data={people.map((person) => ({ value: person.id, label: person.name }))} value={filter.account_id ?? null} onChange={(value) => put("account_id", value)} />
+          <Select w={176} label="What" placeholder="all acts" clearable data={ACTS} value={filter.act ?? null} onChange={(value) => put("act", value)} />
+          <TextInput w={328} label="Which one" placeholder="id of a recording, track, account …" defaultValue={filter.subject_id ?? ""} onChange={(event) => put("subject_id", event.currentTarget.value.trim())} />
+        </Group>
+        {lines?.length === 0 && (
+          <EmptyState icon={<IconHistory size={48} stroke={1.25} />} title="Nothing of the kind was done">
+            Logins, changes of accounts, imports, jobs and assignments leave a line here. Take a filter away to see more.
+          </EmptyState>
+        )}
+        {!lines && <Skeleton height={240} />}
+        {lines && lines.length > 0 && (
+          <Table verticalSpacing="xs" highlightOnHover>
+            <Table.Thead>
+              <Table.Tr>
+                <Table.Th w={184}>When</Table.Th>
+                <Table.Th w={160}>Who</Table.Th>
+                <Table.Th w={176}>What</Table.Th>
+                <Table.Th>More</Table.Th>
+              </Table.Tr>
+            </Table.Thead>
+            <Table.Tbody>
+              {lines.map((line) => (
+                <Table.Tr key={line.id}>
+                  <Table.Td>{formatMoment(line.time)}</Table.Td>
+                  <Table.Td>{line.account ?? "command line"}</Table.Td>
+                  <Table.Td>{line.act.replace(".", " · ")}</Table.Td>
+                  <Table.Td style={{ overflowWrap: "anywhere" }}>
+                    <Text size="sm" component="span">
+                      {describeDetail(line.detail)}
+                    </Text>{" "}
+                    {line.subject_id && (
+                      <Text size="xs" className="quiet" component="span">
+                        {line.subject} {people.find((person) => person.id === line.subject_id)?.name ?? line.subject_id.slice(0, 8)}
+                      </Text>
+                    )}
+                  </Table.Td>
+                </Table.Tr>
+              ))}
+            </Table.Tbody>
+          </Table>
+        )}
+        {list.hasNextPage && (
+          <Group justify="center" mt="md">
+            <Button variant="default" loading={list.isFetchingNextPage} onClick={() => void list.fetchNextPage()}>
+              Earlier acts
+            </Button>
+          </Group>
+        )}
+      </section>
+    </div>
+  );
+}

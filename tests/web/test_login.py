@@ -264,6 +264,7 @@ def test_people_are_added_by_link_and_shut_out(lab: Lab, open_lab: OpenLab, scre
     screenshots.take(hers, "account-light-1280")
     answer = httpx.get(f"{lab.url}/api/v1/account", headers={"Authorization": f"Bearer {token}"})
     assert answer.json()["name"] == "Mia"
+    page.reload()
     page.get_by_role("button", name="Disable Mia").click()
     expect(page.get_by_test_id("person-Mia")).to_contain_text("disabled")
     hers.goto("/recordings")

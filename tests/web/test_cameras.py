@@ -157,8 +157,12 @@ def test_two_marks_suggest_the_third_and_a_person_accepts_it(
     expect(page.locator("[data-camera=cam1]")).to_have_attribute("data-active", "true")
     expect(page.get_by_test_id("next-click")).to_contain_text("index tip")
     pictures["cam0"].wait_until_saved()
+    page.keyboard.press("y")  # without the lines only the suggestion can be drawn there
+    page.mouse.move(5, 300)
+    expect_drawn(page, pictures["cam2"], 2, truth["cam2"][joint], is_there=False)
     page.keyboard.press("t")
     expect_drawn(page, pictures["cam2"], 2, truth["cam2"][joint])
+    page.keyboard.press("y")
     screenshots.take(page, "cameras-suggested")
     assert find_points(studio, recording, "cam2") is None, "a suggestion is no label"
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import io
 import json
+import uuid
 import zipfile
 from typing import Any
 
 import pytest
 
+from server.accounts.models import LOCAL_ACCOUNT_ID
 from server.exchange import routes
+from server.teams.models import AssignmentRow, ProjectRow
 from tests.server.conftest import AddRecording, Studio, Tracked
 from tests.server.exchange.labels import API, get_labels, make_points, put, send, take_in
 
@@ -254,3 +257,36 @@ def test_many_hands_come_in_at_once(studio: Studio, add_recording: AddRecording)
     done = take_in(studio.client, f"/sequences/{sequence['id']}/labels", files, "keep").json()
     assert done["recordings"][0]["added"] == 80
     assert len(get_labels(studio.client, sequence)) == 80
+
+
+def test_finished_work_is_left_as_it_is_and_the_report_says_why(studio: Studio, add_recording: AddRecording) -> None:
+    sequence = add_recording()
+    put(studio.client, sequence, 0, make_points())
+    put(studio.client, sequence, 1, make_points())
+    old = studio.client.post(f"{API}/sequences/{sequence['id']}/labels/snapshots", json={"name": "old"}).json()
+    files = {"labels.json": export(studio, sequence, "coco_keypoints")}
+    for frame in (0, 1):
+        put(studio.client, sequence, frame, make_points(12.0))
+    with studio.database.writing() as session:
+        project = ProjectRow(id=uuid.uuid4(), name="study")
+        session.add(project)
+        session.flush()
+        accepted = AssignmentRow(
+            project_id=project.id,
+            sequence_id=uuid.UUID(sequence["id"]),
+            account_id=LOCAL_ACCOUNT_ID,
+            frame_first=0,
+            frame_last=0,
+            state="accepted",
+        )
+        session.add(accepted)
+    address = f"/sequences/{sequence['id']}/labels"
+    (one,) = send(studio.client, f"{address}/check", files).json()["recordings"]
+    assert (one["conflict_count"], one["locked"]) == (1, 1)
+    assert "is finished" in one["reasons"][0]
+    done = take_in(studio.client, address, files, "replace").json()["recordings"][0]
+    assert (done["replaced"], done["locked"]) == (1, 1)
+    assert get_labels(studio.client, sequence) == {(0, "right"): make_points(12.0), (1, "right"): make_points()}
+    refused = studio.client.post(f"{API}/snapshots/{old['id']}/restore")
+    assert refused.status_code == 403 and "is finished" in refused.json()["detail"]
+    assert get_labels(studio.client, sequence)[0, "right"] == make_points(12.0)

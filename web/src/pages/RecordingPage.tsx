@@ -1,7 +1,7 @@
 import { ActionIcon, Button, Code, Group, Menu, SimpleGrid, Stack, Text, Title, Tooltip } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { notifications } from "@mantine/notifications";
-import { IconChartBar, IconDots, IconDownload, IconFileReport, IconPencil, IconPlayerPlay, IconTrash } from "@tabler/icons-react";
+import { IconChartBar, IconDots, IconDownload, IconFileReport, IconPencil, IconPlayerPlay, IconTransfer, IconTrash } from "@tabler/icons-react";
 import { useMemo } from "react";
 import { Link, useNavigate, useParams } from "react-router";
 import { useAnnotations } from "../api/annotations";
@@ -167,9 +167,14 @@ export function RecordingPage() {
         <section aria-label="Annotation by frame">
           <Group justify="space-between" mb="sm">
             <Title order={2}>Annotation</Title>
-            <Text size="sm" className="quiet">
-              {recording.annotated_frames} of {formatCount(recording.frame_count, "frame")}; click a frame to annotate it
-            </Text>
+            <Group gap="md">
+              <Text size="sm" className="quiet">
+                {recording.annotated_frames} of {formatCount(recording.frame_count, "frame")}; click a frame to annotate it
+              </Text>
+              <Button size="xs" variant="subtle" component={Link} to={`/recordings/${recording.id}/labels`} leftSection={<IconTransfer size={16} aria-hidden />}>
+                Snapshots, export, import
+              </Button>
+            </Group>
           </Group>
           <div className="card" style={{ padding: 16 }}>
             <FrameStrip rows={rows} frameCount={recording.frame_count} frame={null} height={32} label="Annotated frames" onSeek={openFrame} />

@@ -5,6 +5,7 @@ import { ImportPage } from "./ImportPage";
 import { ComparePage } from "./jobs/ComparePage";
 import { JobPage } from "./JobPage";
 import { JobsPage } from "./JobsPage";
+import { LabelsPage } from "./labels/LabelsPage";
 import { MissingPage } from "./MissingPage";
 import { NewImportPage } from "./NewImportPage";
 import { RecordingPage } from "./RecordingPage";
@@ -32,6 +33,7 @@ export const router = createBrowserRouter([
           { index: true, element: <Navigate to="/recordings" replace /> },
           { path: "recordings", element: <RecordingsPage /> },
           { path: "recordings/:recordingId", element: <RecordingPage /> },
+          { path: "recordings/:recordingId/labels", element: <LabelsPage /> },
           { path: "recordings/:recordingId/annotate", element: <AnnotatePage /> },
           { path: "annotate", element: <AnnotateChooser /> },
           { path: "imports/new", element: <NewImportPage /> },

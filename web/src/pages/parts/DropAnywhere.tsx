@@ -6,7 +6,10 @@ import { readDrop } from "../../actions/readDrop";
 import { sendIncoming } from "../../state/incoming";
 import classes from "./DropAnywhere.module.css";
 
-const holdsFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
+/** Some pages take drops themselves, such as those of labels. */
+const isTaken = (): boolean => document.querySelector("[data-takes-drops]") !== null;
+
+const holdsFiles = (event: DragEvent): boolean => !isTaken() && (event.dataTransfer?.types.includes("Files") ?? false);
 
 /** Files, folders and archives may be dropped on any page. */
 export function DropAnywhere() {

@@ -1,0 +1,31 @@
+import { Button, Group } from "@mantine/core";
+import { notifications } from "@mantine/notifications";
+import { useRestoreSnapshot, type Snapshot } from "../../api/labels";
+
+/** Says what was done to a recording's labels and offers the way back: the snapshot that was kept before it. */
+export function useUndoable(recording: string): (what: string, before: Snapshot) => void {
+  const { mutate } = useRestoreSnapshot(recording);
+  return (what, before) => {
+    const id = `undo-${before.id}`;
+    const undo = (): void => {
+      notifications.hide(id);
+      mutate(before.id, {
+        onSuccess: () => notifications.show({ message: "Undone: the labels are as they were before.", color: "teal" }),
+        onError: (failure) => notifications.show({ color: "red", title: "Not undone", message: failure.message }),
+      });
+    };
+    notifications.show({
+      id,
+      autoClose: 20000,
+      color: "teal",
+      message: (
+        <Group justify="space-between" wrap="nowrap">
+          <span>{what}</span>
+          <Button size="compact-sm" variant="default" onClick={undo}>
+            Undo
+          </Button>
+        </Group>
+      ),
+    });
+  };
+}

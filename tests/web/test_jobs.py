@@ -27,6 +27,10 @@ def test_a_batch_is_started_watched_stopped_and_run_again_and_two_runs_are_compa
 ) -> None:
     from playwright.sync_api import expect
 
+    project = studio.send("POST", "/projects", json={"name": "Both ends"})
+    project.raise_for_status()
+    for member in (recordings[0], recordings[2]):
+        studio.send("PUT", f"/projects/{project.json()['id']}/sequences/{member['id']}").raise_for_status()
     page = open_page()
     page.goto("/jobs")
     expect(page.get_by_role("heading", name="Jobs", exact=True)).to_be_visible()
@@ -36,6 +40,9 @@ def test_a_batch_is_started_watched_stopped_and_run_again_and_two_runs_are_compa
 
     # One form for all whose name says so.
     page.get_by_role("button", name="Track several …").click()
+    page.get_by_role("combobox", name="Choose a whole project").click()
+    page.get_by_role("option", name="Both ends").click()
+    expect(page.get_by_role("button", name="Track 2 recordings")).to_be_visible()
     page.get_by_role("textbox", name="Filter recordings by name").fill("batch")
     page.get_by_label("All that are shown").check()
     expect(page.get_by_role("radio", name="Fast")).to_be_visible()

@@ -1,13 +1,18 @@
-import { Button, Checkbox, Group, Modal, ScrollArea, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Button, Checkbox, Group, Modal, ScrollArea, Select, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
 import { IconSearch } from "@tabler/icons-react";
+import { useQuery } from "@tanstack/react-query";
 import { useState } from "react";
 import { ApiError } from "../../api/client";
 import { useStartBatch } from "../../api/jobs";
-import { useRecordings } from "../../api/recordings";
+import { fetchAll, useRecordings } from "../../api/recordings";
+import type { components } from "../../api/schema";
 import type { Recording } from "../../api/types";
 import { formatCount } from "../../model/format";
 import { TrackingForm, useTrackingOptions } from "../parts/TrackingForm";
 import classes from "./StartBatch.module.css";
+
+type Project = components["schemas"]["ProjectOut"];
+type ProjectRecording = components["schemas"]["ProjectRecording"];
 
 interface Refusal {
   id: string;
@@ -27,6 +32,7 @@ interface StartBatchProps {
 /** One form for many recordings: all of them are started, or none. */
 export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
   const recordings = useRecordings().data;
+  const projects = useQuery({ queryKey: ["jobs", "projects"], queryFn: () => fetchAll<Project>("/projects"), enabled: isOpen }).data ?? [];
   const options = useTrackingOptions(isOpen);
   const start = useStartBatch();
   const [search, setSearch] = useState("");
@@ -39,6 +45,14 @@ export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
     const next = new Set(chosen);
     for (const id of ids) if (isChosen) next.add(id); else next.delete(id);
     setChosen(next);
+  };
+  const chooseProject = (project: string | null): void => {
+    if (!project) return;
+    void fetchAll<ProjectRecording>(`/projects/${project}/sequences`).then((found) => {
+      const ids = new Set(found.map((one) => one.id));
+      setSearch("");
+      setChosen(new Set(recordings?.filter((recording) => ids.has(recording.id) && isTrackable(recording)).map((recording) => recording.id)));
+    });
   };
   const refusals = refusalsOf(start.error);
   const nameOf = (id: string): string => recordings?.find((recording) => recording.id === id)?.name ?? "A recording that is gone";
@@ -71,14 +85,26 @@ export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
                 indeterminate={!areAllChosen && selectable.some((recording) => chosen.has(recording.id))}
                 onChange={(event) => choose(selectable.map((recording) => recording.id), event.currentTarget.checked)}
               />
-              <TextInput
-                value={search}
-                onChange={(event) => setSearch(event.currentTarget.value)}
-                placeholder="Filter by name"
-                aria-label="Filter recordings by name"
-                leftSection={<IconSearch size={16} aria-hidden />}
-                w={240}
-              />
+              <Group gap="sm">
+                {projects.length > 0 && (
+                  <Select
+                    w={208}
+                    aria-label="Choose a whole project"
+                    placeholder="A whole project …"
+                    data={projects.map((project) => ({ value: project.id, label: project.name }))}
+                    value={null}
+                    onChange={chooseProject}
+                  />
+                )}
+                <TextInput
+                  value={search}
+                  onChange={(event) => setSearch(event.currentTarget.value)}
+                  placeholder="Filter by name"
+                  aria-label="Filter recordings by name"
+                  leftSection={<IconSearch size={16} aria-hidden />}
+                  w={240}
+                />
+              </Group>
             </Group>
             <ScrollArea.Autosize mah={152} className={classes.list} tabIndex={0} aria-label="Recordings">
               {!recordings && <Skeleton height={120} />}

@@ -2,9 +2,9 @@ import { useQuery } from "@tanstack/react-query";
 import { parseKey } from "../model/pose";
 import type { PendingSave } from "../state/journal";
 import type { Outcome } from "../state/saveQueue";
-import { ApiError, requestWithHeaders } from "./client";
+import { ApiError, request, requestWithHeaders } from "./client";
 import { fetchAll } from "./recordings";
-import type { Annotation } from "./types";
+import type { Annotation, AnnotationRevision, Page } from "./types";
 
 export const annotationKeys = { of: (recording: string) => ["annotations", recording] as const };
 
@@ -48,3 +48,19 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
     return { kind: "refused", reason: failure.detail };
   }
 }
+
+/** Every revision of a hand, newest first; empty when nobody ever marked it. */
+export const useAnnotationHistory = (recording: string, key: string, savedAt: number | null) =>
+  useQuery({
+    queryKey: [...annotationKeys.of(recording), "history", key, savedAt],
+    queryFn: async ({ signal }): Promise<AnnotationRevision[]> => {
+      const { camera, frame, hand } = parseKey(key);
+      try {
+        return (await request<Page<AnnotationRevision>>("GET", `/sequences/${recording}/annotations/${encodeURIComponent(camera)}/${frame}/${hand}/history`, { signal })).items;
+      } catch (failure) {
+        if (failure instanceof ApiError && failure.status === 404) return [];
+        throw failure;
+      }
+    },
+    placeholderData: (before, query) => (query?.queryKey[3] === key ? before : undefined),
+  });

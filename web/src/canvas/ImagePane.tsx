@@ -1,6 +1,6 @@
 import { useElementSize } from "@mantine/hooks";
 import type Konva from "konva";
-import { useEffect, useRef, type ReactNode } from "react";
+import { useEffect, useLayoutEffect, useRef, type ReactNode } from "react";
 import { Image, Layer, Stage } from "react-konva";
 import type { Camera } from "../api/types";
 import type { PointerStore } from "../state/pointer";
@@ -20,6 +20,8 @@ interface ImagePaneProps extends PaneGestures {
   camera: Camera;
   /** Drawn in order, the first one below. */
   layers: readonly PaneLayer[];
+  /** Which frame they are of; `data-drawn` says which one is on the screen. */
+  shownFrame?: number | null;
   /** Null fits the image. */
   view: View | null;
   onView: (view: View | null) => void;
@@ -42,7 +44,7 @@ const SQUARE_PIXELS = 3;
 
 /** One picture with what is drawn on it; zoom, pan and the pointer are handled here, in image pixels for everybody else. */
 export function ImagePane(props: ImagePaneProps) {
-  const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, isBusy, children, withCursor, overlay } = props;
+  const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, isBusy, children, withCursor, overlay, shownFrame = null } = props;
   const { ref: sizeRef, width, height } = useElementSize();
   const surface = useRef<HTMLDivElement | null>(null);
   const imageLayer = useRef<Konva.Layer>(null);
@@ -54,6 +56,22 @@ export function ImagePane(props: ImagePaneProps) {
     const canvas = imageLayer.current?.getNativeCanvasElement();
     if (canvas) canvas.style.filter = brightness === 1 && contrast === 1 ? "" : `brightness(${brightness}) contrast(${contrast})`;
   });
+
+  const meant = useRef<{ picture: Picture | null; frame: number | null }>({ picture: null, frame: null });
+  useLayoutEffect(() => {
+    meant.current = { picture: layers[0]?.picture ?? null, frame: shownFrame };
+  });
+  const hasStage = width > 0 && height > 0;
+  useEffect(() => {
+    const layer = imageLayer.current;
+    const note = (): void => {
+      const { picture, frame } = meant.current;
+      const isOnScreen = picture !== null && layer?.findOne<Konva.Image>("Image")?.image() === picture;
+      if (surface.current && isOnScreen && surface.current.dataset["drawn"] !== String(frame)) surface.current.dataset["drawn"] = String(frame);
+    };
+    layer?.on("draw", note);
+    return () => void layer?.off("draw", note);
+  }, [hasStage]);
 
   const pictures = layers.flatMap(({ picture, opacity }, index) =>
     picture && picture.width > 0 ? (
@@ -85,7 +103,7 @@ export function ImagePane(props: ImagePaneProps) {
       aria-busy={isBusy}
       {...handlers}
     >
-      {width > 0 && height > 0 && (
+      {hasStage && (
         <Stage width={width} height={height} listening={false}>
           <Layer ref={imageLayer} imageSmoothingEnabled={shownView.scale < SQUARE_PIXELS} listening={false}>
             {pictures}

@@ -16,7 +16,7 @@ export interface DepthRange {
 }
 
 /** Near is warm, far is cold: anchors of a map that grows darker with distance, so that it also works without colour. */
-const ANCHORS: readonly (readonly [number, number, number])[] = [
+const WARM: readonly (readonly [number, number, number])[] = [
   [255, 244, 214],
   [255, 200, 110],
   [246, 138, 82],
@@ -43,16 +43,40 @@ const paletteOf = (anchors: readonly (readonly [number, number, number])[]): Uin
     return isLittleEndian ? ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0 : ((r << 24) | (g << 16) | (b << 8) | 255) >>> 0;
   });
 
-/** `warm` to see depth; `grey` as a ground for coloured things on top. */
-export type Palette = "warm" | "grey";
+/** `warm` and `viridis` grow darker with distance; `turbo` tells small steps apart; `grey` is a ground for coloured things on top. */
+export const PALETTE_NAMES = ["warm", "viridis", "turbo", "grey"] as const;
+export type Palette = (typeof PALETTE_NAMES)[number];
 
-const PALETTES: Record<Palette, Uint32Array> = {
-  warm: paletteOf(ANCHORS),
-  grey: paletteOf([
+/** The anchors of each map, near first. */
+export const PALETTE_ANCHORS: Record<Palette, readonly (readonly [number, number, number])[]> = {
+  warm: WARM,
+  viridis: [
+    [253, 231, 37],
+    [144, 215, 67],
+    [53, 183, 121],
+    [33, 145, 140],
+    [49, 104, 142],
+    [68, 57, 131],
+    [68, 1, 84],
+  ],
+  turbo: [
+    [122, 4, 3],
+    [202, 42, 4],
+    [249, 117, 29],
+    [238, 207, 58],
+    [164, 252, 60],
+    [49, 242, 153],
+    [40, 188, 235],
+    [70, 107, 227],
+    [48, 18, 59],
+  ],
+  grey: [
     [235, 237, 240],
     [40, 43, 48],
-  ]),
+  ],
 };
+
+const PALETTES = Object.fromEntries(PALETTE_NAMES.map((name) => [name, paletteOf(PALETTE_ANCHORS[name])])) as Record<Palette, Uint32Array>;
 
 /** Depth from the server's bytes: little-endian uint16, sizes in headers. */
 export function readDepth(bytes: ArrayBuffer, headers: Headers): DepthImage {
@@ -89,6 +113,19 @@ export function findRange(image: DepthImage): DepthRange {
   const [near, far] = [at(0.01), at(0.95)];
   const room = Math.max(0.01, 0.08 * (far - near));
   return { near: Math.max(0, near - room), far: far + room };
+}
+
+/** How many pixels lie in each of some equal steps from `near` to `far`, as shares of the fullest one. */
+export function histogramOf(image: DepthImage, { near, far }: DepthRange, bins: number): number[] {
+  const counts = new Array<number>(bins).fill(0);
+  const step = Math.max(1, Math.floor(image.raw.length / 40000));
+  for (let index = 0; index < image.raw.length; index += step) {
+    const raw = image.raw[index] ?? 0;
+    const bin = Math.floor(((raw * image.scale - near) / Math.max(1e-9, far - near)) * bins);
+    if (raw > 0 && bin >= 0 && bin < bins) counts[bin] = (counts[bin] ?? 0) + 1;
+  }
+  const most = Math.max(1, ...counts);
+  return counts.map((count) => count / most);
 }
 
 /** Colour every pixel; without a value it stays transparent. `out` is RGBA, (height * width) words. */

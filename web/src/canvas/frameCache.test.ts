@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { createFrameCache, framesToLoad } from "./frameCache";
+import { aheadFor, createFrameCache, framesToLoad, travelOn, type Travel } from "./frameCache";
 
 const settled = () => new Promise((resolve) => setTimeout(resolve, 5));
 
@@ -72,4 +72,27 @@ test("prefetching stops where it would push out what is wanted sooner", async ()
   expect(cache.peek("a")).toBe("a");
   expect(cache.peek("b")).toBe("b");
   expect(loaded.length).toBeLessThanOrEqual(7);
+});
+
+test("who keeps going gets a second of frames in stock, unless they are large; a jump starts anew", () => {
+  let travel: Travel = { frame: 0, direction: 1, run: 0 };
+  for (const frame of [1, 2, 3]) travel = travelOn(travel, frame);
+  expect([travel.run, aheadFor(travel, 1e6), aheadFor(travel, 30e6)]).toEqual([3, 30, 5]);
+  expect(travelOn(travel, 500)).toEqual({ frame: 500, direction: 1, run: 0 });
+  expect(travelOn(travel, 2)).toEqual({ frame: 2, direction: -1, run: 0 });
+  expect(travelOn(travel, 3)).toBe(travel);
+});
+
+test("who turns back gets the picture that was called off a moment ago", async () => {
+  const cache = createFrameCache<string>(
+    (address, signal) =>
+      new Promise((resolve, reject) => {
+        signal.addEventListener("abort", () => setTimeout(() => reject(new DOMException("", "AbortError"))));
+        setTimeout(() => resolve(address), 5);
+      }),
+    { capacity: 10, weigh: () => 1 },
+  );
+  cache.focus(["a"]).catch(() => undefined);
+  cache.focus(["b"]).catch(() => undefined);
+  expect(await cache.focus(["a"])).toBe("a");
 });

@@ -15,7 +15,8 @@ export interface FrameCache<T> {
 
 type Load<T> = (address: string, signal: AbortSignal) => Promise<T>;
 
-const PARALLEL = 4;
+/** As many as a browser opens to one server. */
+const PARALLEL = 6;
 
 interface Budget<T> {
   /** How much may be held, in the unit of `weigh`. */
@@ -58,7 +59,8 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
 
   function fetchOne(address: string): Promise<T> {
     const known = flying.get(address);
-    if (known) return known.promise;
+    // One that was called off brings nothing any more.
+    if (known && !known.controller.signal.aborted) return known.promise;
     const controller = new AbortController();
     const promise = load(address, controller.signal)
       .then((picture) => {
@@ -66,7 +68,7 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
         return picture;
       })
       .finally(() => {
-        flying.delete(address);
+        if (flying.get(address)?.controller === controller) flying.delete(address);
         startNext();
       });
     flying.set(address, { controller, promise });
@@ -120,6 +122,26 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
       weight = 0;
     },
   };
+}
+
+/** Which way somebody goes through the frames, and for how many steps already. */
+export interface Travel {
+  readonly frame: number;
+  readonly direction: 1 | -1;
+  readonly run: number;
+}
+
+export function travelOn(travel: Travel, frame: number): Travel {
+  if (frame === travel.frame) return travel;
+  const direction = frame > travel.frame ? 1 : -1;
+  const isSteady = direction === travel.direction && Math.abs(frame - travel.frame) < 10;
+  return { frame, direction, run: isSteady ? travel.run + 1 : 0 };
+}
+
+/** Who keeps going needs more in stock: up to a second at 30 frames a second, as far as memory allows. */
+export function aheadFor({ run }: Travel, bytesOfFrame: number): number {
+  const affordable = Math.max(4, Math.floor(160e6 / bytesOfFrame));
+  return Math.min(affordable, run < 3 ? 8 : 30);
 }
 
 /** The frame of now, then those ahead, then one behind, all within the recording. */

@@ -48,6 +48,7 @@ export function CameraPane({ camera }: { camera: Camera }) {
         camera={camera}
         label={arrangement === "depth" ? "Depth" : "Colour"}
         layers={layers}
+        shownFrame={pictures.shownFrame}
         isBusy={pictures.isStale || layers.every((layer) => layer.picture === null)}
         overlay={
           <div className={classes.label} data-over-picture>

@@ -23,12 +23,13 @@ interface PaneProps {
   label: string;
   layers: readonly PaneLayer[];
   isBusy: boolean;
+  shownFrame: number | null;
   /** In place of the label in the corner. */
   overlay?: ReactNode;
 }
 
 /** One picture of one camera, to be annotated; a gesture on a camera that is not the active one makes it so first. */
-export function Pane({ camera, label, layers, isBusy, overlay }: PaneProps) {
+export function Pane({ camera, label, layers, isBusy, shownFrame, overlay }: PaneProps) {
   const { state, pose, options, viewOf, setView, hover, isMagnified, act, run } = useAnnotating();
   const isActive = camera.id === state.camera;
   const shown = isActive ? pose : (state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })] ?? emptyPose());
@@ -48,6 +49,7 @@ export function Pane({ camera, label, layers, isBusy, overlay }: PaneProps) {
       cursorLabel={jointLabel(state.joint)}
       isMagnified={isMagnified}
       isBusy={isBusy}
+      shownFrame={shownFrame}
       hitJoint={(view, screen) => (options.areHandsShown ? jointAt(shown, view, screen, isActive ? state.joint : -1) : -1)}
       onDouble={onDouble}
       onPlace={(pixel) => {

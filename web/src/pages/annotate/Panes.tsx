@@ -5,13 +5,13 @@ import { Pane } from "./Pane";
 
 /** The pictures of the active camera in the chosen arrangement, or those of several cameras. */
 export function Panes() {
-  const { camera, pictures, arrangement } = useAnnotating();
+  const { camera, pictures, arrangement, options } = useAnnotating();
   const { shown } = useCameras();
   if (shown.length > 1) return <CameraGrid />;
   const color = { picture: pictures.color, opacity: 1 };
   const depth = { picture: pictures.depth, opacity: 1 };
   const show = (label: string, layers: readonly (typeof color)[]) => (
-    <Pane key={label} camera={camera} label={label} layers={layers} isBusy={pictures.isStale || layers.every((layer) => layer.picture === null)} />
+    <Pane key={label} camera={camera} label={label} layers={layers} shownFrame={pictures.shownFrame} isBusy={pictures.isStale || layers.every((layer) => layer.picture === null)} />
   );
   switch (arrangement) {
     case "color":
@@ -19,7 +19,7 @@ export function Panes() {
     case "depth":
       return show("Depth", [depth]);
     case "over":
-      return show("Depth over colour", [color, { ...depth, opacity: 0.55 }]);
+      return show("Depth over colour", [color, { ...depth, opacity: options.depthOpacity }]);
     case "side":
       return [show("Colour", [color]), show("Depth", [depth])];
   }

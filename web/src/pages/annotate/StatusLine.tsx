@@ -1,5 +1,6 @@
 import { Text, Tooltip } from "@mantine/core";
 import { IconCheck, IconCloudOff, IconGitMerge, IconLoader2, IconLock, IconAlertTriangle } from "@tabler/icons-react";
+import type { PlaceMode } from "../../actions/annotate/place";
 import type { DepthImage } from "../../canvas/depth";
 import { depthAt } from "../../canvas/depth";
 import { formatCount } from "../../model/format";
@@ -22,11 +23,12 @@ function describeSaving(status: SaveStatus): { text: string; tone: "good" | "bus
 }
 
 /** What the next click on the ground does. */
-export function describeClick(state: AnnotatorState, pose: Pose): string {
+export function describeClick(state: AnnotatorState, pose: Pose, placeMode: PlaceMode): string {
   const name = `${state.hand} ${jointLabel(state.joint)}`;
   const status = statusOf(pose[state.joint]);
-  if (status === "unset") return `places the ${name}`;
-  return status === "outside" ? `places the ${name}, which is outside now` : `moves the ${name} here`;
+  const after = placeMode === "frame" ? ", then the next frame" : "";
+  if (status === "unset") return `places the ${name}${after}`;
+  return status === "outside" ? `places the ${name}, which is outside now` : `moves the ${name} here${after}`;
 }
 
 function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | null }) {
@@ -40,7 +42,7 @@ function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | n
       </span>
       {depth && (
         <span className={classes.figure} style={{ minWidth: 72 }}>
-          {distance === null ? "no depth" : `${(1000 * distance).toFixed(1)} mm`}
+          {distance === null ? "no depth" : `${distance.toFixed(4)} m`}
         </span>
       )}
     </>
@@ -48,7 +50,7 @@ function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | n
 }
 
 export function StatusLine() {
-  const { state, pose, saving, pointer, pictures, lock, session } = useAnnotating();
+  const { state, pose, saving, pointer, pictures, lock, session, options } = useAnnotating();
   const hint = useHint();
   const { text, tone, icon: Icon } = describeSaving(saving);
   return (
@@ -65,7 +67,7 @@ export function StatusLine() {
         </Text>
       )}
       <span className={classes.next} data-testid="next-click">
-        {lock ?? `Next click ${describeClick(state, pose)}`}
+        {lock ?? `Next click ${describeClick(state, pose, options.placeMode)}`}
       </span>
       <span className={classes.here}>
         <Here pointer={pointer} depth={pictures.depthImage} />

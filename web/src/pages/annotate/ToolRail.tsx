@@ -1,9 +1,12 @@
-import { ActionIcon, Divider, Popover, Slider, Stack, Text, Tooltip } from "@mantine/core";
+import { Divider } from "@mantine/core";
 import {
   IconArrowBackUp,
   IconArrowForwardUp,
+  IconArrowsLeftRight,
   IconArrowsMaximize,
   IconCopy,
+  IconDiamond,
+  IconDiamondFilled,
   IconEye,
   IconEyeOff,
   IconHandOff,
@@ -11,27 +14,37 @@ import {
   IconLabel,
   IconPictureInPicture,
   IconSquareOff,
-  IconSun,
+  IconTimelineEvent,
   IconTrash,
   IconX,
 } from "@tabler/icons-react";
 import { annotatedFrames } from "../../actions/annotate/bring";
-import { placedCount } from "../../model/pose";
-import { arrangementsOf, clampFactor } from "../../state/viewOptions";
+import { keyFramesOf, spanAt } from "../../model/interpolation";
+import { HANDS } from "../../model/joints";
+import { isEmpty, keyText, placedCount } from "../../model/pose";
+import { activeKey, poseAt } from "../../state/annotator";
+import { arrangementsOf } from "../../state/viewOptions";
 import { useAnnotating } from "./annotating";
+import { BrightnessTool } from "./BrightnessTool";
+import { DepthTool } from "./DepthTool";
 import { TOOLS } from "./mounts";
+import { PropagateTool } from "./PropagateTool";
 import { Tool } from "./Tool";
 import classes from "./ToolRail.module.css";
+import { useKeyFrames } from "./useSession";
 
 /** The things one does, as buttons; each says its key. */
 export function ToolRail() {
-  const { state, session, camera, pose, options, setOptions: onOptions, run } = useAnnotating();
+  const { state, session, camera, pose, options, run } = useAnnotating();
   const [canUndo, canRedo] = [session.undo.canUndo(), session.undo.canRedo()];
   const canBring = annotatedFrames(state, state.hand).some((frame) => frame < state.frame);
+  const keys = useKeyFrames(session);
+  const isKey = keys.has(keyText(activeKey(state)));
+  const span = spanAt(keyFramesOf(keys, state.poses, activeKey(state)), state.frame);
+  const hasHands = HANDS.some((hand) => !isEmpty(poseAt(state, { ...activeKey(state), hand })));
   const hasPose = placedCount(pose) > 0;
   const hasSeveralPictures = arrangementsOf(camera).length > 1;
   const size = 18;
-  const isAdjusted = options.brightness !== 1 || options.contrast !== 1;
   return (
     <div className={classes.rail} role="toolbar" aria-label="Tools" aria-orientation="vertical">
       <Tool label="Undo" action="undo" icon={<IconArrowBackUp size={size} />} isDisabled={!canUndo} onClick={() => run("undo")} />
@@ -42,35 +55,16 @@ export function ToolRail() {
       <Tool label="Clear the joint" action="joint.clear" icon={<IconX size={size} />} isDisabled={!hasPose} onClick={() => run("joint.clear")} />
       <Tool label="Clear the whole hand" action="hand.clear" icon={<IconTrash size={size} />} isDisabled={!hasPose} onClick={() => run("hand.clear")} />
       <Tool label="Bring the last annotated pose" action="hand.bring" icon={<IconCopy size={size} />} isDisabled={!canBring} onClick={() => run("hand.bring")} />
+      <PropagateTool />
+      <Tool label="Swap left and right" action="hand.swap" icon={<IconArrowsLeftRight size={size} />} isDisabled={!hasHands} onClick={() => run("hand.swap")} />
+      <Divider w={24} />
+      <Tool label={isKey ? "No key frame any more" : "Key frame"} action="key.mark" icon={isKey ? <IconDiamondFilled size={size} /> : <IconDiamond size={size} />} isOn={isKey} isDisabled={!hasPose} onClick={() => run("key.mark")} />
+      <Tool label="Accept what is between the key frames" action="key.accept" icon={<IconTimelineEvent size={size} />} isDisabled={!span} onClick={() => run("key.accept")} />
       <Divider w={24} />
       <Tool label="Fit the image" action="view.fit" icon={<IconArrowsMaximize size={size} />} onClick={() => run("view.fit")} />
       {hasSeveralPictures && <Tool label="Arrange colour and depth" action="view.depth" icon={<IconPictureInPicture size={size} />} onClick={() => run("view.depth")} />}
-      <Popover position="right-start" withArrow shadow="md" trapFocus returnFocus>
-        <Popover.Target>
-          <Tooltip label="Brightness and contrast" position="right">
-            <ActionIcon size={32} aria-label="Brightness and contrast" variant={isAdjusted ? "light" : "subtle"} color={isAdjusted ? "teal" : "gray"}>
-              <IconSun size={size} />
-            </ActionIcon>
-          </Tooltip>
-        </Popover.Target>
-        <Popover.Dropdown>
-          <Stack gap="sm" w={240}>
-            <Text size="xs">Brightness {options.brightness.toFixed(2)}</Text>
-            <Slider aria-label="Brightness" min={0.25} max={4} step={0.05} value={options.brightness} onChange={(value) => onOptions({ brightness: clampFactor(value) })} label={null} />
-            <Text size="xs">Contrast {options.contrast.toFixed(2)}</Text>
-            <Slider aria-label="Contrast" min={0.25} max={4} step={0.05} value={options.contrast} onChange={(value) => onOptions({ contrast: clampFactor(value) })} label={null} />
-            <Text
-              size="xs"
-              component="button"
-              type="button"
-              className={classes.reset}
-              onClick={() => onOptions({ brightness: 1, contrast: 1 })}
-            >
-              As recorded
-            </Text>
-          </Stack>
-        </Popover.Dropdown>
-      </Popover>
+      <BrightnessTool />
+      {camera.has_depth && <DepthTool />}
       <Tool
         label={options.areHandsShown ? "Hide the hands" : "Show the hands"}
         action="view.hands"

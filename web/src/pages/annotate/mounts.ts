@@ -11,6 +11,7 @@ import { CamerasTool, CameraTools } from "./CamerasTool";
 import { ConflictCards } from "./ConflictCards";
 import { EpipolarLayer } from "./EpipolarLayer";
 import { HandsLayer } from "./HandsLayer";
+import { HistoryPanel } from "./HistoryPanel";
 import { JointsPanel } from "./JointsPanel";
 import { PictureFailure } from "./PictureFailure";
 import { RefusalCards } from "./RefusalCards";
@@ -33,7 +34,10 @@ export interface Panel {
 export const LAYERS: readonly ComponentType<LayerProps>[] = [EpipolarLayer, SuggestLayer, HandsLayer];
 
 /** Tabs of the panel on the right. */
-export const PANELS: readonly Panel[] = [{ id: "joints", label: "Joints", Component: JointsPanel }];
+export const PANELS: readonly Panel[] = [
+  { id: "joints", label: "Joints", Component: JointsPanel },
+  { id: "history", label: "History", Component: HistoryPanel },
+];
 
 /** In the picture's upper right corner, one below the other; each draws nothing when it has nothing to say. */
 export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, PictureFailure];

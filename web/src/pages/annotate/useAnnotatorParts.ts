@@ -43,7 +43,7 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
   const pointer = useMemo(() => pointerOn(hover, camera.id), [hover, camera.id]);
   const arrangement = arrangementFor(camera, options.arrangement);
   // Depth is fetched whenever there is any: the value under the cursor is wanted beside the colour image, too.
-  const pictures = usePictures(recording, camera, state.frame, { color: arrangement !== "depth", depth: camera.has_depth }, range);
+  const pictures = usePictures(recording, camera, state.frame, { color: arrangement !== "depth", depth: camera.has_depth, isDepthSeen: arrangement !== "color", palette: options.palette }, range);
 
   const isLocked = useRef(false);
   isLocked.current = lock !== null;
@@ -56,10 +56,14 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     },
     [session],
   );
-  const [isPlaying, setPlaying] = usePlayback(recording.fps, () => {
-    const { frame, frameCount } = session.store.get();
-    act(goToFrame, frame + 1);
-    return frame + 1 < frameCount - 1;
+  const [isPlaying, setPlaying] = usePlayback(recording.fps, {
+    // Playing waits for a picture rather than leave one out.
+    isReady: () => !pictures.isStale,
+    step: () => {
+      const { frame, frameCount } = session.store.get();
+      act(goToFrame, frame + 1);
+      return frame + 1 < frameCount - 1;
+    },
   });
 
   useEffect(() => {

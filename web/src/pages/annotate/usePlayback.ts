@@ -1,16 +1,29 @@
 import { useEffect, useRef, useState } from "react";
 
-/** Play at the recording's speed (at most 30 steps a second); `step` says whether there is more to come. */
-export function usePlayback(fps: number, step: () => boolean): [boolean, (isPlaying: boolean) => void] {
+interface Steps {
+  /** Whether what is shown now has been shown. */
+  isReady: () => boolean;
+  /** Goes on; says whether there is more to come. */
+  step: () => boolean;
+}
+
+/** Play at the recording's speed (at most 30 steps a second), in step with the screen. */
+export function usePlayback(fps: number, steps: Steps): [boolean, (isPlaying: boolean) => void] {
   const [isPlaying, setPlaying] = useState(false);
-  const current = useRef(step);
-  current.current = step;
+  const current = useRef(steps);
+  current.current = steps;
   useEffect(() => {
     if (!isPlaying) return;
-    const timer = setInterval(() => {
-      if (!current.current()) setPlaying(false);
-    }, 1000 / Math.min(30, Math.max(1, fps)));
-    return () => clearInterval(timer);
+    const period = 1000 / Math.min(30, Math.max(1, fps));
+    let due = performance.now() + period;
+    let request = requestAnimationFrame(function tick(now) {
+      request = requestAnimationFrame(tick);
+      if (now < due - 2 || !current.current.isReady()) return;
+      // After waiting for a picture go on at the same speed instead of hurrying.
+      due = Math.max(due, now - period) + period;
+      if (!current.current.step()) setPlaying(false);
+    });
+    return () => cancelAnimationFrame(request);
   }, [isPlaying, fps]);
   return [isPlaying, setPlaying];
 }

@@ -50,9 +50,12 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const viewer = useViewer(track.id, frame, show);
   const seek = useCallback((to: number) => setFrame(clamp(to)), [clamp]);
 
-  const [isPlaying, setPlaying] = usePlayback(recording.fps, () => {
-    setFrame((now) => clamp(now + 1));
-    return frame + 1 < last;
+  const [isPlaying, setPlaying] = usePlayback(recording.fps, {
+    isReady: () => true,
+    step: () => {
+      setFrame((now) => clamp(now + 1));
+      return frame + 1 < last;
+    },
   });
 
   useEffect(() => {

@@ -1,0 +1,71 @@
+import { Button, Group, NumberInput, Stack, Text } from "@mantine/core";
+import { IconCopyPlus } from "@tabler/icons-react";
+import { useState } from "react";
+import { openFramesAhead, propagateTo } from "../../actions/annotate/propagate";
+import { formatCount } from "../../model/format";
+import { isEmpty } from "../../model/pose";
+import { activeKey, poseAt } from "../../state/annotator";
+import { useHint } from "../../state/keys";
+import { useAnnotating } from "./annotating";
+import { ToolPopover } from "./ToolPopover";
+
+function Propagate({ close }: { close: () => void }) {
+  const { state, act, run } = useAnnotating();
+  const hint = useHint();
+  const open = openFramesAhead(state);
+  const end = open.at(-1) ?? state.frame;
+  const [last, setLast] = useState(end);
+  const wanted = openFramesAhead(state, last);
+  const blocker = end + 1 < state.frameCount ? `frame ${end + 1} is annotated` : "the recording ends";
+  return (
+    <Stack gap="sm">
+      <Text size="sm" fw={600}>
+        Carry the {state.hand} hand on
+      </Text>
+      <Button
+        size="xs"
+        variant="default"
+        onClick={() => {
+          run("hand.propagate");
+          close();
+        }}
+      >
+        {hint("To the next frame", "hand.propagate")}
+      </Button>
+      {open.length > 0 ? (
+        <>
+          <Group gap="sm" wrap="nowrap" align="flex-end">
+            <NumberInput size="xs" label="Up to frame" min={state.frame + 1} max={end} clampBehavior="strict" allowDecimal={false} value={last} onChange={(value) => typeof value === "number" && setLast(value)} />
+            <Button
+              size="xs"
+              disabled={wanted.length === 0}
+              onClick={() => {
+                act(propagateTo, last);
+                close();
+              }}
+            >
+              Copy to {formatCount(wanted.length, "frame")}
+            </Button>
+          </Group>
+          <Text size="xs" className="quiet">
+            At most to frame {end}, because {blocker}. One step for undo.
+          </Text>
+        </>
+      ) : (
+        <Text size="xs" className="quiet">
+          There is no room ahead: {blocker}.
+        </Text>
+      )}
+    </Stack>
+  );
+}
+
+/** The pose, carried over a range of frames. */
+export function PropagateTool() {
+  const { state } = useAnnotating();
+  return (
+    <ToolPopover label="Carry the pose on" icon={<IconCopyPlus size={18} />} isDisabled={isEmpty(poseAt(state, activeKey(state)))} width={248}>
+      {(close) => <Propagate close={close} />}
+    </ToolPopover>
+  );
+}

@@ -49,7 +49,7 @@ test("several panes look at once: nobody calls off another's picture, and everyb
       signal.addEventListener("abort", () => aborted.push(address));
       return new Promise((resolve) => finish.push(() => resolve(address)));
     },
-    { capacity: 100, weigh: () => 1 },
+    { capacity: 100, weigh: () => 1, parallel: 4 },
   );
   const firsts = ["a", "b", "c"].map((pane) => cache.focus([`${pane}0`, `${pane}1`, `${pane}2`], pane));
   while (loaded.length < 9) {
@@ -66,7 +66,7 @@ test("several panes look at once: nobody calls off another's picture, and everyb
 
 test("prefetching stops where it would push out what is wanted sooner", async () => {
   const loaded: string[] = [];
-  const cache = createFrameCache((address) => (loaded.push(address), Promise.resolve(address)), { capacity: 4, weigh: () => 1 });
+  const cache = createFrameCache((address) => (loaded.push(address), Promise.resolve(address)), { capacity: 4, weigh: () => 1, parallel: 4 });
   await cache.focus(["a", "b", "c", "d", "e", "f", "g"]);
   for (let k = 0; k < 5; k += 1) await settled();
   expect(cache.peek("a")).toBe("a");

@@ -23,9 +23,11 @@ interface Budget<T> {
   capacity: number;
   weigh: (picture: T) => number;
   dispose?: (picture: T) => void;
+  /** How many are loaded at once. */
+  parallel?: number;
 }
 
-export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = () => undefined }: Budget<T>): FrameCache<T> {
+export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = () => undefined, parallel = PARALLEL }: Budget<T>): FrameCache<T> {
   /** In order of use, the oldest first. */
   const held = new Map<string, T>();
   let weight = 0;
@@ -80,7 +82,7 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
     let room = capacity;
     let heaviest = 0;
     for (const address of wanted) {
-      if (flying.size >= PARALLEL) return;
+      if (flying.size >= parallel) return;
       const here = held.get(address);
       if (here !== undefined) {
         heaviest = Math.max(heaviest, weigh(here));

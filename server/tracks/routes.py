@@ -117,7 +117,7 @@ def get_track_overlay(
 @router.get(
     "/tracks/{track_id}/files/{name}",
     response_class=FileResponse,
-    responses={200: {"content": {"application/octet-stream": {}}}} | error_responses(404),
+    responses={200: {"content": {"application/octet-stream": {}, "application/json": {}}}} | error_responses(404),
 )
 def download_track_file(
     track_id: uuid.UUID, name: Literal["track.npz", "summary.json"], session: SessionDep, storage: StorageDep

@@ -1516,6 +1516,50 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sequences/{sequence_id}/flags": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Flags
+         * @description Labels that look wrong as they are now, the worst first.
+         */
+        get: operations["list_flags"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sequences/{sequence_id}/flags/{camera}/{frame}/{hand}/{kind}/dismissal": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Dismiss Flag
+         * @description The label is right: put the flag away for this revision of it. 409 when the label has changed meanwhile.
+         */
+        put: operations["dismiss_flag"];
+        post?: never;
+        /**
+         * Restore Flag
+         * @description Bring a flag back that was put away.
+         */
+        delete: operations["restore_flag"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sequences/{sequence_id}/labels/check": {
         parameters: {
             query?: never;
@@ -3191,6 +3235,96 @@ export interface components {
                 number,
                 0 | 1 | 2
             ][];
+        };
+        /**
+         * FlagLook
+         * @description What somebody looked at.
+         */
+        FlagLook: {
+            /**
+             * Revision
+             * @description Of the label. A later revision is checked anew.
+             */
+            revision: number;
+        };
+        /**
+         * Flag
+         * @description Something about a label that looks wrong.
+         */
+        FlagOut: {
+            /** Camera */
+            camera: string;
+            /** Frame */
+            frame: number;
+            /**
+             * Hand
+             * @enum {string}
+             */
+            hand: "right" | "left";
+            /**
+             * Is Dismissed
+             * @description Somebody looked at this revision and the label is right.
+             */
+            is_dismissed: boolean;
+            /**
+             * Joints
+             * @description Those meant, in the order of `/hand-skeleton`; empty: the whole hand.
+             */
+            joints: number[];
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "reprojection" | "residual";
+            /**
+             * Points
+             * @description The label as it was looked at.
+             */
+            points: [
+                number,
+                number,
+                0 | 1 | 2
+            ][];
+            /**
+             * Reason
+             * @description For people: what was seen.
+             */
+            reason: string;
+            /**
+             * Revision
+             * @description Of the label.
+             */
+            revision: number;
+            /**
+             * Score
+             * @description 1 is where it begins to look wrong; more is worse.
+             */
+            score: number;
+        };
+        /**
+         * FlagPage
+         * @description Part of the flags, the worst first.
+         */
+        FlagPage: {
+            /**
+             * Counts
+             * @description Open flags of each kind in the whole recording.
+             */
+            counts: {
+                [key: string]: number;
+            };
+            /**
+             * Dismissed
+             * @description Flags that were put away.
+             */
+            dismissed: number;
+            /** Items */
+            items: components["schemas"]["FlagOut"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
         };
         /**
          * FrameEnergy
@@ -11792,6 +11926,240 @@ export interface operations {
             };
         };
     };
+    list_flags: {
+        parameters: {
+            query?: {
+                /** @description Only these. */
+                kind?: ("outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "reprojection" | "residual") | null;
+                /** @description Those that were put away instead of the open ones. */
+                dismissed?: boolean;
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
+            header?: never;
+            path: {
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FlagPage"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    dismiss_flag: {
+        parameters: {
+            query?: {
+                /** @description The assignment of a blind replica; none for the annotations of everybody. */
+                replica?: string | null;
+            };
+            header?: never;
+            path: {
+                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "reprojection" | "residual";
+                camera: string;
+                frame: number;
+                hand: "right" | "left";
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FlagLook"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    restore_flag: {
+        parameters: {
+            query: {
+                revision: number;
+                /** @description The assignment of a blind replica; none for the annotations of everybody. */
+                replica?: string | null;
+            };
+            header?: never;
+            path: {
+                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "reprojection" | "residual";
+                camera: string;
+                frame: number;
+                hand: "right" | "left";
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     check_recording_labels: {
         parameters: {
             query?: never;
@@ -13781,6 +14149,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
+                    "application/json": unknown;
                     "application/octet-stream": unknown;
                 };
             };

@@ -38,7 +38,8 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
     const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers, whenOut: "fail" });
     return { kind: "saved", revision: revisionOf(answer.headers) ?? answer.data.revision };
   } catch (failure) {
-    if (!(failure instanceof ApiError) || failure.isOffline || failure.status >= 500) return { kind: "unreachable" };
+    if (!(failure instanceof ApiError) || failure.isOffline) return { kind: "unreachable" };
+    if (failure.status >= 500) return { kind: "unreachable", reason: failure.detail };
     if (failure.status === 401) return { kind: "held" };
     if (failure.status === 409 || failure.status === 412) {
       const theirs = failure.body["theirs"] as Annotation | null | undefined;

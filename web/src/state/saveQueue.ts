@@ -11,7 +11,8 @@ export type Outcome =
   | { readonly kind: "saved"; readonly revision: number | null }
   | { readonly kind: "conflict"; readonly theirs: Theirs }
   | { readonly kind: "refused"; readonly reason: string }
-  | { readonly kind: "unreachable" }
+  /** No answer, or one that says why the server cannot take it now; it is sent again. */
+  | { readonly kind: "unreachable"; readonly reason?: string }
   /** Nobody is logged in, or somebody else: it waits for the person who made it. */
   | { readonly kind: "held" };
 
@@ -28,6 +29,8 @@ export interface SaveStatus {
   readonly waiting: number;
   readonly isSending: boolean;
   readonly isOffline: boolean;
+  /** Why the server that was reached cannot take anything now (a full disk); empty when it does not answer at all. */
+  readonly trouble: string;
   /** True until the person is logged in again; nothing is sent meanwhile. */
   readonly isHeld: boolean;
   /** False when the browser refuses to keep what waits. */
@@ -67,6 +70,7 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
   const refusals = new Map<string, string>();
   const watchers = new Set<() => void>();
   let failures = 0;
+  let trouble = "";
   let isHeld = false;
   let isKept = true;
   let lastSavedAt: number | null = null;
@@ -79,6 +83,7 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
       waiting: pending.size,
       isSending: sending.size > 0,
       isOffline: failures > 0,
+      trouble: failures > 0 ? trouble : "",
       isHeld,
       isKept,
       conflicts: new Map(conflicts),
@@ -129,6 +134,7 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
         return;
       case "unreachable":
         failures += 1;
+        trouble = outcome.reason ?? "";
         clearTimeout(timer);
         timer = setTimeout(drainAll, RETRY_MS[Math.min(failures, RETRY_MS.length) - 1]);
         tell();

@@ -17,6 +17,7 @@ function describeSaving(status: SaveStatus): { text: string; tone: "good" | "bus
   if (status.conflicts.size > 0) return { text: `${formatCount(status.conflicts.size, "change")} to settle`, tone: "bad", icon: IconGitMerge };
   if (status.refusals.size > 0) return { text: `not taken by the server, ${status.refusals.size} kept here`, tone: "bad", icon: IconAlertTriangle };
   if (status.isHeld) return { text: `log in to save, ${status.waiting} waiting`, tone: "bad", icon: IconLock };
+  if (status.trouble) return { text: `held back, ${status.waiting} waiting`, tone: "bad", icon: IconAlertTriangle };
   if (status.isOffline) return { text: `offline, ${status.waiting} waiting`, tone: "bad", icon: IconCloudOff };
   if (status.waiting > 0 || status.isSending) return { text: "saving …", tone: "busy", icon: IconLoader2 };
   return { text: "saved", tone: "good", icon: IconCheck };
@@ -61,6 +62,11 @@ export function StatusLine() {
           {text}
         </button>
       </Tooltip>
+      {saving.trouble && (
+        <Text size="xs" c="var(--bad-text)" role="alert" truncate>
+          {saving.trouble}
+        </Text>
+      )}
       {!saving.isKept && (
         <Text size="xs" c="var(--bad-text)">
           this browser keeps no copy: do not close the page before it is saved

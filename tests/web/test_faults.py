@@ -1,4 +1,4 @@
-"""The annotator when tabs die, the network goes and clocks jump: nothing acknowledged is lost, nothing is stored twice."""
+"""Tabs die, networks go, clocks jump: nothing acknowledged is lost, nothing is stored twice."""
 
 from __future__ import annotations
 

@@ -8,8 +8,9 @@ import type { Annotation, AnnotationRevision, Page } from "./types";
 
 export const annotationKeys = { of: (recording: string) => ["annotations", recording] as const };
 
-export const fetchAnnotations = (recording: string): Promise<Annotation[]> =>
-  fetchAll<Annotation>(`/sequences/${recording}/annotations`, { limit: 2000 });
+/** Of everybody, or of one blind replica. */
+export const fetchAnnotations = (recording: string, replica?: string | null): Promise<Annotation[]> =>
+  fetchAll<Annotation>(`/sequences/${recording}/annotations`, { limit: 2000, ...(replica ? { replica } : {}) });
 
 export const useAnnotations = (recording: string | undefined) =>
   useQuery({
@@ -24,7 +25,7 @@ const revisionOf = (headers: Headers): number | null => {
 };
 
 /** One save as the server wants it: on the revision it was made on, repeatable by its operation id. */
-export async function sendAnnotation(recording: string, key: string, save: PendingSave): Promise<Outcome> {
+export async function sendAnnotation(recording: string, key: string, save: PendingSave, replica?: string): Promise<Outcome> {
   const { camera, frame, hand } = parseKey(key);
   const path = `/sequences/${recording}/annotations/${encodeURIComponent(camera)}/${frame}/${hand}`;
   const headers: Record<string, string> = save.base === null ? { "If-None-Match": "*" } : { "If-Match": `"${save.base}"` };
@@ -36,6 +37,11 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
     }
     const body = { points: save.points, operation_id: save.operationId };
     const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers, whenOut: "fail" });
+      await requestWithHeaders("DELETE", path, { headers, query: { operation_id: save.operationId, replica } });
+      return { kind: "saved", revision: null };
+    }
+    const body = { points: save.points, operation_id: save.operationId };
+    const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers, query: { replica } });
     return { kind: "saved", revision: revisionOf(answer.headers) ?? answer.data.revision };
   } catch (failure) {
     if (!(failure instanceof ApiError) || failure.isOffline) return { kind: "unreachable" };

@@ -88,6 +88,13 @@ export const KEYMAP = [
     ["views.large", "Enlarge this camera's picture, or not any more", "P"],
     ["views.worst", "Mark that is farthest off; again: the next one", "Shift+L"],
   ]),
+  ...table("annotate", "Assignment", [
+    ["assignment.next", "Next frame to do", "Alt+N"],
+    ["assignment.submit", "Submit the work", "Ctrl+Enter"],
+    ["assignment.comment", "Comment on this joint", "Alt+C"],
+    ["assignment.accept", "Accept submitted work", "Alt+A"],
+    ["assignment.return", "Return it with the reason", "Alt+R"],
+  ]),
   ...table("track", "Track", [
     ["track.play", "Play or pause", "Space"],
     ["track.next", "Next frame", "F", "Right"],

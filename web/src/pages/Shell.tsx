@@ -18,6 +18,7 @@ import classes from "./Shell.module.css";
 const ROOMS = [
   { to: "/recordings", label: "Recordings" },
   { to: "/annotate", label: "Annotate" },
+  { to: "/projects", label: "Projects" },
   { to: "/tracks", label: "Tracks" },
   { to: "/evaluations", label: "Evaluations" },
   { to: "/jobs", label: "Jobs" },

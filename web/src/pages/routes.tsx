@@ -19,6 +19,9 @@ const EvaluationsPage = lazy(() => import("./evaluations/EvaluationsPage"));
 const AccountPage = lazy(() => import("./account/AccountPage"));
 const PeoplePage = lazy(() => import("./account/PeoplePage"));
 const AuditPage = lazy(() => import("./account/AuditPage"));
+const AgreementPage = lazy(() => import("./projects/AgreementPage"));
+const ProjectPage = lazy(() => import("./projects/ProjectPage"));
+const ProjectsPage = lazy(() => import("./projects/ProjectsPage"));
 const TrackPage = lazy(() => import("./TrackPage"));
 
 /** Addresses hold the state of a page, so that a link shows a colleague the same thing. */
@@ -38,6 +41,9 @@ export const router = createBrowserRouter([
           { path: "annotate", element: <AnnotateChooser /> },
           { path: "imports/new", element: <NewImportPage /> },
           { path: "imports/:importId", element: <ImportPage /> },
+          { path: "projects", element: <ProjectsPage /> },
+          { path: "projects/:projectId", element: <ProjectPage /> },
+          { path: "projects/:projectId/agreement/:setId", element: <AgreementPage /> },
           { path: "tracks", element: <TracksPage /> },
           { path: "tracks/:trackId", element: <TrackPage /> },
           { path: "evaluations", element: <EvaluationsPage /> },

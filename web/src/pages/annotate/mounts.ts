@@ -7,6 +7,8 @@ import type { ComponentType } from "react";
 import type { Camera } from "../../api/types";
 import type { View } from "../../canvas/view";
 import type { FrameMarks } from "../../model/frameMarks";
+import { AssignmentBar } from "./AssignmentBar";
+import { AssignmentComments } from "./AssignmentComments";
 import { CamerasTool, CameraTools } from "./CamerasTool";
 import { ConflictCards } from "./ConflictCards";
 import { EpipolarLayer } from "./EpipolarLayer";
@@ -38,12 +40,13 @@ export const PANELS: readonly Panel[] = [
   { id: "joints", label: "Joints", Component: JointsPanel },
   { id: "history", label: "History", Component: HistoryPanel },
 ];
+export const PANELS: readonly Panel[] = [{ id: "joints", label: "Joints", Component: JointsPanel }, { id: "comments", label: "Comments", Component: AssignmentComments }];
 
 /** In the picture's upper right corner, one below the other; each draws nothing when it has nothing to say. */
 export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, PictureFailure];
 
 /** Across the page, below the frame bar. */
-export const BARS: readonly ComponentType[] = [];
+export const BARS: readonly ComponentType[] = [AssignmentBar];
 
 /** Buttons at the end of the frame bar. */
 export const FRAME_TOOLS: readonly ComponentType[] = [CamerasTool, SuggestTool];

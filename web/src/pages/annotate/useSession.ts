@@ -5,7 +5,7 @@ import { ApiError } from "../../api/client";
 import { recordingKeys } from "../../api/recordings";
 import type { Recording } from "../../api/types";
 import type { AnnotatorState } from "../../state/annotator";
-import { queueOf } from "../../state/saving";
+import { queueOf, scopeOf } from "../../state/saving";
 import type { SaveStatus } from "../../state/saveQueue";
 import type { KeyFrames } from "../../state/keyFrames";
 import type { SuggestionsState } from "../../state/suggestions";
@@ -18,7 +18,7 @@ interface Opened {
 }
 
 /** Open a recording's annotations, as the server has them now with what still waits here on top. */
-export function useSession(recording: Recording | undefined, start: () => Start): Opened {
+export function useSession(recording: Recording | undefined, start: () => Start, replica: string | null = null): Opened {
   const [session, setSession] = useState<Session | null>(null);
   const [failure, setFailure] = useState<Error | null>(null);
   const [attempt, setAttempt] = useState(0);
@@ -29,10 +29,10 @@ export function useSession(recording: Recording | undefined, start: () => Start)
     if (!recording) return;
     let isGone = false;
     let opened: Session | null = null;
-    const queue = queueOf(recording.id);
+    const queue = queueOf(scopeOf(recording.id, replica));
     const open = async (): Promise<void> => {
       for (let tries = 0; tries < 3; tries += 1) {
-        const annotations = await fetchAnnotations(recording.id);
+        const annotations = await fetchAnnotations(recording.id, replica);
         if (isGone) return;
         // A save of an earlier visit may arrive while we load: then load again.
         if (!queue.learn(revisionsOf(annotations), tries === 2)) continue;
@@ -52,9 +52,9 @@ export function useSession(recording: Recording | undefined, start: () => Start)
       void client.invalidateQueries({ queryKey: annotationKeys.of(recording.id) });
       void client.invalidateQueries({ queryKey: recordingKeys.all });
     };
-    // Only another recording, or another try, opens another session.
+    // Only another recording or replica, or another try, opens another session.
     // eslint-disable-next-line react-hooks/exhaustive-deps
-  }, [id, attempt]);
+  }, [id, replica, attempt]);
 
   useEffect(() => {
     // A server that is only away for a moment needs nobody to press a button.

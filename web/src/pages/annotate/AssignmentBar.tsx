@@ -1,0 +1,221 @@
+import { Button, Progress, Text, TextInput, Tooltip } from "@mantine/core";
+import { notifications } from "@mantine/notifications";
+import { IconEyeOff, IconMessage } from "@tabler/icons-react";
+import { useEffect, useRef, useState } from "react";
+import { Link } from "react-router";
+import { goToFrame, selectCamera } from "../../actions/annotate/select";
+import { assignmentAddress, useTeamChange, type Assignment } from "../../api/teams";
+import { hasRole, lockReason, progressOf, snapFrame } from "../../model/assignment";
+import { jointLabel } from "../../model/joints";
+import { useHint } from "../../state/keys";
+import { StateBadge } from "../projects/StateBadge";
+import { useActions, useAnnotating } from "./annotating";
+import classes from "./AssignmentBar.module.css";
+import { useAssignmentHere } from "./useAssignmentHere";
+
+type Writing = "comment" | "return";
+
+/** The work that this frame belongs to: how far it is, and what comes next. Draws nothing where nobody was given anything. */
+export function AssignmentBar() {
+  const { state, saving, act, setLock } = useAnnotating();
+  const { me, assignment, replicas, blind, failure } = useAssignmentHere();
+  const change = useTeamChange<Assignment>();
+  const hint = useHint();
+  const [writing, setWriting] = useState<Writing | null>(null);
+  const [isSure, setSure] = useState(false);
+  const last = useRef(state.frame);
+
+  useEffect(() => {
+    if (replicas && assignment?.replica_set_id) {
+      const frame = snapFrame(replicas.frames, state.frame, last.current);
+      if (frame !== state.frame) act(goToFrame, frame);
+      const camera = replicas.cameras[0];
+      if (camera && !replicas.cameras.includes(state.camera)) act(selectCamera, camera);
+    }
+    last.current = state.frame;
+  }, [replicas, assignment?.replica_set_id, state.frame, state.camera, act]);
+
+  const reason = blind ? "You mark this frame blindly: open your own version of it" : lockReason(assignment, me, replicas, state.hand);
+  useEffect(() => {
+    setLock(reason);
+    return () => setLock(null);
+  }, [reason, setLock]);
+  useEffect(() => setSure(false), [assignment?.id, state.frame]);
+
+  const progress = assignment && progressOf(assignment, replicas, state.poses);
+  const isMine = assignment !== undefined && assignment.account_id === me?.id;
+  const isOpen = assignment?.state === "open" || assignment?.state === "returned";
+  const maySubmit = isOpen && (isMine || hasRole(me, "lead"));
+  const mayReview = hasRole(me, "reviewer") && (!isMine || hasRole(me, "lead"));
+  const mayAccept = mayReview && assignment?.state === "submitted";
+  const mayReturn = mayReview && (assignment?.state === "submitted" || assignment?.state === "accepted");
+  const mayTalk = isMine || hasRole(me, "reviewer");
+
+  const send = (verb: string, done: string, body?: unknown): void => {
+    if (!assignment) return;
+    const sent = { method: "POST", path: `/assignments/${assignment.id}/${verb}`, ...(body === undefined ? {} : { body }) } as const;
+    change.mutate(verb === "comments" ? sent : { ...sent, revision: assignment.revision }, {
+      onSuccess: () => {
+        setWriting(null);
+        setSure(false);
+        notifications.show({ message: done });
+      },
+      onError: (error) => notifications.show({ color: "red", title: "That was not done", message: error.message }),
+    });
+  };
+  const submit = (): void => {
+    if (!progress) return;
+    if (saving.waiting > 0 || saving.conflicts.size > 0) notifications.show({ color: "yellow", message: "Something is not saved yet. Submit when the status line says saved." });
+    else if (progress.next !== null && !isSure) setSure(true);
+    else send("submit", "Submitted for review.");
+  };
+  const goNext = (): void => {
+    if (progress?.next !== null && progress !== undefined) act(goToFrame, progress.next);
+  };
+  useActions({
+    ...(progress && progress.next !== null ? { "assignment.next": goNext } : {}),
+    ...(maySubmit ? { "assignment.submit": submit } : {}),
+    ...(mayAccept ? { "assignment.accept": () => send("accept", "Accepted: these frames are locked.") } : {}),
+    ...(mayReturn ? { "assignment.return": () => setWriting("return") } : {}),
+    ...(assignment && mayTalk ? { "assignment.comment": () => setWriting("comment") } : {}),
+  });
+
+  if (failure) {
+    return (
+      <div className={classes.bar} role="alert">
+        <Text size="sm">{failure.message}</Text>
+        <Link to="/projects">To the projects</Link>
+      </div>
+    );
+  }
+  if (blind) {
+    return (
+      <div className={classes.bar}>
+        <IconEyeOff size={16} aria-hidden />
+        <Text size="sm">You mark this frame blindly; what others marked in it is hidden from you.</Text>
+        <Button size="compact-xs" variant="default" component={Link} to={assignmentAddress(blind, state.frame)} reloadDocument>
+          Open my version
+        </Button>
+      </div>
+    );
+  }
+  if (!assignment || !progress) return null;
+  return (
+    <div className={classes.bar} role="group" aria-label="Assignment">
+      <StateBadge state={assignment.state} />
+      <Tooltip label={assignment.note || `Part of ${assignment.project}`} multiline maw={400}>
+        <Link to={`/projects/${assignment.project_id}`} className={`${classes.name} one-line`}>
+          {assignment.replica_set ? `${assignment.replica_set}, blind` : `Frames ${assignment.frame_first}–${assignment.frame_last}`}
+          {!isMine && ` · ${assignment.account}`}
+        </Link>
+      </Tooltip>
+      <Progress value={(100 * progress.done) / progress.total} w={120} aria-label={`${progress.done} of ${progress.total} frames done`} />
+      <Text size="xs" className="quiet" style={{ whiteSpace: "nowrap" }} data-testid="assignment-progress">
+        {progress.done} of {progress.total} done
+      </Text>
+      {writing ? (
+        <Words
+          label={writing === "return" ? "What is to be changed" : `Comment on the ${state.hand} ${jointLabel(state.joint)}`}
+          isBusy={change.isPending}
+          onCancel={() => setWriting(null)}
+          onSend={(text) =>
+            writing === "return"
+              ? send("return", `Returned to ${assignment.account}.`, { text })
+              : send("comments", "Comment left.", { text, camera: state.camera, frame: state.frame, hand: state.hand, joint: state.joint })
+          }
+          // To return work needs no words of its own where comments say what is to be changed.
+          mayBeEmpty={writing === "return" && assignment.open_comments > 0}
+        />
+      ) : (
+        <div className={classes.acts}>
+          {isSure && (
+            <Text size="xs" c="var(--warn-text)" role="status">
+              {progress.total - progress.done} frames have no joints yet.
+            </Text>
+          )}
+          {assignment.open_comments > 0 && (
+            <Text size="xs" className="quiet" style={{ whiteSpace: "nowrap" }}>
+              {assignment.open_comments} to resolve
+            </Text>
+          )}
+          {mayTalk && (
+            <Tooltip label={hint("Comment on this joint", "assignment.comment")}>
+              <Button size="compact-xs" variant="subtle" color="gray" leftSection={<IconMessage size={14} aria-hidden />} onClick={() => setWriting("comment")}>
+                Comment
+              </Button>
+            </Tooltip>
+          )}
+          {isOpen && progress.next !== null && (
+            <Tooltip label={hint("Next frame to do", "assignment.next")}>
+              <Button size="compact-xs" variant="default" onClick={goNext}>
+                Next: {progress.next}
+              </Button>
+            </Tooltip>
+          )}
+          {maySubmit && (
+            <Tooltip label={hint("Hand the work in; it is locked until its review", "assignment.submit")}>
+              <Button size="compact-xs" loading={change.isPending} onClick={submit}>
+                {isSure ? "Submit nevertheless" : "Submit"}
+              </Button>
+            </Tooltip>
+          )}
+          {mayReturn && (
+            <Tooltip label={hint("Send it back with the reason", "assignment.return")}>
+              <Button size="compact-xs" variant="default" onClick={() => setWriting("return")}>
+                Return
+              </Button>
+            </Tooltip>
+          )}
+          {mayAccept && (
+            <Tooltip label={hint("Find it good; it is locked from then on", "assignment.accept")}>
+              <Button size="compact-xs" loading={change.isPending} onClick={() => send("accept", "Accepted: these frames are locked.")}>
+                Accept
+              </Button>
+            </Tooltip>
+          )}
+        </div>
+      )}
+    </div>
+  );
+}
+
+interface WordsProps {
+  label: string;
+  isBusy: boolean;
+  mayBeEmpty: boolean;
+  onSend: (text: string) => void;
+  onCancel: () => void;
+}
+
+/** A line to write in, in the bar itself: nothing covers the picture. */
+function Words({ label, isBusy, mayBeEmpty, onSend, onCancel }: WordsProps) {
+  const [text, setText] = useState("");
+  const isReady = text.trim() !== "" || mayBeEmpty;
+  return (
+    <form
+      className={classes.words}
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (isReady) onSend(text.trim());
+      }}
+    >
+      <TextInput
+        size="xs"
+        autoFocus
+        flex={1}
+        maxLength={4000}
+        aria-label={label}
+        placeholder={label}
+        value={text}
+        onChange={(event) => setText(event.currentTarget.value)}
+        onKeyDown={(event) => event.key === "Escape" && onCancel()}
+      />
+      <Button size="compact-xs" type="submit" loading={isBusy} disabled={!isReady}>
+        Send
+      </Button>
+      <Button size="compact-xs" variant="default" onClick={onCancel}>
+        Cancel
+      </Button>
+    </form>
+  );
+}

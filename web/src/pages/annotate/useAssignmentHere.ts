@@ -1,0 +1,28 @@
+import { useSearchParams } from "react-router";
+import { useAssignment, useAssignments, useMe, useReplicaSet, type Assignment, type Me, type ReplicaSet } from "../../api/teams";
+import { assignmentAt, blindAt } from "../../model/assignment";
+import { useAnnotating } from "./annotating";
+
+interface Here {
+  me: Me | undefined;
+  /** The work that the frame one is at belongs to: the replica of the address, or the range around the frame. */
+  assignment: Assignment | undefined;
+  replicas: ReplicaSet | undefined;
+  /** My own blind work that has this frame, when one is not in it. */
+  blind: Assignment | undefined;
+  failure: Error | null;
+}
+
+export function useAssignmentHere(): Here {
+  const { recording, state } = useAnnotating();
+  const [address] = useSearchParams();
+  const replica = address.get("replica");
+  const me = useMe().data;
+  const all = useAssignments({ sequence: recording.id }).data ?? [];
+  const own = useAssignment(replica);
+  const assignment = replica ? own.data : assignmentAt(all, state.frame);
+  const blind = replica ? undefined : blindAt(all, me, state.frame);
+  const replicas = useReplicaSet(assignment?.replica_set_id ?? blind?.replica_set_id).data;
+  const isBlindHere = blind !== undefined && replicas !== undefined && replicas.frames.includes(state.frame);
+  return { me, assignment, replicas, blind: isBlindHere ? blind : undefined, failure: own.error };
+}

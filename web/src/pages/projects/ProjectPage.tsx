@@ -1,0 +1,124 @@
+import { ActionIcon, Button, Group, Skeleton, Text, TextInput, Title, Tooltip } from "@mantine/core";
+import { notifications } from "@mantine/notifications";
+import { IconPencil } from "@tabler/icons-react";
+import { useState } from "react";
+import { Link, useNavigate, useParams } from "react-router";
+import { useMe, useProject, useTeamChange, type Project } from "../../api/teams";
+import { hasRole } from "../../model/assignment";
+import { Failure } from "../parts/Failure";
+import { PageSkeleton } from "../parts/PageSkeleton";
+import { useTitle } from "../parts/useTitle";
+import { ProjectAssignments } from "./ProjectAssignments";
+import { ProjectRecordings } from "./ProjectRecordings";
+import { ProjectReplicas } from "./ProjectReplicas";
+
+/** One project: its recordings, who marks which frames, and who marks them blindly. */
+export default function ProjectPage() {
+  const { projectId } = useParams();
+  const { data: project, error, refetch } = useProject(projectId);
+  const isLead = hasRole(useMe().data, "lead");
+  useTitle(project?.name ?? "Project");
+  if (error && !project) {
+    return (
+      <Failure what="This project could not be opened" error={error} safe="Nothing is lost on the server." onRetry={() => void refetch()}>
+        <Button variant="default" component={Link} to="/projects">
+          To the projects
+        </Button>
+      </Failure>
+    );
+  }
+  if (!project) return <PageSkeleton />;
+  const mayChange = isLead && project.archived_at === null;
+  return (
+    <div className="page">
+      <Head project={project} mayChange={mayChange} isLead={isLead} />
+      <ProjectRecordings project={project} mayChange={mayChange} />
+      <ProjectAssignments project={project} mayChange={mayChange} />
+      <ProjectReplicas project={project} mayChange={mayChange} />
+    </div>
+  );
+}
+
+function Head({ project, mayChange, isLead }: { project: Project; mayChange: boolean; isLead: boolean }) {
+  const [draft, setDraft] = useState<{ name: string; description: string } | null>(null);
+  const change = useTeamChange<Project>();
+  const navigate = useNavigate();
+  const path = `/projects/${project.id}`;
+  const fail = (failure: Error): string => notifications.show({ color: "red", title: "That was not done", message: failure.message });
+  const archive = (): void =>
+    change.mutate(
+      { method: "DELETE", path },
+      {
+        onError: fail,
+        onSuccess: () => {
+          void navigate("/projects");
+          notifications.show({
+            message: (
+              <Group gap="sm" wrap="nowrap">
+                {project.name} was archived.
+                <Button size="compact-xs" variant="default" onClick={() => change.mutate({ method: "POST", path: `${path}/restore` }, { onSuccess: () => void navigate(path) })}>
+                  Undo
+                </Button>
+              </Group>
+            ),
+            autoClose: 12_000,
+          });
+        },
+      },
+    );
+  if (draft) {
+    return (
+      <form
+        onSubmit={(event) => {
+          event.preventDefault();
+          change.mutate({ method: "PATCH", path, body: draft, revision: project.revision }, { onSuccess: () => setDraft(null), onError: fail });
+        }}
+      >
+        <Group mb="xl" align="flex-end" gap="sm">
+          <TextInput label="Name" w={320} maxLength={200} autoFocus value={draft.name} onChange={(event) => setDraft({ ...draft, name: event.currentTarget.value })} />
+          <TextInput label="Description" w={480} maxLength={4000} value={draft.description} onChange={(event) => setDraft({ ...draft, description: event.currentTarget.value })} />
+          <Button type="submit" loading={change.isPending} disabled={!draft.name.trim()}>
+            Keep
+          </Button>
+          <Button variant="default" onClick={() => setDraft(null)}>
+            Cancel
+          </Button>
+        </Group>
+      </form>
+    );
+  }
+  return (
+    <Group mb="xl" justify="space-between" align="flex-start" wrap="nowrap">
+      <div style={{ minWidth: 0 }}>
+        <Group gap="sm" wrap="nowrap">
+          <Title order={1} className="one-line" title={project.name}>
+            {project.name}
+          </Title>
+          {mayChange && (
+            <Tooltip label="Rename, describe">
+              <ActionIcon aria-label="Rename the project" onClick={() => setDraft({ name: project.name, description: project.description })}>
+                <IconPencil size={16} />
+              </ActionIcon>
+            </Tooltip>
+          )}
+        </Group>
+        <Text className="quiet">{project.archived_at ? "Archived. What was accepted in it stays locked." : project.description}</Text>
+      </div>
+      {mayChange && (
+        <Button variant="default" loading={change.isPending} onClick={archive}>
+          Archive
+        </Button>
+      )}
+      {isLead && project.archived_at && (
+        <Button loading={change.isPending} onClick={() => change.mutate({ method: "POST", path: `${path}/restore` })}>
+          Bring back
+        </Button>
+      )}
+    </Group>
+  );
+}
+
+/** Rows of a list that is on its way. */
+export function Loading({ height = 120 }: { height?: number }) {
+  return <Skeleton height={height} radius="lg" />;
+}

@@ -6,7 +6,7 @@ import { fetchAll } from "./recordings";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];
-export type Me = Schemas["MeOut"];
+export type Me = Schemas["MyAccount"];
 export type Person = Schemas["Person"];
 export type Project = Schemas["ProjectOut"];
 export type ProjectRecording = Schemas["ProjectRecording"];

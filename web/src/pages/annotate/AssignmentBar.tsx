@@ -130,7 +130,7 @@ export function AssignmentBar() {
         <div className={classes.acts}>
           {isSure && (
             <Text size="xs" c="var(--warn-text)" role="status">
-              {progress.total - progress.done} frames have no joints yet.
+              {progress.total - progress.done === 1 ? "1 frame has" : `${progress.total - progress.done} frames have`} no joints yet.
             </Text>
           )}
           {assignment.open_comments > 0 && (

@@ -4,6 +4,7 @@ import { useState } from "react";
 import { Link } from "react-router";
 import { assignmentAddress, useAssignments, usePeople, useProjectRecordings, useTeamChange, type Assignment, type Project } from "../../api/teams";
 import { formatCount } from "../../model/format";
+import { offerUndo, tellFailure } from "./offerUndo";
 import { Loading } from "./ProjectPage";
 import classes from "./projects.module.css";
 import { StateBadge } from "./StateBadge";
@@ -39,25 +40,10 @@ function PersonWork({ person, work, mayChange }: { person: string; work: readonl
   const change = useTeamChange();
   const done = work.reduce((sum, one) => sum + one.frames_done, 0);
   const frames = work.reduce((sum, one) => sum + one.frames, 0);
-  const fail = (failure: Error): string => notifications.show({ color: "red", title: "That was not done", message: failure.message });
-  const withdraw = (one: Assignment): void =>
-    change.mutate(
-      { method: "DELETE", path: `/assignments/${one.id}`, revision: one.revision },
-      {
-        onError: fail,
-        onSuccess: () =>
-          notifications.show({
-            message: (
-              <>
-                The assignment was withdrawn; the joints stay.{" "}
-                <Button size="compact-xs" variant="default" onClick={() => change.mutate({ method: "POST", path: `/assignments/${one.id}/restore` }, { onError: fail })}>
-                  Undo
-                </Button>
-              </>
-            ),
-          }),
-      },
-    );
+  const withdraw = async (one: Assignment): Promise<void> => {
+    await change.mutateAsync({ method: "DELETE", path: `/assignments/${one.id}`, revision: one.revision });
+    offerUndo("The assignment was withdrawn; the joints stay.", () => change.mutateAsync({ method: "POST", path: `/assignments/${one.id}/restore` }));
+  };
   return (
     <div className={`card ${classes.frame}`} data-testid="person">
       <div className={classes.work}>
@@ -94,7 +80,7 @@ function PersonWork({ person, work, mayChange }: { person: string; work: readonl
               </Table.Td>
               <Table.Td w={96} ta="right">
                 {mayChange && (
-                  <Button size="compact-xs" variant="subtle" color="gray" aria-label={`Withdraw the work of ${person} on ${one.recording}`} onClick={() => withdraw(one)}>
+                  <Button size="compact-xs" variant="subtle" color="gray" aria-label={`Withdraw the work of ${person} on ${one.recording}`} onClick={() => void withdraw(one).catch(tellFailure)}>
                     Withdraw
                   </Button>
                 )}

@@ -1,5 +1,4 @@
 import { ActionIcon, Button, Group, Skeleton, Text, TextInput, Title, Tooltip } from "@mantine/core";
-import { notifications } from "@mantine/notifications";
 import { IconPencil } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link, useNavigate, useParams } from "react-router";
@@ -8,6 +7,7 @@ import { hasRole } from "../../model/assignment";
 import { Failure } from "../parts/Failure";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { useTitle } from "../parts/useTitle";
+import { offerUndo, tellFailure } from "./offerUndo";
 import { ProjectAssignments } from "./ProjectAssignments";
 import { ProjectRecordings } from "./ProjectRecordings";
 import { ProjectReplicas } from "./ProjectReplicas";
@@ -44,34 +44,20 @@ function Head({ project, mayChange, isLead }: { project: Project; mayChange: boo
   const change = useTeamChange<Project>();
   const navigate = useNavigate();
   const path = `/projects/${project.id}`;
-  const fail = (failure: Error): string => notifications.show({ color: "red", title: "That was not done", message: failure.message });
-  const archive = (): void =>
-    change.mutate(
-      { method: "DELETE", path },
-      {
-        onError: fail,
-        onSuccess: () => {
-          void navigate("/projects");
-          notifications.show({
-            message: (
-              <Group gap="sm" wrap="nowrap">
-                {project.name} was archived.
-                <Button size="compact-xs" variant="default" onClick={() => change.mutate({ method: "POST", path: `${path}/restore` }, { onSuccess: () => void navigate(path) })}>
-                  Undo
-                </Button>
-              </Group>
-            ),
-            autoClose: 12_000,
-          });
-        },
-      },
-    );
+  const archive = async (): Promise<void> => {
+    await change.mutateAsync({ method: "DELETE", path });
+    await navigate("/projects");
+    offerUndo(`${project.name} was archived.`, async () => {
+      await change.mutateAsync({ method: "POST", path: `${path}/restore` });
+      await navigate(path);
+    });
+  };
   if (draft) {
     return (
       <form
         onSubmit={(event) => {
           event.preventDefault();
-          change.mutate({ method: "PATCH", path, body: draft, revision: project.revision }, { onSuccess: () => setDraft(null), onError: fail });
+          change.mutate({ method: "PATCH", path, body: draft, revision: project.revision }, { onSuccess: () => setDraft(null), onError: tellFailure });
         }}
       >
         <Group mb="xl" align="flex-end" gap="sm">
@@ -105,7 +91,7 @@ function Head({ project, mayChange, isLead }: { project: Project; mayChange: boo
         <Text className="quiet">{project.archived_at ? "Archived. What was accepted in it stays locked." : project.description}</Text>
       </div>
       {mayChange && (
-        <Button variant="default" loading={change.isPending} onClick={archive}>
+        <Button variant="default" loading={change.isPending} onClick={() => void archive().catch(tellFailure)}>
           Archive
         </Button>
       )}

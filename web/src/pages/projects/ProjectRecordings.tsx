@@ -1,9 +1,9 @@
 import { Button, Progress, Select, Table, Text, Title } from "@mantine/core";
-import { notifications } from "@mantine/notifications";
 import { useState } from "react";
 import { Link } from "react-router";
 import { useRecordings } from "../../api/recordings";
-import { useProjectRecordings, useTeamChange, type Project } from "../../api/teams";
+import { useProjectRecordings, useTeamChange, type Project, type ProjectRecording } from "../../api/teams";
+import { offerUndo, tellFailure } from "./offerUndo";
 import { Loading } from "./ProjectPage";
 import classes from "./projects.module.css";
 
@@ -12,7 +12,11 @@ export function ProjectRecordings({ project, mayChange }: { project: Project; ma
   const { data } = useProjectRecordings(project.id);
   const change = useTeamChange();
   const path = (id: string): string => `/projects/${project.id}/sequences/${id}`;
-  const fail = (failure: Error): string => notifications.show({ color: "red", title: "That was not done", message: failure.message });
+  const add = (id: string): Promise<unknown> => change.mutateAsync({ method: "PUT", path: path(id) });
+  const takeOut = async (one: ProjectRecording): Promise<void> => {
+    await change.mutateAsync({ method: "DELETE", path: path(one.id) });
+    offerUndo(`${one.name} was taken out.`, () => add(one.id));
+  };
   return (
     <section className={classes.section} aria-label="Recordings">
       <Title order={2} mb="sm">
@@ -55,25 +59,7 @@ export function ProjectRecordings({ project, mayChange }: { project: Project; ma
                         variant="subtle"
                         color="gray"
                         aria-label={`Take ${recording.name} out of the project`}
-                        onClick={() =>
-                          change.mutate(
-                            { method: "DELETE", path: path(recording.id) },
-                            {
-                              onError: fail,
-                              onSuccess: () =>
-                                notifications.show({
-                                  message: (
-                                    <>
-                                      {recording.name} was taken out.{" "}
-                                      <Button size="compact-xs" variant="default" onClick={() => change.mutate({ method: "PUT", path: path(recording.id) }, { onError: fail })}>
-                                        Undo
-                                      </Button>
-                                    </>
-                                  ),
-                                }),
-                            },
-                          )
-                        }
+                        onClick={() => void takeOut(recording).catch(tellFailure)}
                       >
                         Take out
                       </Button>
@@ -85,7 +71,7 @@ export function ProjectRecordings({ project, mayChange }: { project: Project; ma
           </Table>
         </div>
       )}
-      {mayChange && data && <AddRecording known={data.map((one) => one.id)} isBusy={change.isPending} onAdd={(id) => change.mutate({ method: "PUT", path: path(id) }, { onError: fail })} />}
+      {mayChange && data && <AddRecording known={data.map((one) => one.id)} isBusy={change.isPending} onAdd={(id) => void add(id).catch(tellFailure)} />}
     </section>
   );
 }

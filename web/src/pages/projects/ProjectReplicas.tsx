@@ -5,6 +5,7 @@ import { Link } from "react-router";
 import { useMe, usePeople, useProjectRecordings, useReplicaSets, useTeamChange, type Project, type ReplicaSet, type ReplicaSetMake } from "../../api/teams";
 import { hasRole } from "../../model/assignment";
 import { formatCount } from "../../model/format";
+import { offerUndo, tellFailure } from "./offerUndo";
 import { Loading } from "./ProjectPage";
 import classes from "./projects.module.css";
 
@@ -13,23 +14,10 @@ export function ProjectReplicas({ project, mayChange }: { project: Project; mayC
   const { data } = useReplicaSets(project.id);
   const isReviewer = hasRole(useMe().data, "reviewer");
   const change = useTeamChange();
-  const withdraw = (one: ReplicaSet): void =>
-    change.mutate(
-      { method: "DELETE", path: `/replica-sets/${one.id}` },
-      {
-        onSuccess: () =>
-          notifications.show({
-            message: (
-              <>
-                {one.name} was withdrawn; what was marked stays stored.{" "}
-                <Button size="compact-xs" variant="default" onClick={() => change.mutate({ method: "POST", path: `/replica-sets/${one.id}/restore` })}>
-                  Undo
-                </Button>
-              </>
-            ),
-          }),
-      },
-    );
+  const withdraw = async (one: ReplicaSet): Promise<void> => {
+    await change.mutateAsync({ method: "DELETE", path: `/replica-sets/${one.id}` });
+    offerUndo(`${one.name} was withdrawn; what was marked stays stored.`, () => change.mutateAsync({ method: "POST", path: `/replica-sets/${one.id}/restore` }));
+  };
   return (
     <section className={classes.section} aria-label="Blind replicas">
       <Title order={2} mb="sm">
@@ -74,7 +62,7 @@ export function ProjectReplicas({ project, mayChange }: { project: Project; mayC
                         </Button>
                       )}
                       {mayChange && (
-                        <Button size="compact-xs" variant="subtle" color="gray" aria-label={`Withdraw ${one.name}`} onClick={() => withdraw(one)}>
+                        <Button size="compact-xs" variant="subtle" color="gray" aria-label={`Withdraw ${one.name}`} onClick={() => void withdraw(one).catch(tellFailure)}>
                           Withdraw
                         </Button>
                       )}

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import uuid
+from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, BackgroundTasks, Query
 
+from server.accounts.service import CurrentAccount
+from server.annotations.guards import GuardsDep, check_read, find_hidden
 from server.annotations.routes import CameraPath, FramePath, get_annotated_sequence
 from server.annotations.schemas import Hand
 from server.annotations.service import check_place, check_points
@@ -35,18 +38,22 @@ def list_suggestions(
     frame: FramePath,
     database: DatabaseDep,
     shelf: ShelfDep,
+    account: CurrentAccount,
+    guards: GuardsDep,
     later: BackgroundTasks,
     track_id: TrackQuery = None,
 ) -> Page[Suggestion]:
-    """The hands of an image as a track has them; empty where the track was lost, or where there is none."""
+    """The hands of an image as a track has them; empty where the track was lost, where there is none, or where one marks blindly."""
     with database.reading() as session:
         sequence = get_annotated_sequence(sequence_id, session)
         place = check_place(sequence, camera, frame, "right")
         recorded = service.Recorded.of(sequence)
         chosen = service.choose_track(session, sequence_id, track_id)
+        hidden = find_hidden(guards, session, account, sequence_id)
     later.add_task(service.warm_up, shelf, recorded, place)
     items = [] if chosen is None else service.suggest_from_track(shelf, recorded, chosen, place)
-    return Page(items=items, next_cursor=None)
+    blind = [item for item in items if any(replace(place, hand=item.hand) in places for places in hidden)]
+    return Page(items=[item for item in items if item not in blind], next_cursor=None)
 
 
 @router.post("/{hand}/fit")
@@ -58,6 +65,8 @@ def fit_suggestion(
     body: FitRequest,
     database: DatabaseDep,
     shelf: ShelfDep,
+    account: CurrentAccount,
+    guards: GuardsDep,
 ) -> Suggestion:
     """A hand model fitted to the joints placed so far (at least 4), and to the depth image where there is one.
 
@@ -66,6 +75,7 @@ def fit_suggestion(
     with database.reading() as session:
         sequence = get_annotated_sequence(sequence_id, session)
         place = check_place(sequence, camera, frame, hand)
+        check_read(guards, session, account, place)
         points = check_points(sequence, place, body.points)
         recorded = service.Recorded.of(sequence)
         chosen = service.choose_track(session, sequence_id, None)

@@ -59,6 +59,19 @@ def test_nobody_sees_the_others_joints_or_the_shared_ones_while_marking(project,
     assert list_frames(ann, project.sequence) == [2, 3, 9]
 
 
+def test_machines_do_not_suggest_to_who_marks_blindly(lead, ann, bob, tracked) -> None:
+    project = lead.make("/projects", name="Tracked")
+    sequence = str(tracked.sequence_id)
+    lead.send("PUT", f"/projects/{project['id']}/sequences/{sequence}")
+    body = {"name": "Blind", "sequence_id": sequence, "frames": [2], "cameras": ["cam0"], "hands": ["right"]}
+    lead.make(f"/projects/{project['id']}/replica-sets", **body, account_ids=[ann.id, bob.id])
+    assert len(lead.get(f"/sequences/{sequence}/suggestions/cam0/2")["items"]) == 1
+    assert ann.get(f"/sequences/{sequence}/suggestions/cam0/2")["items"] == []
+    assert len(ann.get(f"/sequences/{sequence}/suggestions/cam0/3")["items"]) == 1
+    fit = {"points": [[100 + 5 * joint, 100, 2] for joint in range(21)]}
+    assert ann.send("POST", f"/sequences/{sequence}/suggestions/cam0/2/right/fit", fit).status_code == 403
+
+
 def test_replicas_hold_their_places_only_and_lock_like_other_work(project, ann, bob) -> None:
     made = project.replicate([ann, bob], [2, 5])
     mine = assignments_of(ann, made)

@@ -32,16 +32,11 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
   try {
     if (save.points === null) {
       if (save.base === null) return { kind: "saved", revision: null };
-      await requestWithHeaders("DELETE", path, { headers, whenOut: "fail", query: { operation_id: save.operationId } });
+      await requestWithHeaders("DELETE", path, { headers, whenOut: "fail", query: { operation_id: save.operationId, replica } });
       return { kind: "saved", revision: null };
     }
     const body = { points: save.points, operation_id: save.operationId };
-    const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers, whenOut: "fail" });
-      await requestWithHeaders("DELETE", path, { headers, query: { operation_id: save.operationId, replica } });
-      return { kind: "saved", revision: null };
-    }
-    const body = { points: save.points, operation_id: save.operationId };
-    const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers, query: { replica } });
+    const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers, whenOut: "fail", query: { replica } });
     return { kind: "saved", revision: revisionOf(answer.headers) ?? answer.data.revision };
   } catch (failure) {
     if (!(failure instanceof ApiError) || failure.isOffline) return { kind: "unreachable" };

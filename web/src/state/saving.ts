@@ -1,5 +1,4 @@
-/** The save queues of this browser's person, one for each recording; they outlive the pages and a reload. */
-/** The save queues of this browser, one for each recording and blind replica; they outlive the pages and a reload. */
+/** The save queues of this browser's person, one for each recording and blind replica; they outlive the pages and a reload. */
 
 import { sendAnnotation } from "../api/annotations";
 import { createJournal, findWaiting } from "./journal";
@@ -14,11 +13,9 @@ export const scopeOf = (recording: string, replica?: string | null): string => (
 export function queueOf(scope: string): SaveQueue {
   let queue = queues.get(scope);
   if (!queue) {
-    const journal = createJournal(window.localStorage, accountId(), recording);
-    queue = createSaveQueue((key, save) => sendAnnotation(recording, key, save), journal);
-    queues.set(recording, queue);
     const [recording = "", replica] = scope.split("~");
-    queue = createSaveQueue((key, save) => sendAnnotation(recording, key, save, replica), createJournal(window.localStorage, scope));
+    const journal = createJournal(window.localStorage, accountId(), scope);
+    queue = createSaveQueue((key, save) => sendAnnotation(recording, key, save, replica), journal);
     queues.set(scope, queue);
   }
   return queue;
@@ -29,12 +26,6 @@ export const flushSaving = (): void => queues.forEach((queue) => queue.flush());
 
 /** Send what an earlier visit of this person could not; called once, when it is known who it is. */
 export function resumeSaving(): void {
-  findWaiting(window.localStorage, accountId()).forEach((recording) => queueOf(recording).flush());
-  const scopes = new Set<string>();
-  for (let index = 0; index < window.localStorage.length; index += 1) {
-    const match = /^handloom\/unsaved\/([^/]+)\//.exec(window.localStorage.key(index) ?? "");
-    if (match?.[1]) scopes.add(match[1]);
-  }
-  scopes.forEach((scope) => queueOf(scope).flush());
+  findWaiting(window.localStorage, accountId()).forEach((scope) => queueOf(scope).flush());
   window.addEventListener("online", flushSaving);
 }

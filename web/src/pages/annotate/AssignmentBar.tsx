@@ -51,14 +51,14 @@ export function AssignmentBar() {
   const mayReturn = mayReview && (assignment?.state === "submitted" || assignment?.state === "accepted");
   const mayTalk = isMine || hasRole(me, "reviewer");
 
-  const send = (verb: string, done: string, body?: unknown): void => {
+  /** What came of it is seen in the bar. */
+  const send = (verb: string, body?: unknown): void => {
     if (!assignment) return;
     const sent = { method: "POST", path: `/assignments/${assignment.id}/${verb}`, ...(body === undefined ? {} : { body }) } as const;
     change.mutate(verb === "comments" ? sent : { ...sent, revision: assignment.revision }, {
       onSuccess: () => {
         setWriting(null);
         setSure(false);
-        notifications.show({ message: done });
       },
       onError: (error) => notifications.show({ color: "red", title: "That was not done", message: error.message }),
     });
@@ -67,7 +67,7 @@ export function AssignmentBar() {
     if (!progress) return;
     if (saving.waiting > 0 || saving.conflicts.size > 0) notifications.show({ color: "yellow", message: "Something is not saved yet. Submit when the status line says saved." });
     else if (progress.next !== null && !isSure) setSure(true);
-    else send("submit", "Submitted for review.");
+    else send("submit");
   };
   const goNext = (): void => {
     if (progress?.next !== null && progress !== undefined) act(goToFrame, progress.next);
@@ -75,7 +75,7 @@ export function AssignmentBar() {
   useActions({
     ...(progress && progress.next !== null ? { "assignment.next": goNext } : {}),
     ...(maySubmit ? { "assignment.submit": submit } : {}),
-    ...(mayAccept ? { "assignment.accept": () => send("accept", "Accepted: these frames are locked.") } : {}),
+    ...(mayAccept ? { "assignment.accept": () => send("accept") } : {}),
     ...(mayReturn ? { "assignment.return": () => setWriting("return") } : {}),
     ...(assignment && mayTalk ? { "assignment.comment": () => setWriting("comment") } : {}),
   });
@@ -120,8 +120,8 @@ export function AssignmentBar() {
           onCancel={() => setWriting(null)}
           onSend={(text) =>
             writing === "return"
-              ? send("return", `Returned to ${assignment.account}.`, { text })
-              : send("comments", "Comment left.", { text, camera: state.camera, frame: state.frame, hand: state.hand, joint: state.joint })
+              ? send("return", { text })
+              : send("comments", { text, camera: state.camera, frame: state.frame, hand: state.hand, joint: state.joint })
           }
           // To return work needs no words of its own where comments say what is to be changed.
           mayBeEmpty={writing === "return" && assignment.open_comments > 0}
@@ -154,7 +154,7 @@ export function AssignmentBar() {
           )}
           {maySubmit && (
             <Tooltip label={hint("Hand the work in; it is locked until its review", "assignment.submit")}>
-              <Button size="compact-xs" loading={change.isPending} onClick={submit}>
+              <Button size="compact-xs" variant={isMine ? "filled" : "default"} loading={change.isPending} onClick={submit}>
                 {isSure ? "Submit nevertheless" : "Submit"}
               </Button>
             </Tooltip>
@@ -168,7 +168,7 @@ export function AssignmentBar() {
           )}
           {mayAccept && (
             <Tooltip label={hint("Find it good; it is locked from then on", "assignment.accept")}>
-              <Button size="compact-xs" loading={change.isPending} onClick={() => send("accept", "Accepted: these frames are locked.")}>
+              <Button size="compact-xs" loading={change.isPending} onClick={() => send("accept")}>
                 Accept
               </Button>
             </Tooltip>

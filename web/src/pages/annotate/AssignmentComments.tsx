@@ -8,7 +8,7 @@ import classes from "./AssignmentBar.module.css";
 import { useAssignmentHere } from "./useAssignmentHere";
 
 const placeOf = (comment: Comment): string =>
-  [comment.frame !== null && `frame ${comment.frame}`, comment.camera, comment.hand, comment.joint !== null && jointLabel(comment.joint)].filter(Boolean).join(", ");
+  [comment.frame !== null && `frame ${comment.frame}`, comment.hand, comment.joint !== null && jointLabel(comment.joint)].filter(Boolean).join(", ");
 
 /** What annotator and reviewers say to each other about this work; a click goes to the place. */
 export function AssignmentComments() {

@@ -1,6 +1,7 @@
 import { ActionIcon, Popover, Select, Stack, Switch, Text, Tooltip } from "@mantine/core";
 import { IconSparkles } from "@tabler/icons-react";
 import { useState } from "react";
+import { useSearchParams } from "react-router";
 import { acceptHand, acceptJoint } from "../../actions/annotate/accept";
 import { useTracks } from "../../api/tracks";
 import { SOURCE_NAMES, SOURCES, type Source } from "../../model/suggestion";
@@ -17,8 +18,14 @@ const ABOUT: Record<Source, string> = {
   track: "the fitted hand of a tracking run",
 };
 
-/** Asks the machines, answers the keys that accept, and lets one choose who may suggest. */
+/** A blind replica is marked without suggestions: people who accept the same ones would seem to agree. */
 export function SuggestTool() {
+  const [address] = useSearchParams();
+  return address.has("replica") ? null : <Suggest />;
+}
+
+/** Asks the machines, answers the keys that accept, and lets one choose who may suggest. */
+function Suggest() {
   const { recording, session, act } = useAnnotating();
   const suggestions = useSuggestions(session);
   const tracks = useTracks(recording.id).data ?? [];

@@ -43,7 +43,7 @@ def list_suggestions(
     later: BackgroundTasks,
     track_id: TrackQuery = None,
 ) -> Page[Suggestion]:
-    """The hands of an image as a track has them; empty where the track was lost, where there is none, or where one marks blindly."""
+    """The hands of an image as a track has them; empty where it was lost, where there is none, or one marks blindly."""
     with database.reading() as session:
         sequence = get_annotated_sequence(sequence_id, session)
         place = check_place(sequence, camera, frame, "right")

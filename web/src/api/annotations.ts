@@ -52,17 +52,17 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
 }
 
 /** Every revision of a hand, newest first; empty when nobody ever marked it. */
-export const useAnnotationHistory = (recording: string, key: string, savedAt: number | null) =>
+export const useAnnotationHistory = (recording: string, key: string, savedAt: number | null, replica: string | null) =>
   useQuery({
-    queryKey: [...annotationKeys.of(recording), "history", key, savedAt],
+    queryKey: [...annotationKeys.of(recording), "history", key, savedAt, replica],
     queryFn: async ({ signal }): Promise<AnnotationRevision[]> => {
       const { camera, frame, hand } = parseKey(key);
       try {
-        return (await request<Page<AnnotationRevision>>("GET", `/sequences/${recording}/annotations/${encodeURIComponent(camera)}/${frame}/${hand}/history`, { signal })).items;
+        return (await request<Page<AnnotationRevision>>("GET", `/sequences/${recording}/annotations/${encodeURIComponent(camera)}/${frame}/${hand}/history`, { signal, query: { replica } })).items;
       } catch (failure) {
         if (failure instanceof ApiError && failure.status === 404) return [];
         throw failure;
       }
     },
-    placeholderData: (before, query) => (query?.queryKey[3] === key ? before : undefined),
+    placeholderData: (before, query) => (query?.queryKey[3] === key && query.queryKey[5] === replica ? before : undefined),
   });

@@ -1,5 +1,6 @@
 import { Button, ScrollArea, Skeleton, Text } from "@mantine/core";
 import { useEffect, useMemo } from "react";
+import { useSearchParams } from "react-router";
 import { restorePose } from "../../actions/annotate/restore";
 import { useAnnotationHistory } from "../../api/annotations";
 import { formatAgo, formatCount } from "../../model/format";
@@ -21,8 +22,9 @@ function describeChange({ isDeleted, changed, sameAs, pose }: HistoryEntry): str
 /** Every version of the active hand: look at one as a ghost, make it the newest again. */
 export function HistoryPanel() {
   const { recording, state, saving, preview, setPreview, act, lock } = useAnnotating();
+  const [address] = useSearchParams();
   const key = keyText(activeKey(state));
-  const { data, error } = useAnnotationHistory(recording.id, key, saving.lastSavedAt);
+  const { data, error } = useAnnotationHistory(recording.id, key, saving.lastSavedAt, address.get("replica"));
   const entries = useMemo(() => readHistory(data ?? []), [data]);
   useEffect(() => () => setPreview(null), [setPreview]);
 

@@ -39,8 +39,8 @@ export const LAYERS: readonly ComponentType<LayerProps>[] = [EpipolarLayer, Sugg
 export const PANELS: readonly Panel[] = [
   { id: "joints", label: "Joints", Component: JointsPanel },
   { id: "history", label: "History", Component: HistoryPanel },
+  { id: "comments", label: "Comments", Component: AssignmentComments },
 ];
-export const PANELS: readonly Panel[] = [{ id: "joints", label: "Joints", Component: JointsPanel }, { id: "comments", label: "Comments", Component: AssignmentComments }];
 
 /** In the picture's upper right corner, one below the other; each draws nothing when it has nothing to say. */
 export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, PictureFailure];

@@ -1693,7 +1693,7 @@ export interface paths {
         };
         /**
          * List Suggestions
-         * @description The hands of an image as a track has them; empty where the track was lost, where there is none, or where one marks blindly.
+         * @description The hands of an image as a track has them; empty where it was lost, where there is none, or one marks blindly.
          */
         get: operations["list_suggestions"];
         put?: never;

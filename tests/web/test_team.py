@@ -215,7 +215,9 @@ def test_blind_replicas_are_marked_apart_and_compared(join, open_as, recording, 
     picture.wait()
     expect(bar).to_contain_text("2 of 3 done")
     assert lead.send("GET", f"/sequences/{recording['id']}/annotations")["items"][0]["points"][0] == [200, 200, 2]
+    expect(bar.get_by_role("button", name="Submit")).to_be_visible()
     page.keyboard.press("Control+Enter")
+    expect(bar).to_contain_text("1 frame has no joints yet")
     page.keyboard.press("Control+Enter")
     expect(bar.get_by_test_id("assignment-state")).to_have_text("in review")
 
@@ -224,7 +226,7 @@ def test_blind_replicas_are_marked_apart_and_compared(join, open_as, recording, 
         report.goto(f"/projects/{made['id']}")
         expect(report.get_by_role("region", name="Blind replicas")).to_contain_text("3 of 3")
         screenshots.take(report, f"team-project-{width}-{scheme}")
-        report.get_by_role("link", name="Agreement").click()
+        report.get_by_role("link", name="Agreement", exact=True).click()
         expect(report.get_by_role("region", name="Annotators")).to_contain_text("Bob")
         assert not report.evaluate("document.scrollingElement.scrollWidth > innerWidth")
         screenshots.take(report, f"team-agreement-{width}-{scheme}")

@@ -66,6 +66,8 @@ const framePath = (recording: Recording, camera: string, frame: number): string 
 
 /** One immutable address for each picture. */
 export const colorUrl = (recording: Recording, camera: string, frame: number): string => `${framePath(recording, camera, frame)}/color.jpg`;
+/** Depth in colours, for cameras without others. */
+export const depthPictureUrl = (recording: Recording, camera: string, frame: number): string => `${framePath(recording, camera, frame)}/depth.png`;
 export const depthUrl = (recording: Recording, camera: string, frame: number): string => `${framePath(recording, camera, frame)}/depth.bin`;
 export const thumbnailUrl = (recording: Recording, camera: string, frame: number): string =>
   `${framePath(recording, camera, frame)}/thumbnail.jpg`;

@@ -30,6 +30,8 @@ export type FrameEnergy = Schemas["FrameEnergy"];
 export type TrackJoints = Schemas["TrackJoints"];
 /** A machine's proposal as the server gives it; `model/suggestion.ts` has it as the browser keeps it. */
 export type WireSuggestion = Schemas["Suggestion"];
+export type Flag = Schemas["FlagOut"];
+export type FlagPage = Schemas["FlagPage"];
 export type ViewerSession = Schemas["ViewerSessionOut"];
 
 export type Me = Schemas["MyAccount"];

@@ -1,7 +1,7 @@
 import { ActionIcon, Button, Code, Group, Menu, SimpleGrid, Stack, Text, Title, Tooltip } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { notifications } from "@mantine/notifications";
-import { IconChartBar, IconDots, IconDownload, IconFileReport, IconPencil, IconPlayerPlay, IconTransfer, IconTrash } from "@tabler/icons-react";
+import { IconChartBar, IconDots, IconDownload, IconFileReport, IconFlag, IconPencil, IconPlayerPlay, IconTransfer, IconTrash } from "@tabler/icons-react";
 import { useMemo } from "react";
 import { Link, useNavigate, useParams } from "react-router";
 import { useAnnotations } from "../api/annotations";
@@ -171,6 +171,9 @@ export function RecordingPage() {
               <Text size="sm" className="quiet">
                 {recording.annotated_frames} of {formatCount(recording.frame_count, "frame")}; click a frame to annotate it
               </Text>
+              <Button size="xs" variant="subtle" component={Link} to={`/recordings/${recording.id}/check`} leftSection={<IconFlag size={16} aria-hidden />}>
+                Label check
+              </Button>
               <Button size="xs" variant="subtle" component={Link} to={`/recordings/${recording.id}/labels`} leftSection={<IconTransfer size={16} aria-hidden />}>
                 Snapshots, export, import
               </Button>

@@ -22,6 +22,7 @@ const AuditPage = lazy(() => import("./account/AuditPage"));
 const AgreementPage = lazy(() => import("./projects/AgreementPage"));
 const ProjectPage = lazy(() => import("./projects/ProjectPage"));
 const ProjectsPage = lazy(() => import("./projects/ProjectsPage"));
+const LabelCheckPage = lazy(() => import("./quality/LabelCheckPage"));
 const TrackPage = lazy(() => import("./TrackPage"));
 
 /** Addresses hold the state of a page, so that a link shows a colleague the same thing. */
@@ -38,6 +39,7 @@ export const router = createBrowserRouter([
           { path: "recordings/:recordingId", element: <RecordingPage /> },
           { path: "recordings/:recordingId/labels", element: <LabelsPage /> },
           { path: "recordings/:recordingId/annotate", element: <AnnotatePage /> },
+          { path: "recordings/:recordingId/check", element: <LabelCheckPage /> },
           { path: "annotate", element: <AnnotateChooser /> },
           { path: "imports/new", element: <NewImportPage /> },
           { path: "imports/:importId", element: <ImportPage /> },

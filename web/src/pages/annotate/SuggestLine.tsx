@@ -1,6 +1,7 @@
 import { Button, Text, Tooltip } from "@mantine/core";
 import { formatCount } from "../../model/format";
-import { keyText } from "../../model/pose";
+import { JOINT_COUNT } from "../../model/joints";
+import { decidedCount, keyText } from "../../model/pose";
 import { SOURCES } from "../../model/suggestion";
 import { activeKey } from "../../state/annotator";
 import { useHint, useKeyOf } from "../../state/keys";
@@ -11,7 +12,7 @@ import { useSuggestions } from "./useSession";
 
 /** Who suggests what for the active hand, and the button that takes it. */
 export function SuggestLine() {
-  const { session, state, run } = useAnnotating();
+  const { session, state, pose, run } = useAnnotating();
   const suggestions = useSuggestions(session);
   const hint = useHint();
   const keyOf = useKeyOf();
@@ -28,7 +29,7 @@ export function SuggestLine() {
             <span className={classes.mark} aria-hidden /> Suggested by {labels.join(", ")}
           </>
         ) : (
-          <span className="quiet">Nothing suggested for this hand</span>
+          <span className="quiet">{decidedCount(pose) === JOINT_COUNT ? "Every joint of this hand is decided" : "Nothing suggested for this hand yet"}</span>
         )}
       </Text>
       {count > 0 && (

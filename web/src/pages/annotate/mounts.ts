@@ -12,6 +12,7 @@ import { AssignmentComments } from "./AssignmentComments";
 import { CamerasTool, CameraTools } from "./CamerasTool";
 import { ConflictCards } from "./ConflictCards";
 import { EpipolarLayer } from "./EpipolarLayer";
+import { FlagCard, useFlagMarks } from "./FlagCard";
 import { HandsLayer } from "./HandsLayer";
 import { HistoryPanel } from "./HistoryPanel";
 import { JointsPanel } from "./JointsPanel";
@@ -43,7 +44,7 @@ export const PANELS: readonly Panel[] = [
 ];
 
 /** In the picture's upper right corner, one below the other; each draws nothing when it has nothing to say. */
-export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, PictureFailure];
+export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, PictureFailure, FlagCard];
 
 /** Across the page, below the frame bar. */
 export const BARS: readonly ComponentType[] = [AssignmentBar];
@@ -55,4 +56,4 @@ export const FRAME_TOOLS: readonly ComponentType[] = [CamerasTool, SuggestTool];
 export const TOOLS: readonly ComponentType[] = [CameraTools];
 
 /** Hooks that say which frames the timeline has to mark. */
-export const MARKS: readonly (() => FrameMarks)[] = [];
+export const MARKS: readonly (() => FrameMarks)[] = [useFlagMarks];

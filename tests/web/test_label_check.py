@@ -1,0 +1,89 @@
+"""The label check in a real browser: a mistake is found, walked to, mended or found right."""
+
+from __future__ import annotations
+
+import re
+import uuid
+
+import numpy as np
+import pytest
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(180)]
+
+
+@pytest.fixture
+def labelled(studio, recording, synthesized):
+    """Five labelled frames, in one of which the index tip is off."""
+    points = np.array([[x, y, 2.0] for x, y in synthesized.joints])
+    for frame in range(5):
+        here = points.copy()
+        if frame == 2:
+            here[8, :2] += (30, 60)
+        body = {"points": [[x, y, int(v)] for x, y, v in here.tolist()], "operation_id": str(uuid.uuid4())}
+        path = f"/sequences/{recording['id']}/annotations/cam0/{frame}/right"
+        studio.send("PUT", path, json=body, headers={"If-None-Match": "*"}).raise_for_status()
+    return recording
+
+
+def test_the_worst_label_comes_first_and_can_be_found_right(studio, labelled, open_page, screenshots):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{labelled['id']}/check")
+    items = page.get_by_role("list", name="Flagged labels").get_by_role("listitem")
+    expect(items.first).to_contain_text("frame 2")
+    expect(items.first).to_contain_text("index tip")
+    page.wait_for_load_state("networkidle")
+    screenshots.take(page, "42-label-check")
+    light = open_page(1920, 1080, "light")
+    light.goto(f"/recordings/{labelled['id']}/check")
+    light.get_by_role("list", name="Flagged labels").wait_for()
+    light.wait_for_load_state("networkidle")
+    screenshots.take(light, "43-label-check-light")
+
+    before = items.count()
+    items.first.get_by_role("button", name="It is right").click()
+    expect(items).to_have_count(before - 1)
+    page.get_by_text(re.compile(r"^Found right \(1\)")).click()
+    expect(page).to_have_url(re.compile("show=right"))
+    expect(items).to_have_count(1)
+    items.first.get_by_role("button", name="Bring back").click()
+    expect(page.get_by_role("heading", name="Nothing was put away")).to_be_visible()
+
+
+def test_keys_walk_to_the_mistake_and_mending_it_clears_the_flag(
+    studio, labelled, synthesized, open_page, picture_of, screenshots
+):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{labelled['id']}/annotate?camera=cam0&frame=0&hand=right")
+    picture = picture_of(page)
+    picture.wait()
+    card = page.get_by_role("group", name=re.compile("^Label check: "))
+    page.wait_for_timeout(500)
+    page.wait_for_load_state("networkidle")
+    page.keyboard.press("n")
+    expect(page.get_by_label("Frame", exact=True)).to_have_value("2")
+    expect(card.first).to_contain_text("index tip")
+    picture.wait()
+    screenshots.take(page, "44-flag-card")
+    x, y = synthesized.joints[8]
+    picture.drag((x + 30, y + 60), (x, y))
+    picture.wait_until_saved()
+    expect(card).to_have_count(0)
+    assert all(f["frame"] != 2 for f in studio.get(f"/sequences/{labelled['id']}/flags")["items"])
+
+
+def test_a_flag_is_put_away_by_a_key(studio, labelled, open_page, picture_of):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{labelled['id']}/annotate?camera=cam0&frame=2&hand=right")
+    picture_of(page).wait()
+    card = page.get_by_role("group", name=re.compile("^Label check: "))
+    expect(card.first).to_be_visible()
+    count = card.count()
+    page.keyboard.press("Shift+I")
+    expect(card).to_have_count(count - 1)
+    assert studio.get(f"/sequences/{labelled['id']}/flags")["dismissed"] == 1

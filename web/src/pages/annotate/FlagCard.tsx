@@ -1,0 +1,79 @@
+import { Button, Group, Text } from "@mantine/core";
+import { IconFlag } from "@tabler/icons-react";
+import { useQueryClient } from "@tanstack/react-query";
+import { useEffect, useMemo } from "react";
+import { goToFrame, selectCamera, selectJoint, switchHand } from "../../actions/annotate/select";
+import { flagKeys, useDismissal, useFlags } from "../../api/flags";
+import type { Flag } from "../../api/types";
+import { KIND_NAMES, nextFlag } from "../../model/flag";
+import type { FrameMarks } from "../../model/frameMarks";
+import { useKeyOf } from "../../state/keys";
+import { useActions, useAnnotating } from "./annotating";
+import classes from "./Annotator.module.css";
+
+/** Labels are checked anew this long after they were saved. */
+const CHECK_AFTER_MS = 1500;
+
+/** Why the label in view looks wrong, and the keys that walk from one such label to the next. */
+export function FlagCard() {
+  const { recording, session, state, saving, act } = useAnnotating();
+  const client = useQueryClient();
+  const flags = useFlags(recording.id).data?.items ?? [];
+  const dismissal = useDismissal(recording.id);
+  const keyOf = useKeyOf();
+  const isSaved = saving.waiting === 0 && !saving.isSending;
+
+  useEffect(() => {
+    if (!isSaved) return;
+    const timer = setTimeout(() => void client.invalidateQueries({ queryKey: flagKeys.of(recording.id) }), CHECK_AFTER_MS);
+    return () => clearTimeout(timer);
+  }, [client, isSaved, recording.id]);
+
+  const here = flags.filter((flag) => flag.frame === state.frame && flag.camera === state.camera && flag.hand === state.hand);
+  const first = here[0];
+  const walk = (direction: 1 | -1) => (): void => {
+    const now = session.store.get();
+    const next = nextFlag(flags, now, direction);
+    if (!next) return;
+    act(selectCamera, next.camera);
+    act(goToFrame, next.frame);
+    if (next.hand !== now.hand) act(switchHand, undefined);
+    if (next.joints[0] !== undefined) act(selectJoint, next.joints[0]);
+  };
+  const putAway = (flag: Flag | undefined): void => flag && dismissal.mutate({ flag, isRight: true });
+  useActions({ "flag.next": walk(1), "flag.previous": walk(-1), "flag.dismiss": () => putAway(first) });
+
+  return here.map((flag) => (
+    <div key={flag.kind} className={`card ${classes.notice}`} role="group" aria-label={`Label check: ${KIND_NAMES[flag.kind]}`}>
+      <Group gap={8} wrap="nowrap" mb={4}>
+        <IconFlag size={16} color="var(--warn-text)" aria-hidden />
+        <Text size="sm" fw={600}>
+          {KIND_NAMES[flag.kind]}
+        </Text>
+      </Group>
+      <Text size="xs" mb={8}>
+        {flag.reason}
+      </Text>
+      <Group gap={8}>
+        <Button size="compact-xs" variant="default" onClick={() => putAway(flag)} disabled={dismissal.isPending || !isSaved}>
+          It is right{flag === first && keyOf("flag.dismiss") ? ` (${keyOf("flag.dismiss")})` : ""}
+        </Button>
+        <Button size="compact-xs" variant="subtle" onClick={walk(1)}>
+          Next ({keyOf("flag.next")})
+        </Button>
+      </Group>
+      {dismissal.error && (
+        <Text size="xs" mt={4} c="var(--bad-text)" role="alert">
+          {dismissal.error.message}
+        </Text>
+      )}
+    </div>
+  ));
+}
+
+/** Flagged frames of this camera, for the timeline. */
+export function useFlagMarks(): FrameMarks {
+  const { recording, state } = useAnnotating();
+  const flags = useFlags(recording.id).data?.items;
+  return useMemo(() => ({ flagged: new Set((flags ?? []).filter((flag) => flag.camera === state.camera).map((flag) => flag.frame)) }), [flags, state.camera]);
+}

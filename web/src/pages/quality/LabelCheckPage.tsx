@@ -1,0 +1,156 @@
+import { Button, Chip, Group, SegmentedControl, Skeleton, Text, Title } from "@mantine/core";
+import { IconChecks, IconPencil } from "@tabler/icons-react";
+import { Link, useParams, useSearchParams } from "react-router";
+import { useDismissal, useFlagPages } from "../../api/flags";
+import { useRecording } from "../../api/recordings";
+import { KIND_NAMES, KINDS } from "../../model/flag";
+import { formatCount } from "../../model/format";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { HandBadge } from "../parts/HandBadge";
+import { useTitle } from "../parts/useTitle";
+import { FlagPicture } from "./FlagPicture";
+import classes from "./LabelCheck.module.css";
+
+/** Labels of a recording that look wrong, the worst first. */
+export default function LabelCheckPage() {
+  const { recordingId = "" } = useParams();
+  const [address, setAddress] = useSearchParams();
+  const kind = KINDS.find((one) => one === address.get("kind")) ?? null;
+  const isDismissed = address.get("show") === "right";
+  const recording = useRecording(recordingId);
+  const pages = useFlagPages(recordingId, kind, isDismissed);
+  const dismissal = useDismissal(recordingId);
+  useTitle("Label check");
+
+  const choose = (change: Record<string, string | null>): void => {
+    const next = new URLSearchParams(address);
+    for (const [name, value] of Object.entries(change)) {
+      if (value === null) next.delete(name);
+      else next.set(name, value);
+    }
+    setAddress(next, { replace: true });
+  };
+
+  const error = recording.error ?? pages.error ?? null;
+  if (error && (!recording.data || !pages.data)) {
+    return <Failure what="The label check could not be loaded" error={error} safe="Labels are as they were." onRetry={() => void Promise.all([recording.refetch(), pages.refetch()])} />;
+  }
+  const flags = pages.data?.pages.flatMap((page) => page.items) ?? [];
+  const first = pages.data?.pages[0];
+  const open = first ? Object.values(first.counts).reduce((sum, count) => sum + (count ?? 0), 0) : 0;
+  const shot = recording.data;
+  return (
+    <div className="page">
+      <Group justify="space-between" mb="sm">
+        <div>
+          <Text size="sm" className="quiet">
+            <Link to={`/recordings/${recordingId}`} className={classes.back}>
+              {shot?.name ?? "Recording"}
+            </Link>
+          </Text>
+          <Title order={1}>Label check</Title>
+        </div>
+        <SegmentedControl
+          size="xs"
+          aria-label="Which flags"
+          value={isDismissed ? "right" : "open"}
+          onChange={(value) => choose({ show: value === "right" ? "right" : null })}
+          data={[
+            { value: "open", label: first ? `To look at (${open})` : "To look at" },
+            { value: "right", label: first ? `Found right (${first.dismissed})` : "Found right" },
+          ]}
+        />
+      </Group>
+      <Chip.Group value={kind ?? ""} onChange={(value) => choose({ kind: String(value) || null })}>
+        <Group gap={8} mb="md">
+          <Chip size="xs" value="">
+            All kinds
+          </Chip>
+          {KINDS.filter((one) => one === kind || isDismissed || (first?.counts[one] ?? 0) > 0).map((one) => (
+            <Chip key={one} size="xs" value={one}>
+              {KIND_NAMES[one]}
+              {isDismissed ? "" : ` ${first?.counts[one] ?? 0}`}
+            </Chip>
+          ))}
+        </Group>
+      </Chip.Group>
+      {dismissal.error && (
+        <Text size="sm" c="var(--bad-text)" mb="sm" role="alert">
+          {dismissal.error.message}
+        </Text>
+      )}
+      {(!first || !shot) && (
+        <div className={classes.grid} role="status" aria-label="Checking the labels">
+          {Array.from({ length: 8 }, (_, index) => (
+            <Skeleton key={index} height={292} radius="lg" />
+          ))}
+        </div>
+      )}
+      {first && shot && flags.length === 0 && (
+        <EmptyState
+          icon={<IconChecks size={48} stroke={1.25} />}
+          title={isDismissed ? "Nothing was put away" : "No label looks wrong"}
+          action={
+            <Button variant="default" component={Link} to={`/recordings/${recordingId}/annotate`}>
+              Annotate
+            </Button>
+          }
+        >
+          {isDismissed
+            ? "Flags that somebody looked at and found right are kept here, and can be brought back."
+            : "Every label is checked whenever it changes: bone lengths, depth, jumps, order of the fingers, left and right, other cameras and the best track. What looks wrong appears here, the worst first."}
+        </EmptyState>
+      )}
+      {shot && flags.length > 0 && (
+        <ul className={classes.grid} aria-label="Flagged labels">
+          {flags.map((flag) => {
+            const at = new URLSearchParams({ camera: flag.camera, frame: String(flag.frame), hand: flag.hand });
+            return (
+              <li key={`${flag.kind}|${flag.camera}|${flag.frame}|${flag.hand}`} className={`card ${classes.item}`}>
+                <Link to={`/recordings/${recordingId}/annotate?${at}`} className={classes.look} aria-label={`Annotate frame ${flag.frame}, ${flag.hand} hand`}>
+                  <FlagPicture recording={shot} flag={flag} />
+                </Link>
+                <div className={classes.text}>
+                  <Group justify="space-between" wrap="nowrap" gap={8}>
+                    <Text size="sm" fw={600}>
+                      {KIND_NAMES[flag.kind]}
+                    </Text>
+                    <Text size="xs" className="quiet" title="1 is where a label begins to look wrong">
+                      {flag.score.toFixed(1)}
+                    </Text>
+                  </Group>
+                  <Group gap={8}>
+                    <HandBadge hand={flag.hand} />
+                    <Text size="xs" className="quiet">
+                      frame {flag.frame}
+                      {shot.cameras.length > 1 ? `, ${flag.camera}` : ""}
+                    </Text>
+                  </Group>
+                  <Text size="xs" className={classes.reason}>
+                    {flag.reason}
+                  </Text>
+                  <Group gap={8} mt="auto">
+                    <Button size="compact-xs" variant="default" component={Link} to={`/recordings/${recordingId}/annotate?${at}`} leftSection={<IconPencil size={14} aria-hidden />}>
+                      Mend
+                    </Button>
+                    <Button size="compact-xs" variant="subtle" disabled={dismissal.isPending} onClick={() => dismissal.mutate({ flag, isRight: !isDismissed })}>
+                      {isDismissed ? "Bring back" : "It is right"}
+                    </Button>
+                  </Group>
+                </div>
+              </li>
+            );
+          })}
+        </ul>
+      )}
+      {pages.hasNextPage && (
+        <Group justify="center" mt="md">
+          <Button variant="default" loading={pages.isFetchingNextPage} onClick={() => void pages.fetchNextPage()}>
+            Show more of {formatCount(open, "flag")}
+          </Button>
+        </Group>
+      )}
+    </div>
+  );
+}

@@ -117,7 +117,7 @@ def get_track_overlay(
 @router.get(
     "/tracks/{track_id}/files/{name}",
     response_class=FileResponse,
-    responses={200: {"content": {"application/octet-stream": {}, "application/json": {}}}} | error_responses(404),
+    responses={200: {"content": {"application/octet-stream": {}}}} | error_responses(404),
 )
 def download_track_file(
     track_id: uuid.UUID, name: Literal["track.npz", "summary.json"], session: SessionDep, storage: StorageDep
@@ -127,8 +127,7 @@ def download_track_file(
     path = storage.folder("tracks", track_id) / name
     if not path.is_file():
         raise NotFoundError(f"The file {name} of this track is gone from the data folder.")
-    media_type = "application/json" if name.endswith(".json") else "application/octet-stream"
-    return FileResponse(path, media_type=media_type, filename=f"{track.name.replace(' ', '_')}-{name}")
+    return FileResponse(path, media_type="application/octet-stream", filename=f"{track.name.replace(' ', '_')}-{name}")
 
 
 @router.get(

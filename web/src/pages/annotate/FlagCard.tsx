@@ -9,6 +9,7 @@ import { KIND_NAMES, nextFlag } from "../../model/flag";
 import type { FrameMarks } from "../../model/frameMarks";
 import { useKeyOf } from "../../state/keys";
 import { useActions, useAnnotating } from "./annotating";
+import { useIsBlind } from "./useIsBlind";
 import classes from "./Annotator.module.css";
 
 /** Labels are checked anew this long after they were saved. */
@@ -18,7 +19,9 @@ const CHECK_AFTER_MS = 1500;
 export function FlagCard() {
   const { recording, session, state, saving, act } = useAnnotating();
   const client = useQueryClient();
-  const flags = useFlags(recording.id).data?.items ?? [];
+  const isBlind = useIsBlind();
+  const found = useFlags(recording.id).data?.items;
+  const flags = isBlind || !found ? [] : found;
   const dismissal = useDismissal(recording.id);
   const keyOf = useKeyOf();
   const isSaved = saving.waiting === 0 && !saving.isSending;
@@ -75,5 +78,6 @@ export function FlagCard() {
 export function useFlagMarks(): FrameMarks {
   const { recording, state } = useAnnotating();
   const flags = useFlags(recording.id).data?.items;
-  return useMemo(() => ({ flagged: new Set((flags ?? []).filter((flag) => flag.camera === state.camera).map((flag) => flag.frame)) }), [flags, state.camera]);
+  const isBlind = useIsBlind();
+  return useMemo(() => ({ flagged: new Set((isBlind ? [] : (flags ?? [])).filter((flag) => flag.camera === state.camera).map((flag) => flag.frame)) }), [flags, isBlind, state.camera]);
 }

@@ -8,6 +8,7 @@ import { SOURCE_NAMES, SOURCES, type Source } from "../../model/suggestion";
 import { useHint } from "../../state/keys";
 import { setHidden } from "../../state/suggestions";
 import { useActions, useAnnotating } from "./annotating";
+import { useIsBlind } from "./useIsBlind";
 import { useSuggestions } from "./useSession";
 import { useFitSuggestion, useTrackSuggestions } from "./useSuggestionSources";
 
@@ -35,8 +36,9 @@ function Suggest() {
   const { hidden } = suggestions;
   const isOn = hidden.size < SOURCES.length;
 
-  useTrackSuggestions(track);
-  const failure = useFitSuggestion(!hidden.has("fit"));
+  const isBlind = useIsBlind();
+  useTrackSuggestions(track, !isBlind);
+  const failure = useFitSuggestion(!isBlind && !hidden.has("fit"));
   const toggle = (): void => setHidden(session.suggestions, isOn ? SOURCES : []);
   useActions({
     "suggestion.joint": () => act(acceptJoint, session.suggestions.get()),

@@ -13,7 +13,7 @@ const FIT_AFTER_MS = 150;
 const REST_MS = 60;
 
 /** Keep the track's hands of this image and of the next one at hand. */
-export function useTrackSuggestions(track: string | undefined): void {
+export function useTrackSuggestions(track: string | undefined, isWanted: boolean): void {
   const { recording, session, state } = useAnnotating();
   const { suggestions } = session;
   const asked = useRef(new Set<string>());
@@ -24,6 +24,7 @@ export function useTrackSuggestions(track: string | undefined): void {
   }, [suggestions, track]);
 
   useEffect(() => {
+    if (!isWanted) return;
     const call = new AbortController();
     const ask = async (): Promise<void> => {
       for (const frame of [state.frame, state.frame + 1]) {
@@ -44,7 +45,7 @@ export function useTrackSuggestions(track: string | undefined): void {
       clearTimeout(timer);
       call.abort();
     };
-  }, [recording.id, suggestions, state.camera, state.frame, state.frameCount, track]);
+  }, [recording.id, suggestions, state.camera, state.frame, state.frameCount, track, isWanted]);
 }
 
 /** Fit a model to the joints placed so far, a moment after each; an answer that is older than the joints is dropped. */

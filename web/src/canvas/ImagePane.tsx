@@ -1,7 +1,7 @@
 import { useElementSize } from "@mantine/hooks";
 import type Konva from "konva";
 import { useEffect, useLayoutEffect, useRef, type ReactNode } from "react";
-import { Image, Layer, Stage } from "react-konva";
+import { Image, Layer, Rect, Stage } from "react-konva";
 import type { Camera } from "../api/types";
 import type { PointerStore } from "../state/pointer";
 import { CursorLayer } from "./CursorLayer";
@@ -41,6 +41,9 @@ interface ImagePaneProps extends PaneGestures {
 
 /** Above this zoom pixels are shown as squares. */
 const SQUARE_PIXELS = 3;
+
+/** Chromium goes on showing what was on a canvas that is cleared and not drawn on again: something, unseen, always is drawn. */
+const KeepAlive = () => <Rect width={1} height={1} fill="#000" opacity={0.01} listening={false} />;
 
 /** One picture with what is drawn on it; zoom, pan and the pointer are handled here, in image pixels for everybody else. */
 export function ImagePane(props: ImagePaneProps) {
@@ -108,8 +111,12 @@ export function ImagePane(props: ImagePaneProps) {
           <Layer ref={imageLayer} imageSmoothingEnabled={shownView.scale < SQUARE_PIXELS} listening={false}>
             {pictures}
           </Layer>
-          <Layer listening={false}>{children(shownView)}</Layer>
+          <Layer listening={false}>
+            <KeepAlive />
+            {children(shownView)}
+          </Layer>
           <CursorLayer pointer={pointer} view={shownView} camera={camera} label={cursorLabel} layers={layers} isMagnified={isMagnified} size={{ width, height }}>
+            <KeepAlive />
             {withCursor?.(shownView)}
           </CursorLayer>
         </Stage>

@@ -6,6 +6,7 @@ import re
 import sqlite3
 import uuid
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -15,6 +16,16 @@ import pytest
 from server.accounts.secrets import hash_secret
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
+
+AXE = Path(__file__).resolve().parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
+
+
+def find_serious_faults(page: Any) -> list[Any]:
+    """What axe finds on the page's own part that keeps people out."""
+    page.evaluate(AXE.read_text())
+    found = page.evaluate("async () => (await axe.run('#main', {resultTypes: ['violations']})).violations")
+    heavy = [one for one in found if one["impact"] in ("serious", "critical")]
+    return [(one["id"], [node["html"][:200] for node in one["nodes"]]) for one in heavy]
 
 
 @dataclass(frozen=True)
@@ -146,10 +157,12 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     page.keyboard.press("Enter")
     expect(review.get_by_test_id("assignment-state")).to_have_text("returned")
     screenshots.take(page, "team-review")
+    assert find_serious_faults(page) == []
 
     work.goto("/projects")
     expect(work.get_by_test_id("work")).to_contain_text("See frame 1.")
     screenshots.take(work, "team-returned")
+    assert find_serious_faults(work) == []
     work.get_by_role("link", name=re.compile("Look through|Go on")).click()
     picture.wait()
     work.get_by_role("tab", name="Comments").click()
@@ -226,10 +239,12 @@ def test_blind_replicas_are_marked_apart_and_compared(join, open_as, recording, 
         report.goto(f"/projects/{made['id']}")
         expect(report.get_by_role("region", name="Blind replicas")).to_contain_text("3 of 3")
         screenshots.take(report, f"team-project-{width}-{scheme}")
+        assert find_serious_faults(report) == []
         report.get_by_role("link", name="Agreement", exact=True).click()
         expect(report.get_by_role("region", name="Annotators")).to_contain_text("Bob")
         assert not report.evaluate("document.scrollingElement.scrollWidth > innerWidth")
         screenshots.take(report, f"team-agreement-{width}-{scheme}")
+        assert find_serious_faults(report) == []
     with report.expect_download() as download:
         report.get_by_role("link", name="HTML").click()
     assert "Agreement, week 1" in download.value.path().read_text()

@@ -70,14 +70,15 @@ export function AssignmentBar() {
     else send("submit");
   };
   const goNext = (): void => {
-    if (progress?.next !== null && progress !== undefined) act(goToFrame, progress.next);
+    if (progress && progress.next !== null) act(goToFrame, progress.next);
   };
+  // Always all of them: the page looks once which keys are answered, and who I am may be known later than that.
   useActions({
-    ...(progress && progress.next !== null ? { "assignment.next": goNext } : {}),
-    ...(maySubmit ? { "assignment.submit": submit } : {}),
-    ...(mayAccept ? { "assignment.accept": () => send("accept") } : {}),
-    ...(mayReturn ? { "assignment.return": () => setWriting("return") } : {}),
-    ...(assignment && mayTalk ? { "assignment.comment": () => setWriting("comment") } : {}),
+    "assignment.next": goNext,
+    "assignment.submit": () => maySubmit && submit(),
+    "assignment.accept": () => mayAccept && send("accept"),
+    "assignment.return": () => mayReturn && setWriting("return"),
+    "assignment.comment": () => assignment && mayTalk && setWriting("comment"),
   });
 
   if (failure) {

@@ -113,7 +113,7 @@ function Bars({ label, last, rows, scale }: { label: string; last: string; rows:
           <tr key={name}>
             <th scope="row">{name}</th>
             <td className={classes.barCell}>
-              <div className={classes.bar} style={{ width: `${(100 * (spread.std_px ?? 0)) / scale}%` }} aria-hidden />
+              {spread.std_px !== null && <div className={classes.bar} style={{ width: `${(100 * spread.std_px) / scale}%` }} aria-hidden />}
             </td>
             <td>{px(spread.std_px)}</td>
             <td>{spread.samples}</td>

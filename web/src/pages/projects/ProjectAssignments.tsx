@@ -57,7 +57,7 @@ function PersonWork({ person, work, mayChange }: { person: string; work: readonl
           </Text>
         </div>
       </div>
-      <Table verticalSpacing="xs" horizontalSpacing="md">
+      <Table verticalSpacing="sm" horizontalSpacing="md">
         <Table.Tbody>
           {work.map((one) => (
             <Table.Tr key={one.id}>

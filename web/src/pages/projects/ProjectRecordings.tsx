@@ -58,7 +58,7 @@ export function ProjectRecordings({ project, mayChange }: { project: Project; ma
                         size="compact-xs"
                         variant="subtle"
                         color="gray"
-                        aria-label={`Take ${recording.name} out of the project`}
+                        aria-label={`Take out ${recording.name}`}
                         onClick={() => void takeOut(recording).catch(tellFailure)}
                       >
                         Take out

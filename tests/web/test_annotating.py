@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import uuid
 
+import numpy as np
 import pytest
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(180)]
@@ -156,3 +157,185 @@ def test_a_joint_can_be_marked_without_a_mouse(studio, recording, open_page, pic
     assert stored["points"][0] == [322, 245, 1]
     page.keyboard.press("Escape")
     assert page.evaluate("document.activeElement.getAttribute('aria-label')") == "Undo"
+
+
+def test_a_hand_of_21_joints_takes_at_most_45_actions(studio, recording, synthesized, open_page, picture_of):
+    page = open_page()
+    page.goto(f"/recordings/{recording['id']}/annotate")
+    picture = picture_of(page)
+    picture.wait()
+    actions = 0
+    for joint, (x, y) in enumerate(synthesized.joints):
+        # Joints that lie on others are placed from the keyboard, because a click there would choose the other one.
+        near = any(np.hypot(x - a, y - b) < 12 for a, b in synthesized.joints[:joint])
+        if near:
+            page.keyboard.press("Enter")
+            page.keyboard.press("Tab")
+            actions += 2
+        else:
+            picture.click(x, y)
+            actions += 1
+    page.keyboard.press("0")
+    page.keyboard.press("q")
+    actions += 2
+    picture.wait_until_saved()
+    [stored] = find_annotations(studio, recording)
+    assert all(v in (1, 2) for _, _, v in stored["points"]), "all 21 joints have a place"
+    assert stored["points"][0][2] == 1
+    assert actions <= 45, f"{actions} clicks and keys"
+
+
+def test_the_hand_is_turned_swapped_and_carried_on_one_step_of_undo_each(studio, recording, open_page, picture_of):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{recording['id']}/annotate")
+    picture = picture_of(page)
+    picture.wait()
+
+    def points(hand="right", frame=0):
+        picture.wait_until_saved()
+        found = [i["points"] for i in find_annotations(studio, recording) if (i["hand"], i["frame"]) == (hand, frame)]
+        return [[round(x), round(y), v] for x, y, v in found[0]] if found else None
+
+    picture.click(200, 200)
+    picture.click(300, 200)
+    page.mouse.move(*picture.at(200, 200))
+    page.keyboard.down("Alt")
+    for _ in range(9):
+        page.mouse.wheel(0, 500)
+    page.keyboard.up("Alt")
+    expect(page.get_by_role("button", name="Undo")).to_be_visible()
+    page.keyboard.press("Tab")
+    assert points()[:2] == [[200, 200, 2], [200, 300, 2]], "nine times ten degrees about the cursor"
+    page.keyboard.press("Control+z")
+    assert points()[1] == [300, 200, 2], "one step for the whole turn"
+
+    page.keyboard.press("Alt+t")
+    assert points() is None
+    assert points("left")[1] == [300, 200, 2]
+    page.keyboard.press("Control+z")
+    assert points("left") is None
+    assert points()[1] == [300, 200, 2]
+
+    page.keyboard.press("Control+b")
+    expect(page.get_by_label("Frame", exact=True)).to_have_value("1")
+    assert points(frame=1)[:2] == points()[:2]
+    page.get_by_role("button", name="Carry the pose on").click()
+    page.get_by_role("textbox", name="Up to frame").fill("5")
+    page.get_by_role("button", name="Copy to 4 frames").click()
+    assert [points(frame=frame) is not None for frame in range(7)] == [True] * 6 + [False]
+    page.get_by_role("button", name="Undo").click()
+    assert [points(frame=frame) is not None for frame in range(3)] == [True, True, False]
+
+
+def test_between_key_frames_positions_are_proposed_until_accepted(
+    studio, recording, open_page, picture_of, screenshots
+):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{recording['id']}/annotate")
+    picture = picture_of(page)
+    picture.wait()
+    timeline = page.get_by_role("slider", name="Timeline")
+
+    def go(frame):
+        page.get_by_label("Frame", exact=True).fill(str(frame))
+        page.keyboard.press("Enter")
+        picture.element.focus()
+        picture.wait()
+
+    for frame, x in ((0, 200), (4, 240)):
+        go(frame)
+        picture.click(x, 200)
+        page.keyboard.press("k")
+    go(2)
+    expect(timeline).to_have_attribute("aria-valuetext", re.compile("right: not marked, suggested"))
+    screenshots.take(page, "12-key-frames")
+    picture.wait_until_saved()
+    assert {item["frame"] for item in find_annotations(studio, recording)} == {0, 4}, "a proposal is no label"
+    page.keyboard.press("Shift+K")
+    expect(timeline).to_have_attribute("aria-valuetext", re.compile("right: 1 of 21;"))
+    picture.wait_until_saved()
+    stored = {item["frame"]: round(item["points"][0][0]) for item in find_annotations(studio, recording)}
+    assert stored == {0: 200, 1: 210, 2: 220, 3: 230, 4: 240}
+    page.keyboard.press("Control+z")
+    expect(timeline).to_have_attribute("aria-valuetext", re.compile("right: not marked, suggested"))
+    picture.wait_until_saved()
+    assert {item["frame"] for item in find_annotations(studio, recording)} == {0, 4}
+
+
+def test_an_earlier_version_is_looked_at_and_brought_back(studio, recording, open_page, picture_of, screenshots):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{recording['id']}/annotate")
+    picture = picture_of(page)
+    picture.wait()
+    page.get_by_role("tab", name="History").click()
+    expect(page.get_by_text("Nobody has marked the right hand")).to_be_visible()
+    for x in (200, 260, 320):
+        picture.click(x, 200)
+        picture.wait_until_saved()
+    versions = page.get_by_role("list", name="Versions, newest first")
+    expect(versions.get_by_role("listitem")).to_have_count(3)
+    versions.get_by_role("button").nth(2).click()
+    screenshots.take(page, "13-history")
+    page.get_by_role("button", name="Bring revision 1 back").click()
+    expect(versions.get_by_role("listitem")).to_have_count(4)
+    expect(versions.get_by_role("listitem").first).to_contain_text("as in revision 1 again")
+    [stored] = find_annotations(studio, recording)
+    assert [point[2] for point in stored["points"][:3]] == [2, 0, 0]
+
+
+def test_keys_are_put_elsewhere_everywhere_at_once_and_follow_the_account(
+    studio, recording, open_page, picture_of, screenshots
+):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{recording['id']}/annotate")
+    picture = picture_of(page)
+    picture.wait()
+    page.keyboard.press("F2")
+    keys = page.get_by_role("dialog")
+    keys.get_by_label("Look for an action or a key").fill("next frame")
+    rebind = keys.get_by_role("button", name="New key for Next frame", exact=True)
+    rebind.click()
+    page.keyboard.press("Control+l")
+    expect(keys.get_by_role("alert")).to_contain_text("belongs to the browser")
+    rebind.click()
+    page.keyboard.press("q")
+    expect(keys.get_by_role("alert")).to_contain_text("Occluded, or visible again")
+    screenshots.take(page, "14-keys")
+    keys.get_by_role("button", name="Move it here").click()
+    keys.get_by_role("button", name="Take F away from Next frame").click()
+    keys.get_by_role("button", name="Take Right away from Next frame").click()
+    page.keyboard.press("Escape")
+    expect(keys).to_be_hidden()
+
+    try:
+        picture.element.focus()
+        page.keyboard.press("f")
+        page.keyboard.press("q")
+        expect(page.get_by_label("Frame", exact=True)).to_have_value("1")
+        page.get_by_role("button", name="Next frame").hover()
+        expect(page.get_by_role("tooltip")).to_have_text("Next frame (Q)")
+        page.keyboard.press("F1")
+        expect(page.get_by_role("dialog")).to_contain_text("no key")
+        page.wait_for_function("() => localStorage.getItem('handloom/keys-unsent') === null")
+        assert studio.get("/account")["preferences"]["keys"]["frame.next"] == ["Q"]
+
+        elsewhere = open_page()
+        elsewhere.goto(f"/recordings/{recording['id']}/annotate")
+        picture_of(elsewhere).wait()
+        elsewhere.wait_for_function("() => (localStorage.getItem('handloom/keys') ?? '').includes('frame.next')")
+        elsewhere.keyboard.press("q")
+        expect(elsewhere.get_by_label("Frame", exact=True)).to_have_value("1")
+        elsewhere.keyboard.press("F2")
+        elsewhere.get_by_role("button", name="Restore defaults").click()
+        elsewhere.wait_for_function("() => localStorage.getItem('handloom/keys-unsent') === null")
+        assert studio.get("/account")["preferences"]["keys"] == {}
+    finally:
+        studio.send("PUT", "/account/preferences", json={})

@@ -28,7 +28,7 @@ export const theme = createTheme({
   components: {
     Tooltip: { defaultProps: { withArrow: true, openDelay: 350, fz: "xs", zIndex: 400 } },
     ActionIcon: { defaultProps: { variant: "subtle", color: "gray" } },
-    Modal: { defaultProps: { centered: true, overlayProps: { backgroundOpacity: 0.6 }, transitionProps: { duration: 120 } } },
+    Modal: { defaultProps: { centered: true, closeButtonProps: { "aria-label": "Close" }, overlayProps: { backgroundOpacity: 0.6 }, transitionProps: { duration: 120 } } },
     Button: { defaultProps: { size: "sm" } },
     Skeleton: { defaultProps: { radius: "sm" } },
   },

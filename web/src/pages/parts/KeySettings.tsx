@@ -60,6 +60,8 @@ function Row({ binding }: { binding: KeyBinding }) {
     bindKeys(binding.id, [...binding.keys.filter((key) => key !== chord), chord]);
     done();
   };
+  // Two pages have things of the same name.
+  const name = `${binding.label}, ${nameOf(binding.group)}`;
   const defaults = DEFAULTS.find((one) => one.id === binding.id)?.keys ?? [];
   const restore = (): void => {
     const first = defaults.find((key) => faultOf(map, binding.id, key));
@@ -77,7 +79,7 @@ function Row({ binding }: { binding: KeyBinding }) {
           <span key={chord} className={classes.key}>
             <Keys chord={chord} />
             <Tooltip label="Take this key away">
-              <ActionIcon size={24} aria-label={`Take ${chord} away from ${binding.label}`} onClick={() => bindKeys(binding.id, binding.keys.filter((key) => key !== chord))}>
+              <ActionIcon size={24} aria-label={`Take ${chord} away from ${name}`} onClick={() => bindKeys(binding.id, binding.keys.filter((key) => key !== chord))}>
                 <IconX size={12} />
               </ActionIcon>
             </Tooltip>
@@ -92,7 +94,7 @@ function Row({ binding }: { binding: KeyBinding }) {
           size="compact-xs"
           variant={isListening ? "filled" : "default"}
           leftSection={isListening ? undefined : <IconPlus size={12} />}
-          aria-label={`New key for ${binding.label}`}
+          aria-label={isListening ? `Press a key … for ${name}` : `Key: a new one for ${name}`}
           onClick={() => {
             setAsked(null);
             setListening(true);
@@ -105,7 +107,7 @@ function Row({ binding }: { binding: KeyBinding }) {
         <Tooltip label={`As it was: ${defaults.join(" or ")}`}>
           <ActionIcon
             size={24}
-            aria-label={`Restore the keys of ${binding.label}`}
+            aria-label={`Restore the keys of ${name}`}
             onClick={restore}
             style={{ visibility: isDefault(binding) ? "hidden" : "visible" }}
           >

@@ -46,6 +46,7 @@ export function Search() {
 
   return (
     <Spotlight
+      attributes={{ content: { "aria-label": "Search" } }}
       actions={actions}
       shortcut={null}
       limit={8}

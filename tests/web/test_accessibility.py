@@ -12,13 +12,13 @@ AXE = Path(__file__).resolve().parents[2] / "web" / "node_modules" / "axe-core" 
 
 # Name, address, and what is there when the page is.
 PAGES = [
-    ("recordings", "/recordings", "main h1"),
-    ("recording", "/recordings/{recording}", "main h1"),
+    ("recordings", "/recordings", "main :is(h1, h2)"),
+    ("recording", "/recordings/{recording}", "main :is(h1, h2)"),
     ("annotator", "/recordings/{recording}/annotate", "[data-picture][aria-busy=false]"),
-    ("new import", "/imports/new", "main h1"),
-    ("tracks", "/tracks", "main h1"),
-    ("jobs", "/jobs", "main h1"),
-    ("missing", "/nowhere", "main h1"),
+    ("new import", "/imports/new", "main :is(h1, h2)"),
+    ("tracks", "/tracks", "main :is(h1, h2)"),
+    ("jobs", "/jobs", "main :is(h1, h2)"),
+    ("missing", "/nowhere", "main :is(h1, h2)"),
 ]
 # The same in the annotator with something open: the key that opens it, and what it is.
 OPENED = [

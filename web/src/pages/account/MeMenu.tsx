@@ -15,9 +15,7 @@ export function MeMenu() {
     <Menu position="bottom-end" width={232} withArrow>
       <Menu.Target>
         <UnstyledButton className={classes.me} aria-label={`Account of ${me.name}`}>
-          <span className={classes.initial} aria-hidden>
-            {me.name.slice(0, 1).toUpperCase()}
-          </span>
+          <span className={classes.initial} data-initial={me.name.slice(0, 1).toUpperCase()} aria-hidden />
           <span className={classes.name}>{me.name}</span>
         </UnstyledButton>
       </Menu.Target>

@@ -1,4 +1,4 @@
-import { ScrollArea, Text, Tooltip } from "@mantine/core";
+import { ScrollArea, Tooltip } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { selectJoint, switchHand } from "../../actions/annotate/select";
 import { HANDS, JOINTS, jointColor, jointLabel } from "../../model/joints";
@@ -55,6 +55,7 @@ export function JointsPanel() {
         {JOINTS.map((name, joint) => {
           const status = statusOf(pose[joint]);
           const isActive = joint === state.joint;
+          const shown = isActive && status === "unset" ? "next" : STATUS[status].text;
           const startsFinger = joint > 0 && (joint - 1) % 4 === 0;
           return (
             <button
@@ -72,9 +73,7 @@ export function JointsPanel() {
               <StatusMark status={status} color={jointColor(joint)} />
               <span className="one-line">{jointLabel(joint)}</span>
               <JointError joint={joint} />
-              <Text span size="xs" className={classes.status}>
-                {isActive && status === "unset" ? "next" : STATUS[status].text}
-              </Text>
+              <span className={classes.status} data-text={shown} aria-hidden />
             </button>
           );
         })}

@@ -126,7 +126,7 @@ class LabelImportOptions(BaseModel):
     format: str | None = Field(default=None, max_length=40, description="Recognised when it is left out.")
     hand: Hand | None = Field(default=None, description="Of files that know one hand only.")
     camera: str | None = Field(default=None, max_length=64, description="Of files that don't name it.")
-    pixel_centre: Literal[0, 0.5] | None = Field(
+    pixel_centre: Literal[0, 0.5] | None = Field(  # pyright: ignore[reportInvalidTypeForm]
         default=None, description="Coordinate of the centre of the top-left pixel in the file."
     )
     joint_order: str | None = Field(default=None, max_length=40, description="Of files that number the joints.")

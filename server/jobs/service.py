@@ -55,7 +55,7 @@ class JobFilter:
     batch_id: UUID | None = None
     search: str | None = None
 
-    def apply(self, query: Select[tuple[JobRow]]) -> Select[tuple[JobRow]]:
+    def apply(self, query: Select[Any]) -> Select[Any]:
         for column, wanted in (
             (JobRow.sequence_id, self.sequence_id),
             (JobRow.created_by, self.created_by),

@@ -89,7 +89,9 @@ class RemoteStore:
     def read(self, key: str) -> bytes | None:
         """The bytes of a key; None when there is none."""
         try:
-            return self._persist(f"read {key}", lambda: self._files.cat_file(key))
+            found = self._persist(f"read {key}", lambda: self._files.cat_file(key))
+            assert isinstance(found, bytes)
+            return found
         except FileNotFoundError:
             return None
 

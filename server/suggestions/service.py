@@ -49,7 +49,7 @@ def choose_track(session: Session, sequence_id: uuid.UUID, track_id: uuid.UUID |
         best = find_best_tracks(session, [sequence_id]).get(sequence_id)
         if best is None:
             return None
-        track_id = best["best_track"]["id"]
+        track_id = uuid.UUID(str(best["best_track"]["id"]))
     row: TrackRow = get_track(session, track_id)
     if row.sequence_id != sequence_id:
         raise NotFoundError(f"The track {track_id} is of another recording.")

@@ -105,4 +105,5 @@ class Camera:
     def _distort(self, flat: Array) -> Array:
         """Pixels (N, 2) of rays (x, y, 1), camera, given as (N, 2)."""
         points = np.column_stack([flat, np.ones(len(flat))])[:, None, :]
-        return cv2.projectPoints(points, np.zeros(3), np.zeros(3), self.K, self.distortion)[0][:, 0, :]
+        pixels = cv2.projectPoints(points, np.zeros(3), np.zeros(3), self.K, self.distortion)[0]
+        return np.asarray(pixels[:, 0, :], dtype=np.float64)

@@ -65,7 +65,7 @@ def triangulate(cameras: Sequence[Camera], marks: Array) -> Triangulation:
     rays = np.full((N, C, 3), np.nan)
     for c, camera in enumerate(cameras):
         rays[:, c] = camera.unproject(np.ascontiguousarray(marks[:, c]))
-    has_ray = np.isfinite(rays).all(axis=2)
+    has_ray = np.asarray(np.isfinite(rays).all(axis=2))
     # Every point from all its views (k = 0), and from all but camera k - 1.
     masks = np.repeat(has_ray[:, None], C + 1, axis=1)
     masks[:, np.arange(1, C + 1), np.arange(C)] = False
@@ -81,7 +81,7 @@ def triangulate(cameras: Sequence[Camera], marks: Array) -> Triangulation:
     everyone = np.arange(N)
     is_used = masks[everyone, chosen]
     angles = _find_angles(cameras, rays, is_used)
-    num_marks = np.isfinite(marks).all(axis=2).sum(axis=1)
+    num_marks = np.asarray(np.isfinite(marks).all(axis=2)).sum(axis=1)
     refusals = tuple(
         _refuse(num_marks[n], has_ray[n], angles[n], distances[n, chosen[n]][is_used[n]]) for n in everyone
     )

@@ -205,7 +205,7 @@ def _read_row(
             raise AnnotationError(
                 f"{where}: {HAND_JOINTS[int(np.argmax(half))]} has one of x and y; needed both or none."
             )
-        there = ~np.isnan(pixels).any(axis=1)
+        there = np.asarray(~np.isnan(pixels).any(axis=1))
         if there.any():
             points = np.c_[np.where(there[:, None], pixels, 0.0), np.where(there, 2.0, 0.0)]
             collector.add(labels.key, Annotation(place[1], place[0], hand, points))

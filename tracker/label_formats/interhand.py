@@ -102,7 +102,7 @@ def _join(hands: dict[str, Hand3D]) -> tuple[Array, npt.NDArray[np.bool_]]:
     """(42, 3) world, m, and (42,) whether known, in InterHand2.6M's order."""
     nothing = np.full((21, 3), np.nan)
     both = np.concatenate([to_order(hands[side].points if side in hands else nothing, "interhand") for side in HANDS])
-    return both, np.isfinite(both).all(axis=1)
+    return both, np.asarray(np.isfinite(both).all(axis=1))
 
 
 def _hand_type(hands: dict[str, Any]) -> str:
@@ -155,7 +155,10 @@ def read_interhand(files: dict[str, bytes], sets: list[LabelSet], hints: ImportH
         for number, side in enumerate(HANDS):
             part = slice(21 * number, 21 * number + 21)
             if kind in (side, "interacting") and valid[part].any():
-                own, known = from_order(points[part], "interhand"), from_order(valid[part][:, None], "interhand")[:, 0]
+                own, known = (
+                    from_order(points[part], "interhand"),
+                    from_order(valid[part][:, None].astype(np.float64), "interhand")[:, 0],
+                )
                 marked = project_hand(eyes[capture, camera], own, known.astype(np.bool_))
                 collector.add(only.key, Annotation(frame, camera, side, marked))
                 collector.warnings.add(

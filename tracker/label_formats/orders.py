@@ -59,7 +59,8 @@ def find_joint(name: str) -> int | None:
 
     Numbers count from the base of a finger, 1 to 4. A name that means none of them is None.
     """
-    words = [_WORDS.get(word, word) for word in re.findall(r"[a-z]+|\d+", name[:100].lower())]
+    found: list[str] = re.findall(r"[a-z]+|\d+", name[:100].lower())
+    words: list[str] = [_WORDS.get(word) or word for word in found]
     words = [word for word in words if word not in ("finger", "hand", "l", "r", "left", "right", "joint")]
     if words == ["wrist"]:
         return 0

@@ -66,7 +66,8 @@ def list_batches(session: Session, cursor: str | None, limit: int) -> tuple[list
     if cursor is not None:
         query = query.having(tuple_(began, JobRow.batch_id) < read_moment_cursor(cursor))
     places = session.execute(query.order_by(began.desc(), JobRow.batch_id.desc()).limit(limit + 1)).all()
-    batches = _summarize(session, [place[0] for place in places[:limit] if place[0] is not None])
+    ids = [id_ for id_, _ in places[:limit] if id_ is not None]
+    batches = _summarize(session, ids)
     if len(places) <= limit:
         return batches, None
     last = places[limit - 1]

@@ -43,7 +43,7 @@ DOCUMENT = json.loads(write_document())
 
 
 def body_is_as_promised(_ctx: object, response: schemathesis.Response, case: schemathesis.Case) -> None:
-    """The body fits its schema. Schemathesis has such a check, but it cannot read the `prefixItems` that it rewrites."""
+    """The body fits its schema. The check of schemathesis cannot read the `prefixItems` that it rewrites itself."""
     answers = DOCUMENT["paths"][case.operation.path][case.method.lower()]["responses"]
     content = answers.get(str(response.status_code), {}).get("content", {})
     schema = content.get("application/json", {}).get("schema")

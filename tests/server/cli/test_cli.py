@@ -103,10 +103,37 @@ def handloom_modules(data: Path) -> set[str]:
 
 
 def test_a_host_that_others_can_reach_is_refused(tmp_path: Path) -> None:
-    refused = handloom(tmp_path, "serve", "--host", "0.0.0.0", "--port", "0")
-    assert refused.returncode == 2
-    assert "no admin can yet" in refused.stderr
-    assert "ssh -L" in refused.stderr
+    """As long as nobody could let anybody in."""
+    for arguments, more in ((("--host", "0.0.0.0"), {}), ((), {"HANDLOOM_LOGIN": "required"})):
+        refused = handloom(tmp_path, "serve", *arguments, "--port", "0", **more)
+        assert refused.returncode == 2
+        assert "no admin can yet" in refused.stderr and "handloom account add" in refused.stderr
+
+
+def test_people_are_added_with_a_password_from_a_pipe(tmp_path: Path) -> None:
+    def account(*arguments: str, password: str = "") -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "server.cli", "account", *arguments]
+        given = f"{password}\n"
+        return subprocess.run(
+            command, input=given, capture_output=True, text=True, env=environment(tmp_path), timeout=240
+        )
+
+    short = account("add", "Lea", "--role", "admin", password="short")
+    assert (short.returncode, "needed 10 to 200" in short.stderr) == (2, True)
+    assert account("add", "Lea", "--role", "admin", password="four words in a row").returncode == 0
+    made = json.loads(account("add", "Mia", "--code", "--json").stdout)
+    assert (made["name"], made["role"], len(made["code"]) > 40) == ("Mia", "annotator", True)
+    assert account("disable", "Mia").returncode == 0
+    people = json.loads(account("list", "--json").stdout)["accounts"]
+    assert {(one["name"], one["state"]) for one in people} == {
+        ("Lea", "may log in"),
+        ("Mia", "disabled"),
+        ("local", "has no password"),
+    }
+    from server.cli.serve import check_an_admin_can_log_in
+    from server.settings import Settings
+
+    check_an_admin_can_log_in(Settings(data_dir=tmp_path, host="0.0.0.0"))
 
 
 def test_a_port_that_is_taken_is_named(tmp_path: Path) -> None:

@@ -102,7 +102,7 @@ def test_images_that_are_not_there_are_said_to_be_missing(client: TestClient, ad
     ):
         answer = client.get(url)
         assert (answer.status_code, answer.json()["error"]) == (404, "NotFoundError"), url
-        assert "cache-control" not in answer.headers
+        assert answer.headers["cache-control"] == "no-store"
 
 
 @pytest.mark.parametrize("query", ["near=nan", "near=inf", "near=-1", "near=2&far=1", "colormap=jet", "far=abc"])

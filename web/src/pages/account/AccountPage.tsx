@@ -29,7 +29,7 @@ function PasswordForm() {
     <form onSubmit={submit}>
       <Group align="end" gap="md">
         <PasswordInput w={232} label="Current password" autoComplete="current-password" value={current} onChange={(event) => setCurrent(event.currentTarget.value)} />
-        <PasswordInput w={232} label="New password (10 or more characters)" autoComplete="new-password" value={next} onChange={(event) => setNext(event.currentTarget.value)} required withAsterisk={false} />
+        <PasswordInput w={232} label="New, of 10 or more characters" autoComplete="new-password" value={next} onChange={(event) => setNext(event.currentTarget.value)} required withAsterisk={false} />
         <Button type="submit" variant="default" loading={change.isPending}>
           Change password
         </Button>

@@ -73,6 +73,8 @@ export function ImagePane(props: ImagePaneProps) {
       if (surface.current && isOnScreen && surface.current.dataset["drawn"] !== String(frame)) surface.current.dataset["drawn"] = String(frame);
     };
     layer?.on("draw", note);
+    // What was drawn before is noted, too.
+    layer?.batchDraw();
     return () => void layer?.off("draw", note);
   }, [hasStage]);
 

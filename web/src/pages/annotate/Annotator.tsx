@@ -1,4 +1,4 @@
-import { useEffect, useRef } from "react";
+import { memo, useDeferredValue, useEffect, useRef, type ComponentType, type ReactNode } from "react";
 import type { Recording } from "../../api/types";
 import type { Session } from "../../state/session";
 import { AnnotatingContext } from "./annotating";
@@ -18,11 +18,21 @@ interface AnnotatorProps {
   session: Session;
 }
 
+/** A part whose properties never change: it is drawn again only for what it reads itself. */
+const Steady = memo(function Steady({ of: Part }: { of: ComponentType }) {
+  return <Part />;
+});
+
+const SteadyFrameBar = memo(FrameBar);
+
 /** The annotator: the picture has the space, everything else stands around it, and nothing is modal. */
 export function Annotator({ recording, session }: AnnotatorProps) {
   const frameField = useRef<HTMLInputElement>(null);
   const middle = useRef<HTMLDivElement>(null);
   const annotating = useAnnotatorParts(recording, session, frameField);
+  // The picture comes first: while somebody scrubs, what stands around it follows when there is time.
+  const later = useDeferredValue(annotating);
+  const around = (parts: ReactNode): ReactNode => <AnnotatingContext value={later}>{parts}</AnnotatingContext>;
 
   useEffect(() => {
     middle.current?.querySelector<HTMLElement>("[data-picture]")?.focus({ preventScroll: true });
@@ -32,12 +42,16 @@ export function Annotator({ recording, session }: AnnotatorProps) {
     <AnnotatingContext value={annotating}>
       <CamerasProvider>
         <div className={classes.page}>
-          <FrameBar frameField={frameField} />
-          {BARS.map((Bar, index) => (
-            <Bar key={index} />
-          ))}
+          {around(
+            <>
+              <SteadyFrameBar frameField={frameField} />
+              {BARS.map((Bar, index) => (
+                <Steady key={index} of={Bar} />
+              ))}
+            </>,
+          )}
           <div className={classes.middle} ref={middle}>
-            <ToolRail />
+            {around(<Steady of={ToolRail} />)}
             <div className={classes.panes}>
               <Panes />
               <div className={classes.corner}>
@@ -46,9 +60,9 @@ export function Annotator({ recording, session }: AnnotatorProps) {
                 ))}
               </div>
             </div>
-            <SidePanel />
+            {around(<Steady of={SidePanel} />)}
           </div>
-          <Timeline />
+          {around(<Steady of={Timeline} />)}
           <StatusLine />
         </div>
       </CamerasProvider>

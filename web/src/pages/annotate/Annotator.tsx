@@ -12,6 +12,7 @@ import { StatusLine } from "./StatusLine";
 import { Timeline } from "./Timeline";
 import { ToolRail } from "./ToolRail";
 import { useAnnotatorParts } from "./useAnnotatorParts";
+import { useUnhurried } from "./useUnhurried";
 
 interface AnnotatorProps {
   recording: Recording;
@@ -31,7 +32,7 @@ export function Annotator({ recording, session }: AnnotatorProps) {
   const middle = useRef<HTMLDivElement>(null);
   const annotating = useAnnotatorParts(recording, session, frameField);
   // The picture comes first: while somebody scrubs, what stands around it follows when there is time.
-  const later = useDeferredValue(annotating);
+  const later = useDeferredValue(useUnhurried(annotating));
   const around = (parts: ReactNode): ReactNode => <AnnotatingContext value={later}>{parts}</AnnotatingContext>;
 
   useEffect(() => {
@@ -55,9 +56,9 @@ export function Annotator({ recording, session }: AnnotatorProps) {
             <div className={classes.panes}>
               <Panes />
               <div className={classes.corner}>
-                {CARDS.map((Card, index) => (
-                  <Card key={index} />
-                ))}
+                {around(
+                  CARDS.map((Card, index) => <Steady key={index} of={Card} />),
+                )}
               </div>
             </div>
             {around(<Steady of={SidePanel} />)}

@@ -45,11 +45,8 @@ export function annotateActions(session: Session, recording: Recording, act: Ann
     const next = cameras[(at + step + cameras.length) % cameras.length];
     if (next !== undefined) act(selectCamera, next);
   };
-  const step = (direction: 1 | -1) => (repeats = 0) => act(goToFrame, store.get().frame + direction * stepFor(repeats));
 
   return {
-    "frame.next": step(1),
-    "frame.previous": step(-1),
     "frame.forward": toFrame((state) => state.frame + 10),
     "frame.back": toFrame((state) => state.frame - 10),
     "frame.nextAnnotated": toFrame((state) => annotatedFrames(state).find((frame) => frame > state.frame)),

@@ -1,6 +1,6 @@
 /** The annotator's own state beside the session: pictures, views, keys, playback. */
 
-import { useCallback, useEffect, useMemo, useRef, useState, type RefObject } from "react";
+import { useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState, type RefObject } from "react";
 import { useSearchParams } from "react-router";
 import { PLACE_MODES } from "../../actions/annotate/place";
 import { goToFrame } from "../../actions/annotate/select";
@@ -17,8 +17,9 @@ import { createHoverStore, pointerOn } from "../../state/pointer";
 import type { Session } from "../../state/session";
 import { arrangementFor, arrangementsOf, clampFactor, useViewOptions } from "../../state/viewOptions";
 import type { Actions, Annotating } from "./annotating";
-import { annotateActions } from "./useAnnotateActions";
+import { annotateActions, stepFor } from "./useAnnotateActions";
 import { usePlayback } from "./usePlayback";
+import { useSeenSteps } from "./useSeenSteps";
 import { useAnnotatorState, useSaveStatus } from "./useSession";
 
 const KEYS = KEYMAP.filter((binding) => binding.scope === "annotate" || binding.id === "undo" || binding.id === "redo").map((binding) => binding.id);
@@ -66,6 +67,15 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     },
   });
 
+  const seen = useRef(state.frame);
+  useLayoutEffect(() => {
+    if (!pictures.isStale || pictures.failure) seen.current = state.frame;
+  }, [state.frame, pictures.isStale, pictures.failure]);
+  const steps = useSeenSteps(
+    (by) => act(goToFrame, session.store.get().frame + by),
+    () => seen.current === session.store.get().frame,
+  );
+
   useEffect(() => {
     const timer = setTimeout(() => {
       const address = new URLSearchParams(window.location.search);
@@ -96,6 +106,8 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     else setRange(scaleRange(pictures.range, 1 / factor));
   };
   const pageActions: Actions = {
+    "frame.next": (repeats = 0) => steps.step(stepFor(repeats)),
+    "frame.previous": (repeats = 0) => steps.step(-stepFor(repeats)),
     "frame.goto": () => frameField.current?.select(),
     play: () => setPlaying(!isPlaying),
     "view.fit": () => setViews({}),
@@ -120,8 +132,9 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
   answers.current = (id) => others.current.map((part) => part()[id]).find(Boolean) ?? pageActions[id] ?? actions[id];
   const run = useCallback((id: string, repeats = 0) => {
     if (isLocked.current && (id === "undo" || id === "redo")) return;
+    if (id !== "frame.next" && id !== "frame.previous") steps.flush();
     answers.current(id)?.(repeats);
-  }, []);
+  }, [steps]);
 
   const repeats = useRef(0);
   const held = useRef<string | null>(null);

@@ -139,7 +139,7 @@ def test_search_and_help_open_by_key_and_lead_somewhere(recording, open_page, sc
     page.keyboard.press("Escape")
     expect(page.get_by_role("dialog")).to_have_count(0)
     page.keyboard.press("Control+k")
-    page.get_by_label("Search", exact=True).fill("Annotate opening hand")
+    page.get_by_placeholder("Search recordings, tracks and pages").fill("Annotate opening hand")
     page.wait_for_timeout(400)
     screenshots.take(page, "13-search")
     page.keyboard.press("ArrowDown")

@@ -38,7 +38,7 @@ if (root) {
         defaultColorScheme="dark"
         colorSchemeManager={localStorageColorSchemeManager({ key: "handloom/colours" })}
       >
-        <Notifications position="top-right" limit={3} />
+        <Notifications position="top-right" limit={5} />
         <QueryClientProvider client={queries}>
           <Gate>
             <RouterProvider router={router} />

@@ -72,7 +72,7 @@ def main() -> None:
         small = ("--frames", "2000", "--joints", "40000")
         for database in ((), ("--database", f"{server}/fifty")):
             results.append(measure("50 annotators", *seconds, *database))
-        one = ("--annotators", "1", "--pause", "0.2", "--seconds", str(args.seconds / 5))
+        one = ("--annotators", "1", "--pause", "0.2", "--seconds", "15")
         results.append(measure("1 annotator, a tracking job beside", *one, *small, "--tracking"))
         for database in ((), ("--database", f"{server}/killed")):
             results.append(measure("20 annotators, studio killed", *killed, *small, *database))

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from tracker.capture.import_report import ImportReport
     from tracker.capture.import_run import run_import
     from tracker.capture.relative_path import find_path_fault
+    from tracker.capture.scan import SCAN_SUFFIXES, Scan, load_scan, save_scan
     from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
     from tracker.capture.triangulation import Triangulation, triangulate
     from tracker.cli import add_commands
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
         AnnotationError,
         FrameError,
         ImportRefusedError,
+        ScanError,
         SequenceError,
         TrackerError,
         TrackingError,
@@ -90,6 +92,9 @@ _HOMES = {
     "ModelView": "tracker.tracking.frame_view",
     "PRESETS": "tracker.tracking.presets",
     "QuickFit": "tracker.tracking.quick_fit",
+    "SCAN_SUFFIXES": "tracker.capture.scan",
+    "Scan": "tracker.capture.scan",
+    "ScanError": "tracker.errors",
     "Sequence": "tracker.capture.sequence",
     "SequenceError": "tracker.errors",
     "Track": "tracker.tracking.track",
@@ -120,6 +125,7 @@ _HOMES = {
     "join_chunks": "tracker.tracking.track",
     "list_image_names": "tracker.label_formats.image_names",
     "load_annotations": "tracker.capture.annotations",
+    "load_scan": "tracker.capture.scan",
     "load_sequence": "tracker.capture.sequence",
     "load_track": "tracker.tracking.track",
     "pack_files": "tracker.label_formats.label_files",
@@ -128,6 +134,7 @@ _HOMES = {
     "run_import": "tracker.capture.import_run",
     "save_annotations": "tracker.capture.annotations",
     "save_label_files": "tracker.label_formats.label_files",
+    "save_scan": "tracker.capture.scan",
     "save_sequence_json": "tracker.capture.sequence",
     "start_tracking": "tracker.tracking.start",
     "track_frames": "tracker.tracking.follow",
@@ -147,6 +154,7 @@ __all__ = [
     "LABEL_FORMATS",
     "MIN_FIT_JOINTS",
     "PRESETS",
+    "SCAN_SUFFIXES",
     "USUAL_PRESET",
     "Annotation",
     "AnnotationError",
@@ -170,6 +178,8 @@ __all__ = [
     "LabelSet",
     "ModelView",
     "QuickFit",
+    "Scan",
+    "ScanError",
     "Sequence",
     "SequenceError",
     "Track",
@@ -199,6 +209,7 @@ __all__ = [
     "join_chunks",
     "list_image_names",
     "load_annotations",
+    "load_scan",
     "load_sequence",
     "load_track",
     "pack_files",
@@ -207,6 +218,7 @@ __all__ = [
     "run_import",
     "save_annotations",
     "save_label_files",
+    "save_scan",
     "save_sequence_json",
     "start_tracking",
     "track_frames",

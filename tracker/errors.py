@@ -48,6 +48,22 @@ class ModelFileError(TrackerError):
         super().__init__(f"{path}: found {found}; needed {needed}.")
 
 
+class ScanError(TrackerError):
+    """A scan file is not usable.
+
+    Args:
+        path: The file.
+        found: What was found in it.
+        needed: What a scan must have.
+    """
+
+    def __init__(self, path: Path | str, found: str, needed: str) -> None:
+        self.path = str(path)
+        self.found = found
+        self.needed = needed
+        super().__init__(f"{path}: found {found}; needed {needed}.")
+
+
 class SolveError(TrackerError):
     """An objective cannot be minimised."""
 

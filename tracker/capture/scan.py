@@ -1,0 +1,209 @@
+"""A 3D scan of a hand: points with normals, perhaps triangles and colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from tracker.capture.atomic_file import write_atomically
+from tracker.capture.scan_npz import pack_npz_scan, read_npz_scan
+from tracker.capture.scan_obj import read_obj_scan
+from tracker.capture.scan_ply import read_ply_scan, write_ply
+from tracker.capture.scan_stl import read_stl_scan
+from tracker.capture.scan_values import MAX_FILE_BYTES, RawScan
+from tracker.errors import ScanError
+
+Array = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+READERS = {".ply": read_ply_scan, ".obj": read_obj_scan, ".stl": read_stl_scan, ".npz": read_npz_scan}
+
+SCAN_SUFFIXES: tuple[str, ...] = tuple(READERS)
+
+MAX_POINTS = 200_000
+"""So many points are kept of a larger scan, drawn at random with the same draw every time."""
+
+MIN_POINTS = 50
+
+UNITS = (1.0, 1e-3, 1e-2)
+"""Metres per unit, tried in this order when nobody says which it is: metres, millimetres, centimetres."""
+
+SIZES = (0.05, 1.2)
+"""m; diagonal of the box around a hand, perhaps with forearm and what it holds."""
+
+POSSIBLE_SIZES = (0.02, 3.0)
+"""m; sizes that are believed when the unit is given."""
+
+
+@dataclass(frozen=True)
+class Scan:
+    """A scan in its own coordinates.
+
+    Attributes:
+        points: (N, 3) m.
+        normals: (N, 3) unit, outwards; zero where unknown.
+        faces: (F, 3) int, or None for a bare cloud.
+        colors: (N, 3) uint8 red, green, blue, or None.
+        name: What to call it.
+    """
+
+    points: Array
+    normals: Array
+    faces: Ints | None = None
+    colors: npt.NDArray[np.uint8] | None = None
+    name: str = "scan"
+
+    def __post_init__(self) -> None:
+        assert self.points.ndim == 2 and self.points.shape[1] == 3 and self.normals.shape == self.points.shape
+        assert self.colors is None or self.colors.shape == self.points.shape
+
+    def select(self, keep: npt.NDArray[np.bool_]) -> Scan:
+        """The scan with only the points of the mask (N,) and the triangles between them."""
+        faces = None
+        if self.faces is not None:
+            places = np.cumsum(keep) - 1
+            faces = places[self.faces[keep[self.faces].all(axis=1)]]
+        colors = None if self.colors is None else self.colors[keep]
+        return replace(self, points=self.points[keep], normals=self.normals[keep], faces=faces, colors=colors)
+
+    def mirrored(self) -> Scan:
+        """The scan seen in the mirror x = 0."""
+        flip = np.array([-1.0, 1.0, 1.0])
+        faces = None if self.faces is None else self.faces[:, ::-1]
+        return replace(self, points=self.points * flip, normals=self.normals * flip, faces=faces)
+
+
+def load_scan(path: Path | str, metres_per_unit: float | None = None) -> Scan:
+    """Read a scan: PLY (ASCII or binary), OBJ, STL, or npz with `points` and perhaps `normals`, `faces`, `colors`.
+
+    Equal positions are merged, points that are not finite and triangles without area are dropped; of more than
+    MAX_POINTS points so many are kept (then without triangles). Normals come from the triangles where there are any.
+
+    Args:
+        path: The file.
+        metres_per_unit: Length of the file's unit; guessed from the size when left out.
+
+    Raises:
+        ScanError: With what was found and what is needed.
+    """
+    path = Path(path)
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise ScanError(path, f"a file of the kind {path.suffix or 'without a name'}", f"one of {', '.join(READERS)}")
+    try:
+        size = path.stat().st_size
+        if size > MAX_FILE_BYTES:
+            raise ScanError(path, f"{size} bytes", f"at most {MAX_FILE_BYTES} bytes")
+        raw = reader(path, path.read_bytes())
+    except OSError as error:
+        raise ScanError(path, f"a file that cannot be read ({error.strerror})", "a readable file") from error
+    scan = _clean(path, raw)
+    scale = _find_scale(path, scan.points, metres_per_unit)
+    return replace(scan, points=scan.points * scale)
+
+
+def save_scan(scan: Scan, path: Path) -> None:
+    """Write a scan in metres as binary PLY (float32), or with every bit as npz, by the suffix of `path`."""
+    path = Path(path)
+    assert path.suffix in (".ply", ".npz"), f"{path.name}: scans are written as .ply or .npz"
+    if path.suffix == ".npz":
+        write_atomically(path, pack_npz_scan(scan.points, scan.normals, scan.faces, scan.colors))
+    else:
+        normals = scan.normals if scan.normals.any() else None
+        write_atomically(path, write_ply(scan.points, scan.faces, normals, scan.colors))
+
+
+def find_vertex_normals(points: Array, faces: Ints) -> Array:
+    """(N, 3) unit normals, those of the triangles weighted by their area; zero for points of no triangle."""
+    corners = points[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    ids = faces.ravel()
+    gather = sparse.csr_matrix(
+        (np.ones(len(ids)), (ids, np.repeat(np.arange(len(faces)), 3))), (len(points), len(faces))
+    )
+    return _unit(np.asarray(gather @ normals))
+
+
+def _unit(vectors: Array) -> Array:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.where(lengths > 1e-30, vectors / np.maximum(lengths, 1e-30), 0.0)
+
+
+def _clean(path: Path, raw: RawScan) -> Scan:
+    points, faces, normals, colors = raw.points, raw.faces, raw.normals, raw.colors
+    if not len(points):
+        raise ScanError(path, "no points", "the points of a hand")
+    if faces is not None and len(faces) and (faces.min() < 0 or faces.max() >= len(points)):
+        raise ScanError(path, f"a triangle with the point {faces.max()}", f"points below {len(points)}")
+    is_usable = np.isfinite(points).all(axis=1) & (np.abs(points) < 1e9).all(axis=1)
+    if is_usable.sum() < MIN_POINTS:
+        found = f"{int(is_usable.sum())} finite points of {len(points)}"
+        raise ScanError(path, found, f"at least {MIN_POINTS}")
+    points = points[is_usable]
+    normals = None if normals is None else normals[is_usable]
+    colors = None if colors is None else colors[is_usable]
+    if faces is not None:
+        faces = (np.cumsum(is_usable) - 1)[faces[is_usable[faces].all(axis=1)]]
+    if len(points) <= 5 * MAX_POINTS:  # merging millions of points only to thin them is waste
+        _, first, inverse = np.unique(_as_keys(points), return_index=True, return_inverse=True)
+        points = points[first]
+        normals = None if normals is None else normals[first]
+        colors = None if colors is None else colors[first]
+        faces = None if faces is None else inverse.ravel()[faces]
+    if faces is not None:
+        is_flat = (faces[:, 0] == faces[:, 1]) | (faces[:, 1] == faces[:, 2]) | (faces[:, 2] == faces[:, 0])
+        faces = faces[~is_flat]
+        if not len(faces):
+            faces = None
+    if faces is not None:
+        normals = find_vertex_normals(points, faces)
+    elif normals is not None:
+        normals = _unit(np.where(np.isfinite(normals).all(axis=1, keepdims=True), normals, 0.0))
+    else:
+        normals = np.zeros_like(points)
+    scan = Scan(points, normals, faces, colors, path.stem)
+    if len(scan.points) > MAX_POINTS:
+        keep = np.zeros(len(scan.points), dtype=np.bool_)
+        keep[np.random.default_rng(0).choice(len(scan.points), MAX_POINTS, replace=False)] = True
+        scan = replace(scan, faces=None).select(keep)
+    if len(scan.points) < MIN_POINTS:
+        raise ScanError(path, f"{len(scan.points)} different points", f"at least {MIN_POINTS}")
+    return scan if _points_outwards(scan) else replace(scan, normals=-scan.normals, faces=_reverse(scan.faces))
+
+
+def _reverse(faces: Ints | None) -> Ints | None:
+    return None if faces is None else faces[:, ::-1]
+
+
+def _points_outwards(scan: Scan) -> bool:
+    """Whether the normals leave the body, as the flux of (p - middle) through its surface tells."""
+    offsets = scan.points - scan.points.mean(axis=0)
+    return float(np.einsum("nd,nd->", offsets, scan.normals)) >= 0.0
+
+
+def _as_keys(points: Array) -> npt.NDArray[np.void]:
+    """(N,) one sortable value a point, equal for equal positions."""
+    rows = np.ascontiguousarray(points + 0.0)  # -0 and 0 are the same place
+    return rows.view(np.dtype((np.void, rows.dtype.itemsize * 3))).ravel()
+
+
+def _find_scale(path: Path, points: Array, metres_per_unit: float | None) -> float:
+    low, high = np.percentile(points, [0.5, 99.5], axis=0)
+    size = float(np.linalg.norm(high - low))
+    needed = f"a hand of {1e3 * SIZES[0]:.0f} mm to {SIZES[1]:.1f} m across, or its unit said (metres per unit)"
+    if metres_per_unit is not None:
+        if not (np.isfinite(metres_per_unit) and metres_per_unit > 0.0):
+            raise ScanError(path, f"a unit of {metres_per_unit} m", "a positive number of metres")
+        if not POSSIBLE_SIZES[0] <= size * metres_per_unit <= POSSIBLE_SIZES[1]:
+            raise ScanError(path, f"a size of {size * metres_per_unit:.3g} m with the unit given", needed)
+        return metres_per_unit
+    for scale in UNITS:
+        if SIZES[0] <= size * scale <= SIZES[1]:
+            return scale
+    raise ScanError(
+        path, f"a size of {size:.4g} units, in metres, millimetres or centimetres not that of a hand", needed
+    )

@@ -45,8 +45,11 @@ if TYPE_CHECKING:
     from tracker.label_formats.label_set import ExportedLabels, ImportedLabels, ImportHints, LabelSet
     from tracker.label_formats.orders import JOINT_ORDERS
     from tracker.model.articulated import ArticulatedModel
+    from tracker.model.blend_files import load_blend_model, save_blend_model
+    from tracker.model.blend_model import BlendModel
     from tracker.model.default_hand import default_hand
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
+    from tracker.model.untrained_hand import untrained_hand
     from tracker.tracking.chunk import TrackChunk
     from tracker.tracking.follow import track_frames
     from tracker.tracking.frame_result import FrameResult
@@ -67,6 +70,7 @@ _HOMES = {
     "Annotations": "tracker.capture.annotations",
     "ArchiveLimits": "tracker.capture.archive",
     "ArticulatedModel": "tracker.model.articulated",
+    "BlendModel": "tracker.model.blend_model",
     "Camera": "tracker.capture.camera",
     "EXPORT_KINDS": "tracker.export.export",
     "Evaluation": "tracker.evaluation.evaluation",
@@ -126,6 +130,7 @@ _HOMES = {
     "list_image_names": "tracker.label_formats.image_names",
     "load_annotations": "tracker.capture.annotations",
     "load_scan": "tracker.capture.scan",
+    "load_blend_model": "tracker.model.blend_files",
     "load_sequence": "tracker.capture.sequence",
     "load_track": "tracker.tracking.track",
     "pack_files": "tracker.label_formats.label_files",
@@ -133,12 +138,14 @@ _HOMES = {
     "render_overlay": "tracker.tracking.frame_view",
     "run_import": "tracker.capture.import_run",
     "save_annotations": "tracker.capture.annotations",
+    "save_blend_model": "tracker.model.blend_files",
     "save_label_files": "tracker.label_formats.label_files",
     "save_scan": "tracker.capture.scan",
     "save_sequence_json": "tracker.capture.sequence",
     "start_tracking": "tracker.tracking.start",
     "track_frames": "tracker.tracking.follow",
     "triangulate": "tracker.capture.triangulation",
+    "untrained_hand": "tracker.model.untrained_hand",
     "view_track_hands": "tracker.tracking.quick_fit",
     "warm_up": "tracker.tracking.warm_up",
     "write_csv": "tracker.evaluation.report_csv",
@@ -161,6 +168,7 @@ __all__ = [
     "Annotations",
     "ArchiveLimits",
     "ArticulatedModel",
+    "BlendModel",
     "Camera",
     "Evaluation",
     "ExportedLabels",
@@ -209,6 +217,7 @@ __all__ = [
     "join_chunks",
     "list_image_names",
     "load_annotations",
+    "load_blend_model",
     "load_scan",
     "load_sequence",
     "load_track",
@@ -217,12 +226,14 @@ __all__ = [
     "render_overlay",
     "run_import",
     "save_annotations",
+    "save_blend_model",
     "save_label_files",
     "save_scan",
     "save_sequence_json",
     "start_tracking",
     "track_frames",
     "triangulate",
+    "untrained_hand",
     "view_track_hands",
     "warm_up",
     "write_csv",

@@ -1,7 +1,8 @@
 """Hands, objects and their files; how a pose moves them. Knows no cameras.
 
 Names are loaded when they are first asked for: the list of joints must not cost the time that kernels take to load. The
-default hand is `tracker.model.default_hand.default_hand`: its module has its name, so it cannot be offered here.
+default hand is `tracker.model.default_hand.default_hand`, the untrained one `untrained_hand.untrained_hand`: their
+modules have their names, so they cannot be offered here.
 """
 
 from __future__ import annotations
@@ -11,6 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
+    from tracker.model.blend_files import load_blend_model, save_blend_model
+    from tracker.model.blend_mirroring import mirror_blend, mirror_blend_pose
+    from tracker.model.blend_model import BlendModel, PosedBlend
     from tracker.model.decimation import decimate
     from tracker.model.files import load_model, save_model
     from tracker.model.joints import FINGERS, HAND_EDGES, HAND_JOINTS
@@ -22,21 +26,27 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "ArticulatedModel": "tracker.model.articulated",
+    "BlendModel": "tracker.model.blend_model",
     "FINGERS": "tracker.model.joints",
     "HAND_EDGES": "tracker.model.joints",
     "HAND_JOINTS": "tracker.model.joints",
     "HandParts": "tracker.model.articulated",
     "MAX_WEIGHTS": "tracker.model.articulated",
+    "PosedBlend": "tracker.model.blend_model",
     "PosedScene": "tracker.model.scene",
     "Scene": "tracker.model.scene",
     "ShapeBasis": "tracker.model.articulated",
     "Skeleton": "tracker.model.skeleton",
     "decimate": "tracker.model.decimation",
+    "load_blend_model": "tracker.model.blend_files",
     "load_model": "tracker.model.files",
     "load_t16_model": "tracker.model.t16_files",
     "load_t16_motion": "tracker.model.t16_files",
     "mirror": "tracker.model.mirroring",
+    "mirror_blend": "tracker.model.blend_mirroring",
+    "mirror_blend_pose": "tracker.model.blend_mirroring",
     "mirror_pose": "tracker.model.mirroring",
+    "save_blend_model": "tracker.model.blend_files",
     "save_model": "tracker.model.files",
     "with_shape": "tracker.model.shape",
 }
@@ -47,17 +57,23 @@ __all__ = [
     "HAND_JOINTS",
     "MAX_WEIGHTS",
     "ArticulatedModel",
+    "BlendModel",
     "HandParts",
+    "PosedBlend",
     "PosedScene",
     "Scene",
     "ShapeBasis",
     "Skeleton",
     "decimate",
+    "load_blend_model",
     "load_model",
     "load_t16_model",
     "load_t16_motion",
     "mirror",
+    "mirror_blend",
+    "mirror_blend_pose",
     "mirror_pose",
+    "save_blend_model",
     "save_model",
     "with_shape",
 ]

@@ -62,12 +62,7 @@ def save_npz_model(model: ArticulatedModel, path: Path) -> None:
             "shape_lower": model.shape.lower,
             "shape_upper": model.shape.upper,
         }
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        _write(temporary, arrays)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    write_npz_arrays(path, arrays)
 
 
 def load_npz_model(path: Path) -> ArticulatedModel:
@@ -91,8 +86,18 @@ def load_npz_model(path: Path) -> ArticulatedModel:
         skeleton=_read_skeleton(fields, bone_names),
         hand=_read_hand(fields, len(vertices), len(bone_names)) if "hand_side" in fields else None,
         shape=_read_shape(fields, len(vertices), len(bone_names)) if "shape_names" in fields else None,
-        provenance=_read_provenance(fields),
+        provenance=read_provenance(fields),
     )
+
+
+def write_npz_arrays(path: Path, arrays: dict[str, np.ndarray]) -> None:
+    """Write float64, int64 and text arrays; the file appears whole or not at all. Equal arrays give equal bytes."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        _write(temporary, arrays)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def _write(path: Path, arrays: dict[str, np.ndarray]) -> None:
@@ -176,7 +181,8 @@ def _read_shape(fields: NpzFields, num_vertices: int, num_bones: int) -> ShapeBa
     return ShapeBasis(names, vertices, joints, lower, upper)
 
 
-def _read_provenance(fields: NpzFields) -> dict[str, str]:
+def read_provenance(fields: NpzFields) -> dict[str, str]:
+    """Where a model came from."""
     try:
         provenance = json.loads(fields.texts("provenance", 1)[0])
     except (ValueError, RecursionError) as error:

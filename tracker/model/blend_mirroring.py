@@ -1,0 +1,48 @@
+"""The other hand of a blend model, and the poses that go with it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tracker.model.blend_model import BlendModel
+from tracker.model.mirroring import MIRROR, OTHER_SIDE
+from tracker.model.skeleton import Array
+
+
+def mirror_blend(model: BlendModel, reflection: Array = MIRROR) -> BlendModel:
+    """The model reflected in a plane of its frame; mirroring twice gives the model back.
+
+    Vertices, joints and shape coefficients keep their meaning: at the pose `mirror_blend_pose` of a pose and the same
+    shape, the mirrored model is the mirror image of the model.
+
+    Args:
+        model: A hand.
+        reflection: (3,) of which one is -1: (1, -1, 1), the plane y = 0; MANO's two hands are mirrored by (-1, 1, 1).
+    """
+    bones = model.num_bones - 1
+    axial = np.tile(-reflection, bones)
+    elements = np.tile(np.outer(reflection, reflection).ravel(), bones)
+    return replace(
+        model,
+        name=_other_name(model.name),
+        side=OTHER_SIDE[model.side],
+        template=model.template * reflection,
+        faces=np.ascontiguousarray(model.faces[:, ::-1]),
+        shape_directions=model.shape_directions * reflection[:, None],
+        pose_directions=model.pose_directions * reflection[:, None] * elements,
+        pose_mean=model.pose_mean * axial,
+        pose_components=model.pose_components * axial,
+        provenance={**model.provenance, "mirrored": "no" if model.provenance.get("mirrored") == "yes" else "yes"},
+    )
+
+
+def mirror_blend_pose(pose: Array, reflection: Array = MIRROR) -> Array:
+    """Rotation vectors (..., 3) of the mirrored hand that show the mirror image; translations are mirrored by M."""
+    return -pose * reflection
+
+
+def _other_name(name: str) -> str:
+    words = {"right": "left", "left": "right", "Right": "Left", "Left": "Right"}
+    return " ".join(words.get(word, word) for word in name.split(" "))

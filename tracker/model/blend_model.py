@@ -77,10 +77,8 @@ class BlendModel:
         assert self.template.shape == (vertices, 3) and self.faces.shape[1:] == (3,)
         assert self.shape_directions.shape[:2] == (vertices, 3) and self.shape_directions.ndim == 3
         assert self.pose_directions.shape == (vertices, 3, 9 * (bones - 1)), self.pose_directions.shape
-        assert self.skinning_weights.shape == (vertices, bones) == self.joint_regressor.shape[::-1]
-        assert (
-            self.parents[0] == -1 and np.all(self.parents[1:] < np.arange(1, bones)) and np.all(self.parents[1:] >= 0)
-        )
+        assert self.skinning_weights.shape == (vertices, bones) and self.joint_regressor.shape == (bones, vertices)
+        assert self.parents[0] == -1 and np.all(self.parents[1:] < np.arange(1, bones)) and self.parents[1:].min() >= 0
         assert len(self.joint_names) == bones and self.pose_mean.shape == (3 * (bones - 1),)
         assert self.pose_components.shape[1:] == self.pose_mean.shape and self.tips.shape == (5,)
 

@@ -156,14 +156,20 @@ def recording(studio: Studio, synthesized: Synthesized) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="session")
-def browser(chromium: str) -> Iterator[Any]:
+def playwright() -> Iterator[Any]:
+    """One for all browsers: Playwright refuses to be started twice in a process."""
     from playwright.sync_api import expect, sync_playwright
 
     expect.set_options(timeout=20_000)  # a small machine renders and tracks at the same time
-    with sync_playwright() as playwright:
-        launched = playwright.chromium.launch(executable_path=chromium, args=list(CHROMIUM_FLAGS))
-        yield launched
-        launched.close()
+    with sync_playwright() as started:
+        yield started
+
+
+@pytest.fixture(scope="session")
+def browser(playwright: Any, chromium: str) -> Iterator[Any]:
+    launched = playwright.chromium.launch(executable_path=chromium, args=list(CHROMIUM_FLAGS))
+    yield launched
+    launched.close()
 
 
 @dataclass

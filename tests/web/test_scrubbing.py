@@ -49,14 +49,11 @@ SCRUB = """([frames, fps]) => new Promise((resolve) => {
 
 
 @pytest.fixture(scope="module")
-def browser(chromium: str) -> Iterator[Any]:
+def browser(playwright: Any, chromium: str) -> Iterator[Any]:
     """Without SwiftShader, which other tests need for WebGL: drawing through it takes 40 ms a frame by itself."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        launched = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        yield launched
-        launched.close()
+    launched = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
+    yield launched
+    launched.close()
 
 
 @pytest.fixture(scope="module")

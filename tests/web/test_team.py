@@ -135,6 +135,8 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     expect(bar).to_contain_text("2 of 2 done")
     screenshots.take(work, "team-annotator")
     work.keyboard.press("Control+Enter")
+    expect(bar).to_contain_text("2 frames have undecided joints, the first is 0.")
+    work.keyboard.press("Control+Enter")
     expect(bar.get_by_test_id("assignment-state")).to_have_text("in review")
     expect(work.get_by_test_id("next-click")).to_contain_text("waits for its review")
     picture.click(400, 300)
@@ -171,6 +173,8 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     expect(work.get_by_label("Frame", exact=True)).to_have_value("1")
     said.get_by_role("button", name="Resolve").first.click()
     expect(said.get_by_text("resolved by")).to_be_visible()
+    bar.get_by_role("button", name="Submit").click()
+    expect(bar).to_contain_text("undecided joints")
     bar.get_by_role("button", name="Submit").click()
     expect(bar.get_by_test_id("assignment-state")).to_have_text("in review")
 

@@ -20,6 +20,8 @@ export interface TimelineContent {
   readonly rows: readonly StripRow[];
   readonly marks: Readonly<Record<FrameMark, ReadonlySet<number>>>;
   readonly frameCount: number;
+  /** The only frames that are asked for; null for all. */
+  readonly asked: ReadonlySet<number> | null;
 }
 
 const LANE = { marks: 9, hand: 12, gap: 2, row: 9, submitted: 4, axis: 14 } as const;
@@ -157,6 +159,24 @@ export function drawTimeline(context: CanvasRenderingContext2D, content: Timelin
     context.fillRect(start, submitted - 1, 2, 4);
     context.fillRect(Math.max(start, end - 2), submitted - 1, 2, 4);
   });
+
+  if (content.asked) {
+    const { asked } = content;
+    const others = new Set(shown.filter((frame) => !asked.has(frame)));
+    context.globalAlpha = 0.35;
+    context.strokeStyle = colors.quiet;
+    context.lineWidth = 1;
+    for (const [from, to] of runs(shown, others)) {
+      const [start, end] = [spanOf(place, from).x, spanOf(place, to).x + spanOf(place, to).w];
+      for (const { top, height: tall } of lanes.slice(0, content.hands.length)) {
+        context.beginPath();
+        context.moveTo(start, top + tall / 2);
+        context.lineTo(end, top + tall / 2);
+        context.stroke();
+      }
+    }
+    context.globalAlpha = 1;
+  }
 
   context.fillStyle = colors.quiet;
   context.font = '11px "Inter Variable", system-ui, sans-serif';

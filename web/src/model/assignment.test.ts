@@ -1,21 +1,12 @@
 import { expect, test } from "vitest";
 import type { Assignment, Me, ReplicaSet } from "../api/teams";
-import { assignmentAt, lockReason, progressOf, snapFrame } from "./assignment";
+import { assignmentAt, lockReason, progressOf } from "./assignment";
 import { emptyPose, keyText, type Pose } from "./pose";
 
 const given = (change: Partial<Assignment>): Assignment =>
   ({ id: "a", account_id: "ann", account: "Ann", replica_set_id: null, frame_first: 2, frame_last: 5, state: "open", ...change }) as Assignment;
 const me = (id: string, role: Me["role"] = "annotator"): Me => ({ id, name: id, role }) as Me;
 const placed: Pose = emptyPose().map((joint, index) => (index === 0 ? { ...joint, x: 1, y: 1, v: 2 as const } : joint));
-
-test("a frame outside of the set leads to the next one in the direction of travel", () => {
-  const frames = [2, 5, 9];
-  expect(snapFrame(frames, 5, 2)).toBe(5);
-  expect(snapFrame(frames, 3, 2)).toBe(5);
-  expect(snapFrame(frames, 4, 5)).toBe(2);
-  expect(snapFrame(frames, 10, 9)).toBe(9);
-  expect(snapFrame(frames, 1, 2)).toBe(2);
-});
 
 test("a frame belongs to the range it is in", () => {
   const [first, second] = [given({ id: "1" }), given({ id: "2", frame_first: 6, frame_last: 9 })];
@@ -38,7 +29,7 @@ test("what the server refuses is locked here too", () => {
 
 test("a frame is done with a hand, or with every hand in every camera of a replica set", () => {
   const poses = { [keyText({ camera: "cam0", frame: 2, hand: "right" })]: placed, [keyText({ camera: "cam0", frame: 3, hand: "left" })]: emptyPose() };
-  expect(progressOf(given({}), undefined, poses)).toEqual({ done: 1, total: 4, next: 3 });
+  expect(progressOf(given({}), undefined, poses)).toEqual({ done: 1, total: 4, next: 3, partial: [2] });
   const replicas = { frames: [2, 5], cameras: ["cam0"], hands: ["right", "left"] } as unknown as ReplicaSet;
-  expect(progressOf(given({}), replicas, poses)).toEqual({ done: 0, total: 2, next: 2 });
+  expect(progressOf(given({}), replicas, poses)).toEqual({ done: 0, total: 2, next: 2, partial: [2] });
 });

@@ -2,19 +2,13 @@
 
 import type { Assignment, Me, ReplicaSet } from "../api/teams";
 import type { AnnotatorState } from "../state/annotator";
-import { parseKey, placedCount } from "./pose";
+import { JOINT_COUNT } from "./joints";
+import { decidedCount, parseKey, placedCount } from "./pose";
 
 const ROLES = ["annotator", "reviewer", "lead", "admin"] as const;
 
 /** Whether somebody may do what this role may. */
 export const hasRole = (me: Me | undefined, role: (typeof ROLES)[number]): boolean => me !== undefined && ROLES.indexOf(me.role) >= ROLES.indexOf(role);
-
-/** The frame of the set that stands in for a wanted one: the next in the direction of travel, else the last there is. */
-export function snapFrame(frames: readonly number[], wanted: number, from: number): number {
-  if (frames.includes(wanted)) return wanted;
-  const next = wanted >= from ? frames.find((frame) => frame > wanted) : frames.findLast((frame) => frame < wanted);
-  return next ?? (wanted >= from ? frames.at(-1) : frames[0]) ?? wanted;
-}
 
 /** Of a recording's assignments the one that a frame belongs to. */
 export const assignmentAt = (assignments: readonly Assignment[], frame: number): Assignment | undefined =>
@@ -24,19 +18,47 @@ export const assignmentAt = (assignments: readonly Assignment[], frame: number):
 export const blindAt = (assignments: readonly Assignment[], me: Me | undefined, frame: number): Assignment | undefined =>
   assignments.find((one) => one.replica_set_id !== null && one.account_id === me?.id && one.state !== "accepted" && one.frame_first <= frame && frame <= one.frame_last);
 
-/** Frames that are done as they are here, and the first that is not: at once, before the server has counted. */
-export function progressOf(assignment: Assignment, replicas: ReplicaSet | undefined, poses: AnnotatorState["poses"]): { done: number; total: number; next: number | null } {
+/** The frames that are asked for, in order. */
+function framesOf({ frame_first: first, frame_last: last }: Assignment, replicas: ReplicaSet | undefined): readonly number[] {
+  return replicas?.frames ?? Array.from({ length: last - first + 1 }, (_, index) => first + index);
+}
+
+/** Frames of work that was handed in. */
+export const submittedFrames = (assignments: readonly Assignment[], replicas: ReplicaSet | undefined): number[] =>
+  assignments.filter(({ state }) => state === "submitted" || state === "accepted").flatMap((one) => framesOf(one, replicas));
+
+/** How far an assignment is. */
+export interface AssignmentProgress {
+  /** Frames in which a hand was marked (of a replica set: every hand in every camera). */
+  readonly done: number;
+  readonly total: number;
+  /** The first frame that is not done. */
+  readonly next: number | null;
+  /** Frames in which joints of a hand that was begun are still undecided. */
+  readonly partial: readonly number[];
+}
+
+/** As it is here, before the server has counted. */
+export function progressOf(assignment: Assignment, replicas: ReplicaSet | undefined, poses: AnnotatorState["poses"]): AssignmentProgress {
   const marked = new Map<number, number>();
+  const begun = new Set<number>();
   for (const [text, pose] of Object.entries(poses)) {
-    if (placedCount(pose) === 0) continue;
     const { frame } = parseKey(text);
-    marked.set(frame, (marked.get(frame) ?? 0) + 1);
+    const decided = decidedCount(pose);
+    if (decided > 0 && decided < JOINT_COUNT) begun.add(frame);
+    if (placedCount(pose) > 0) marked.set(frame, (marked.get(frame) ?? 0) + 1);
   }
   const needed = replicas ? replicas.cameras.length * replicas.hands.length : 1;
-  const length = assignment.frame_last - assignment.frame_first + 1;
-  const frames = replicas?.frames ?? Array.from({ length }, (_, index) => assignment.frame_first + index);
+  const frames = framesOf(assignment, replicas);
   const open = frames.filter((frame) => (marked.get(frame) ?? 0) < needed);
-  return { done: frames.length - open.length, total: frames.length, next: open[0] ?? null };
+  return { done: frames.length - open.length, total: frames.length, next: open[0] ?? null, partial: frames.filter((frame) => begun.has(frame)) };
+}
+
+/** What is missing for work to be submitted, in words; empty when nothing is. */
+export function describeUnfinished({ done, total, partial }: AssignmentProgress): string {
+  const frames = (count: number): string => (count === 1 ? "1 frame has" : `${count} frames have`);
+  const parts = [total > done ? `${frames(total - done)} no joints yet.` : "", partial.length > 0 ? `${frames(partial.length)} undecided joints, the first is ${partial[0]}.` : ""];
+  return parts.filter(Boolean).join(" ");
 }
 
 /** Why nothing may be changed at this frame, in words, or null. The server refuses the same. */

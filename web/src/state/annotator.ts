@@ -9,6 +9,8 @@ export interface AnnotatorState {
   readonly camera: string;
   readonly frame: number;
   readonly frameCount: number;
+  /** The only frames that may be gone to, in order (those of a blind replica); null for all. */
+  readonly frames: readonly number[] | null;
   readonly hand: Side;
   readonly joint: number;
   /** A drag that has not ended: drawn instead of the stored pose, neither saved nor undoable yet. */

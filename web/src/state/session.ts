@@ -46,6 +46,7 @@ export function openSession(recording: Recording, annotations: readonly Annotati
     camera,
     frame,
     frameCount: recording.frame_count,
+    frames: null,
     hand: start.hand,
     joint: firstOpenJoint(poses[keyText({ camera, frame, hand: start.hand })]),
     draft: null,

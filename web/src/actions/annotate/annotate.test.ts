@@ -15,6 +15,7 @@ const start: AnnotatorState = {
   camera: "cam0",
   frame: 0,
   frameCount: 10,
+  frames: null,
   hand: "right",
   joint: 0,
   draft: null,

@@ -1,5 +1,6 @@
 import { JOINT_COUNT, jointsOfFinger, otherHand, WRIST } from "../../model/joints";
 import { activeKey, poseAt, type Action, type AnnotatorState } from "../../state/annotator";
+import { nearestFrame, snapFrame, steppedFrame } from "../../model/frameSet";
 import { firstOpenJoint, isEmpty, statusOf } from "../../model/pose";
 
 export const selectJoint: Action<number> = (state, joint) => ({ ...state, joint });
@@ -24,10 +25,20 @@ export const switchHand: Action = (state) => {
 
 /** Go to a frame; the active joint stays when it is open there, otherwise the first open one is next. */
 export const goToFrame: Action<number> = (state, frame) => {
-  const within = Math.min(state.frameCount - 1, Math.max(0, Math.round(frame)));
+  const wanted = Math.min(state.frameCount - 1, Math.max(0, Math.round(frame)));
+  const within = state.frames ? snapFrame(state.frames, wanted, state.frame) : wanted;
   if (within === state.frame) return state;
   const next = { ...state, frame: within, draft: null };
   return { ...next, joint: openJoint(next) };
+};
+
+/** Go so many frames on; where only some may be gone to, so many of those. */
+export const stepFrames: Action<number> = (state, by) => goToFrame(state, state.frames ? steppedFrame(state.frames, state.frame, by) : state.frame + by);
+
+/** From now on only these frames may be gone to; who is at another one is led to the nearest. */
+export const keepToFrames: Action<readonly number[] | null> = (state, frames) => {
+  const kept = { ...state, frames };
+  return frames && !frames.includes(state.frame) ? goToFrame(kept, nearestFrame(frames, state.frame)) : kept;
 };
 
 export const selectCamera: Action<string> = (state, camera) => {

@@ -15,7 +15,7 @@ import { swapHands } from "./swap";
 import { turnHand } from "./turn";
 
 const pose = (x: number, y = 0): Pose => Array.from({ length: 21 }, (_, joint) => ({ x: x + joint, y: y + 2 * joint, v: 2 as const }));
-const start = (poses: AnnotatorState["poses"], frame = 0): AnnotatorState => ({ poses, camera: "cam0", frame, frameCount: 20, hand: "right", joint: 0, draft: null });
+const start = (poses: AnnotatorState["poses"], frame = 0): AnnotatorState => ({ poses, camera: "cam0", frame, frameCount: 20, frames: null, hand: "right", joint: 0, draft: null });
 const key = (frame: number, hand: "right" | "left" = "right"): string => keyText({ camera: "cam0", frame, hand });
 
 test("a quarter turn about a joint leaves it and carries the others round; outside joints without a place stay out", () => {

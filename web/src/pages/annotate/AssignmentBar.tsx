@@ -1,11 +1,11 @@
 import { Button, Progress, Text, TextInput, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { IconEyeOff, IconMessage } from "@tabler/icons-react";
-import { useEffect, useRef, useState } from "react";
+import { useEffect, useState } from "react";
 import { Link } from "react-router";
-import { goToFrame, selectCamera } from "../../actions/annotate/select";
+import { goToFrame, keepToFrames, selectCamera } from "../../actions/annotate/select";
 import { assignmentAddress, useTeamChange, type Assignment } from "../../api/teams";
-import { hasRole, lockReason, progressOf, snapFrame } from "../../model/assignment";
+import { describeUnfinished, hasRole, lockReason, progressOf } from "../../model/assignment";
 import { jointLabel } from "../../model/joints";
 import { useHint } from "../../state/keys";
 import { StateBadge } from "../projects/StateBadge";
@@ -23,17 +23,15 @@ export function AssignmentBar() {
   const hint = useHint();
   const [writing, setWriting] = useState<Writing | null>(null);
   const [isSure, setSure] = useState(false);
-  const last = useRef(state.frame);
 
+  const asked = assignment?.replica_set_id ? replicas : undefined;
   useEffect(() => {
-    if (replicas && assignment?.replica_set_id) {
-      const frame = snapFrame(replicas.frames, state.frame, last.current);
-      if (frame !== state.frame) act(goToFrame, frame);
-      const camera = replicas.cameras[0];
-      if (camera && !replicas.cameras.includes(state.camera)) act(selectCamera, camera);
-    }
-    last.current = state.frame;
-  }, [replicas, assignment?.replica_set_id, state.frame, state.camera, act]);
+    act(keepToFrames, asked?.frames ?? null);
+  }, [asked, act]);
+  useEffect(() => {
+    const camera = asked?.cameras[0];
+    if (camera && !asked.cameras.includes(state.camera)) act(selectCamera, camera);
+  }, [asked, state.camera, act]);
 
   const reason = blind ? "You mark this frame blindly: open your own version of it" : lockReason(assignment, me, replicas, state.hand);
   useEffect(() => {
@@ -43,6 +41,7 @@ export function AssignmentBar() {
   useEffect(() => setSure(false), [assignment?.id, state.frame]);
 
   const progress = assignment && progressOf(assignment, replicas, state.poses);
+  const unfinished = progress ? describeUnfinished(progress) : "";
   const isMine = assignment !== undefined && assignment.account_id === me?.id;
   const isOpen = assignment?.state === "open" || assignment?.state === "returned";
   const maySubmit = isOpen && (isMine || hasRole(me, "lead"));
@@ -66,7 +65,7 @@ export function AssignmentBar() {
   const submit = (): void => {
     if (!progress) return;
     if (saving.waiting > 0 || saving.conflicts.size > 0) notifications.show({ color: "yellow", message: "Something is not saved yet. Submit when the status line says saved." });
-    else if (progress.next !== null && !isSure) setSure(true);
+    else if (unfinished !== "" && !isSure) setSure(true);
     else send("submit");
   };
   const goNext = (): void => {
@@ -131,7 +130,7 @@ export function AssignmentBar() {
         <div className={classes.acts}>
           {isSure && (
             <Text size="xs" c="var(--warn-text)" role="status">
-              {progress.total - progress.done === 1 ? "1 frame has" : `${progress.total - progress.done} frames have`} no joints yet.
+              {unfinished}
             </Text>
           )}
           {assignment.open_comments > 0 && (

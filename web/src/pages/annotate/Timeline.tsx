@@ -32,7 +32,8 @@ export function Timeline() {
     () => withSuggested(annotated, state.poses, suggestions.byPlace, suggestions.hidden, state.camera),
     [annotated, state.poses, suggestions, state.camera],
   );
-  const content = useMemo(() => ({ hands, rows, marks, frameCount }), [hands, rows, marks, frameCount]);
+  const asked = useMemo(() => (state.frames ? new Set(state.frames) : null), [state.frames]);
+  const content = useMemo(() => ({ hands, rows, marks, frameCount, asked }), [hands, rows, marks, frameCount, asked]);
   // The window turns its page when the frame leaves it; a person may look elsewhere meanwhile.
   useEffect(() => setWindow((now) => windowWith(now, state.frame, frameCount)), [state.frame, frameCount]);
 

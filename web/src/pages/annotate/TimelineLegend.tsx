@@ -18,6 +18,7 @@ const STATES: readonly (readonly [ReactNode, string])[] = [
   [box(<path d="M2 4H26" stroke="var(--suggestion)" strokeWidth={3} strokeDasharray="4 2" />), "suggested, not accepted yet"],
   [box(<path d="M9.5 2H18.5L14 11Z" fill="var(--bad)" />), "flagged by label QC"],
   [box(<path d="M3 7V11H25V7" stroke="var(--mantine-color-teal-5)" strokeWidth={2} fill="none" />), "submitted"],
+  [box(<path d="M0 7H28" stroke="var(--text-quiet, currentColor)" strokeWidth={1} opacity={0.35} />), "not asked for, in a blind version"],
 ];
 
 /** What the marks of the timeline mean. */

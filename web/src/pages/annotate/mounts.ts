@@ -20,6 +20,7 @@ import { PictureFailure } from "./PictureFailure";
 import { RefusalCards } from "./RefusalCards";
 import { SuggestLayer } from "./SuggestLayer";
 import { SuggestTool } from "./SuggestTool";
+import { useSubmittedMarks } from "./useAssignmentHere";
 
 /** Something drawn on a picture (Konva), in screen coordinates of the view. */
 export interface LayerProps {
@@ -56,4 +57,4 @@ export const FRAME_TOOLS: readonly ComponentType[] = [CamerasTool, SuggestTool];
 export const TOOLS: readonly ComponentType[] = [CameraTools];
 
 /** Hooks that say which frames the timeline has to mark. */
-export const MARKS: readonly (() => FrameMarks)[] = [useFlagMarks];
+export const MARKS: readonly (() => FrameMarks)[] = [useFlagMarks, useSubmittedMarks];

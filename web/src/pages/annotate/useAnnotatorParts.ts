@@ -3,7 +3,7 @@
 import { useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState, type RefObject } from "react";
 import { useSearchParams } from "react-router";
 import { PLACE_MODES } from "../../actions/annotate/place";
-import { goToFrame } from "../../actions/annotate/select";
+import { stepFrames } from "../../actions/annotate/select";
 import { useKeymap } from "../../actions/useKeymap";
 import type { Recording } from "../../api/types";
 import { scaleRange, type DepthRange } from "../../canvas/depth";
@@ -61,9 +61,9 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     // Playing waits for a picture rather than leave one out.
     isReady: () => !pictures.isStale,
     step: () => {
-      const { frame, frameCount } = session.store.get();
-      act(goToFrame, frame + 1);
-      return frame + 1 < frameCount - 1;
+      act(stepFrames, 1);
+      const { frame, frames, frameCount } = session.store.get();
+      return frame < (frames?.at(-1) ?? frameCount - 1);
     },
   });
 
@@ -72,7 +72,7 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     if (!pictures.isStale || pictures.failure) seen.current = state.frame;
   }, [state.frame, pictures.isStale, pictures.failure]);
   const steps = useSeenSteps(
-    (by) => act(goToFrame, session.store.get().frame + by),
+    (by) => act(stepFrames, by),
     () => seen.current === session.store.get().frame,
   );
 

@@ -1,6 +1,8 @@
+import { useMemo } from "react";
 import { useSearchParams } from "react-router";
 import { useAssignment, useAssignments, useMe, useReplicaSet, type Assignment, type Me, type ReplicaSet } from "../../api/teams";
-import { assignmentAt, blindAt } from "../../model/assignment";
+import { assignmentAt, blindAt, submittedFrames } from "../../model/assignment";
+import type { FrameMarks } from "../../model/frameMarks";
 import { useAnnotating } from "./annotating";
 
 interface Here {
@@ -11,6 +13,16 @@ interface Here {
   /** My own blind work that has this frame, when one is not in it. */
   blind: Assignment | undefined;
   failure: Error | null;
+}
+
+/** Frames that were handed in: they wait for their review, or are finished. */
+export function useSubmittedMarks(): FrameMarks {
+  const { recording } = useAnnotating();
+  const replica = useSearchParams()[0].get("replica");
+  const all = useAssignments({ sequence: recording.id }).data;
+  const own = useAssignment(replica).data;
+  const replicas = useReplicaSet(own?.replica_set_id).data;
+  return useMemo(() => ({ submitted: new Set(submittedFrames(replica ? (own ? [own] : []) : (all ?? []).filter((one) => one.replica_set_id === null), replicas)) }), [replica, all, own, replicas]);
 }
 
 export function useAssignmentHere(): Here {

@@ -19,29 +19,44 @@ export function useSeenSteps(go: (by: number) => void, isSeen: () => boolean): S
   const [steps] = useState(() => {
     let waiting: number[] = [];
     let request = 0;
-    const flush = (): void => {
+    // Drawn, and the screen has been refreshed since: being drawn alone does not make it seen.
+    let isSettled = true;
+    const go = (by: number): void => {
+      isSettled = false;
       cancelAnimationFrame(request);
-      const by = waiting.reduce((sum, one) => sum + one, 0);
-      waiting = [];
-      if (by !== 0) current.current.go(by);
+      request = requestAnimationFrame(tick);
+      current.current.go(by);
     };
     const tick = (): void => {
-      if (current.current.isSeen()) {
-        const by = waiting.shift();
-        if (by !== undefined) current.current.go(by);
-      }
-      if (waiting.length > 0) request = requestAnimationFrame(tick);
+      request = requestAnimationFrame(tick);
+      if (!current.current.isSeen()) return;
+      const by = waiting.shift();
+      if (by !== undefined) return go(by);
+      isSettled = true;
+      cancelAnimationFrame(request);
+    };
+    const flush = (): void => {
+      const by = waiting.reduce((sum, one) => sum + one, 0);
+      waiting = [];
+      if (by !== 0) go(by);
     };
     return {
       flush,
       step(by: number) {
-        if (waiting.length === 0 && current.current.isSeen()) return current.current.go(by);
+        if (waiting.length === 0 && isSettled && current.current.isSeen()) return go(by);
         waiting.push(by);
-        if (waiting.length > MOST_WAITING) return flush();
-        if (waiting.length === 1) request = requestAnimationFrame(tick);
+        if (waiting.length > MOST_WAITING) flush();
+        else if (isSettled) {
+          isSettled = false;
+          request = requestAnimationFrame(tick);
+        }
+      },
+      stop(): void {
+        flush();
+        cancelAnimationFrame(request);
       },
     };
   });
-  useEffect(() => steps.flush, [steps]);
+  useEffect(() => steps.stop, [steps]);
   return steps;
 }

@@ -24,9 +24,9 @@ class BlendArrays(NamedTuple):
     """A blend model, flat for the kernels.
 
     template (V, 3) m; shape_directions (V, 3, S) m; weight_bones and weights (V, W) the bones a vertex follows,
-    heaviest first, padded with weight 0; regressor_starts (B + 1,), regressor_vertices and regressor_values (N,) rows of
-    the joint regressor; parents (B,); block_starts (V + 1,), block_bones (M,) and blocks (M, 3, 9) the pose blend shapes
-    of each vertex by bone, those that are all zero left out.
+    heaviest first, padded with weight 0; regressor_starts (B + 1,), regressor_vertices and regressor_values (N,) the
+    rows of the joint regressor; parents (B,); block_starts (V + 1,), block_bones (M,) and blocks (M, 3, 9) the pose
+    blend shapes of each vertex by bone, those that are all zero left out.
     """
 
     template: Array

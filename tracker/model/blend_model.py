@@ -9,15 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from tracker.model.blend_kernels import (
-    BlendArrays,
-    PosedArrays,
-    joint_jacobian_into,
-    pose_into,
-    shape_into,
-    turn_into,
-    vertex_jacobian_into,
-)
+from tracker.model.blend_derivatives import joint_jacobian_into, vertex_jacobian_into
+from tracker.model.blend_kernels import BlendArrays, PosedArrays, pose_into, shape_into, turn_into
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

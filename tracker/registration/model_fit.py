@@ -1,0 +1,195 @@
+"""Pose and shape of a model by dogleg on robust distances: Eq. 5 of [R17] with the surface held to the model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import cho_factor, cho_solve
+
+from tracker.model.blend_model import BlendModel, PosedBlend
+from tracker.registration.equations import add_model_rows, weigh_robustly
+from tracker.registration.hand_state import HandState
+from tracker.registration.pose_prior import PosePrior
+from tracker.registration.scan_points import ScanPoints
+from tracker.registration.surface_search import MIN_COSINE, Matches, SurfaceSearch
+from tracker.registration.vertex_normals import find_unit_normals
+from tracker.solver.dogleg import ENOUGH, choose_dogleg_step, choose_radius
+
+Array = npt.NDArray[np.float64]
+
+MM = 1e3
+"""The objective counts in mm."""
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """One stage of a fit.
+
+    Attributes:
+        sigma_mm: Scale of the Geman-McClure function.
+        iterations: Steps tried at most.
+        to_scan: Weight of distances from the model's vertices to the scan, against those from the scan to the model.
+        pose_weight: λ_θ of [R17] Eq. 5.
+        shape_weight: λ_β.
+        is_rigid: Only root and shape move.
+        tolerance: Ends when a step brings less than this share of the cost.
+    """
+
+    sigma_mm: float
+    iterations: int
+    to_scan: float = 0.0
+    pose_weight: float = 1.0
+    shape_weight: float = 1.0
+    is_rigid: bool = False
+    tolerance: float = 1e-3
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """The objective at a state, with all that its linearisation needs."""
+
+    state: HandState
+    posed: PosedBlend
+    matches: Matches
+    weights: Array
+    back_weights: Array
+    back_offsets: Array
+    back_normals: Array
+    cost: float
+    data_cost: float
+
+
+class ModelFit:
+    """Fits one model to points.
+
+    Args:
+        model: A right hand.
+        prior: Of its pose.
+    """
+
+    def __init__(self, model: BlendModel, prior: PosePrior) -> None:
+        self.model = model
+        self.prior = prior
+        self.search = SurfaceSearch(model.template, model.faces)
+        self.inner = np.flatnonzero(~self.search.is_rim_vertex).astype(np.int64)
+        """Vertices off the rim, which look for the scan."""
+        K = len(model.parents) - 1
+        self.scales = np.concatenate([np.full(3, 0.3), np.full(3, 0.02), np.full(3 * K, 0.3), np.ones(model.num_shape)])
+
+    def neutral(self) -> HandState:
+        model = self.model
+        pose = np.concatenate([np.zeros((1, 3)), self.prior.mean.reshape(-1, 3)])
+        return HandState(pose, np.zeros(model.num_shape), np.zeros(3))
+
+    def fit(self, state: HandState, scan: ScanPoints, settings: FitSettings, seeds=None) -> Evaluation:
+        """The best state that `settings.iterations` dogleg steps find."""
+        here = self.evaluate(state, scan, settings, seeds)
+        radius = 3.0
+        step_parts: tuple[Array, Array, Array] | None = None
+        scales = self.scales
+        for _ in range(settings.iterations):
+            if step_parts is None:
+                JtJ, Jtr = self._linearize(here, scan, settings)
+                H, g = JtJ * scales[:, None] * scales, Jtr * scales
+                try:
+                    newton = -cho_solve(cho_factor(H, lower=True, check_finite=False), g, check_finite=False)
+                except np.linalg.LinAlgError:
+                    break
+                step_parts = (H, g, newton)
+            H, g, newton = step_parts
+            step = choose_dogleg_step(g, newton, float(g @ H @ g), radius)
+            promised = -float(2.0 * (g @ step) + step @ H @ step)
+            if not np.isfinite(promised) or promised <= 0.2 * settings.tolerance * here.cost:
+                break
+            there = self.evaluate(here.state.retract(self.model, step * scales), scan, settings, here.matches.faces)
+            decrease = here.cost - there.cost
+            radius = choose_radius(radius, float(np.linalg.norm(step)), decrease, promised)
+            if decrease > ENOUGH * promised:
+                is_done = decrease < settings.tolerance * here.cost
+                here, step_parts = there, None
+                if is_done:
+                    break
+            elif radius < 1e-3:
+                break
+        return here
+
+    def evaluate(self, state: HandState, scan: ScanPoints, settings: FitSettings, seeds=None) -> Evaluation:
+        """Matches and cost at a state."""
+        posed = state.posed(self.model)
+        vertices = posed.vertices
+        sigma = settings.sigma_mm / MM
+        reach = 4.0 * sigma
+        matches = self.search.match(vertices, scan.points, scan.normals, reach, seeds)
+        weights = np.empty(len(scan.points))
+        is_found = matches.faces >= 0
+        missing = float(np.count_nonzero(~is_found)) * saturated(reach, sigma)
+        scale = len(vertices) / len(scan.points)
+        data = scale * MM * MM * (weigh_robustly(weights, matches.offsets, sigma) + missing)
+        weights *= scale * (is_found & ~matches.on_rim)
+        back_weights = back_offsets = np.zeros(0)
+        back_normals = np.zeros((0, 3))
+        if settings.to_scan > 0.0:
+            mine = vertices[self.inner]
+            surface = scan.surface
+            distances, ids = surface.tree.query(mine, distance_upper_bound=reach)
+            is_near = ids < len(surface.points)
+            ids = np.where(is_near, ids, 0)
+            towards = mine - surface.points[ids]
+            normals = surface.normals[ids]
+            looks = np.einsum("nd,nd->n", normals, find_unit_normals(vertices, self.search.faces)[self.inner]) > MIN_COSINE
+            has_normal = normals.any(axis=1)
+            along = np.where(has_normal, np.einsum("nd,nd->n", towards, normals), distances)
+            back_normals = np.where(has_normal[:, None], normals, towards / np.maximum(distances, 1e-9)[:, None])
+            is_used = is_near & (looks | ~has_normal)
+            back_offsets = np.where(is_used, along, 0.0)
+            # the weight follows the whole distance, so that vertices over a hole do not count as near its rim's plane
+            square = sigma * sigma
+            share = np.where(is_used, square / (square + np.where(is_near, distances, 0.0) ** 2), 0.0)
+            rho = np.where(is_used, np.where(is_near, distances, 0.0) ** 2 * share, saturated(reach, sigma))
+            data += settings.to_scan * MM * MM * float(rho.sum())
+            back_weights = settings.to_scan * share * share
+        cost = data + settings.pose_weight * self.prior.cost(state.pose[1:])
+        cost += settings.shape_weight * float(state.shape @ state.shape)
+        return Evaluation(state, posed, matches, weights, back_weights, back_offsets, back_normals, cost, data)
+
+    def _linearize(self, here: Evaluation, scan: ScanPoints, settings: FitSettings) -> tuple[Array, Array]:
+        model = self.model
+        size = model.num_parameters
+        J = here.posed.vertex_jacobian()
+        JtJ, Jtr = np.zeros((size, size)), np.zeros(size)
+        matches = here.matches
+        corners = self.search.faces[matches.faces]
+        add_model_rows(
+            JtJ, Jtr, J, corners, matches.weights, matches.directions, -matches.offsets, MM * MM * here.weights
+        )
+        if len(here.back_weights):
+            ids = np.repeat(self.inner[:, None], 3, axis=1).astype(np.int32)
+            shares = np.zeros((len(ids), 3))
+            shares[:, 0] = 1.0
+            add_model_rows(
+                JtJ, Jtr, J, ids, shares, here.back_normals, here.back_offsets, MM * MM * here.back_weights
+            )
+        JtJ = np.tril(JtJ) + np.tril(JtJ, -1).T
+        first, last = 6, 3 + 3 * len(model.parents)
+        _, prior_JtJ, prior_Jtr = self.prior.linearize(here.state.pose[1:])
+        JtJ[first:last, first:last] += settings.pose_weight * prior_JtJ
+        Jtr[first:last] += settings.pose_weight * prior_Jtr
+        shape_ids = np.arange(last, size)
+        JtJ[shape_ids, shape_ids] += settings.shape_weight
+        Jtr[shape_ids] += settings.shape_weight * here.state.shape
+        if settings.is_rigid:
+            JtJ[first:last] = 0.0
+            JtJ[:, first:last] = 0.0
+            Jtr[first:last] = 0.0
+            JtJ[np.arange(first, last), np.arange(first, last)] = 1.0
+        JtJ[np.arange(6), np.arange(6)] += 1e-6 * max(float(JtJ.diagonal()[:6].max()), 1e-9)
+        return JtJ, Jtr
+
+
+def saturated(reach: float, sigma: float) -> float:
+    """Cost of a point that nothing lies within `reach` of."""
+    return reach * reach * sigma * sigma / (reach * reach + sigma * sigma)
+
+

@@ -1,0 +1,41 @@
+"""What a registration may be told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from tracker.registration.free_fit import FreeSettings
+from tracker.registration.model_fit import FitSettings
+from tracker.registration.pose_prior import PosePrior
+
+
+@dataclass(frozen=True)
+class RegistrationOptions:
+    """How scans are registered; the defaults were measured, see docs/registration.md.
+
+    Attributes:
+        side: "right" or "left" when known; None tries both.
+        use_colors: Drop points by R17's rule for green objects.
+        max_points: So many points are fitted at most; further ones are only measured.
+        prior: Of the pose, in place of the anatomical one: R17's pose-specific Gaussian, say.
+        model_stages: Fits of pose and shape, each with the number of points it uses.
+        free_stages: Fits of the free surface.
+    """
+
+    side: str | None = None
+    use_colors: bool = True
+    max_points: int = 50_000
+    prior: PosePrior | None = None
+    model_stages: tuple[tuple[int, FitSettings], ...] = field(
+        default=(
+            (1500, FitSettings(10.0, 8, to_scan=0.3)),
+            (5000, FitSettings(5.0, 8, to_scan=0.1)),
+        )
+    )
+    free_stages: tuple[tuple[int, FreeSettings], ...] = field(
+        default=(
+            (5000, FreeSettings(1.0, 10.0, 3)),
+            (5000, FreeSettings(0.2, 7.0, 3, 0.05, 0.05)),
+            (15000, FreeSettings(0.03, 5.0, 4, 0.03, 0.03)),
+        )
+    )

@@ -64,6 +64,22 @@ class ScanError(TrackerError):
         super().__init__(f"{path}: found {found}; needed {needed}.")
 
 
+class RegistrationError(TrackerError):
+    """A registration's file is not usable.
+
+    Args:
+        path: The file.
+        found: What was found in it.
+        needed: What such a file must have.
+    """
+
+    def __init__(self, path: Path | str, found: str, needed: str) -> None:
+        self.path = str(path)
+        self.found = found
+        self.needed = needed
+        super().__init__(f"{path}: found {found}; needed {needed}.")
+
+
 class SolveError(TrackerError):
     """An objective cannot be minimised."""
 

@@ -139,7 +139,7 @@ def _clean(path: Path, raw: RawScan) -> Scan:
         raise ScanError(path, "no points", "the points of a hand")
     if faces is not None and len(faces) and (faces.min() < 0 or faces.max() >= len(points)):
         raise ScanError(path, f"a triangle with the point {faces.max()}", f"points below {len(points)}")
-    is_usable = np.isfinite(points).all(axis=1) & (np.abs(points) < 1e9).all(axis=1)
+    is_usable = np.asarray((np.abs(points) < 1e9).all(axis=1))  # not where a coordinate is NaN
     if is_usable.sum() < MIN_POINTS:
         found = f"{int(is_usable.sum())} finite points of {len(points)}"
         raise ScanError(path, found, f"at least {MIN_POINTS}")

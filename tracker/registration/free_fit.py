@@ -210,10 +210,19 @@ class _System:
         turn, move = step[:size], step[size:].reshape(-1, 3) * VERTEX_SCALE
         matches = self.here.matches
         data = _sum_squares(
-            move, self.free.fit_model.search.faces, matches.faces, matches.weights, matches.directions, self.here.weights
+            move,
+            self.free.fit_model.search.faces,
+            matches.faces,
+            matches.weights,
+            matches.directions,
+            self.here.weights,
         )
         stretch = self.free.differences @ (move - self.J @ turn) * MM
-        return data + self.settings.coupling * float(np.einsum("ed,ed->", stretch, stretch)) + turn @ self.prior @ turn
+        return (
+            data
+            + self.settings.coupling * float(np.einsum("ed,ed->", stretch, stretch))
+            + float(turn @ self.prior @ turn)
+        )
 
     def split(self, step: Array) -> tuple[Array, Array]:
         """Step of the model (P,) and of the vertices (V, 3), no longer scaled."""

@@ -134,11 +134,13 @@ class ModelFit:
             mine = vertices[self.inner]
             surface = scan.surface
             distances, ids = surface.tree.query(mine, distance_upper_bound=reach)
-            is_near = ids < len(surface.points)
+            is_near = np.asarray(ids < len(surface.points))
             ids = np.where(is_near, ids, 0)
             towards = mine - surface.points[ids]
             normals = surface.normals[ids]
-            looks = np.einsum("nd,nd->n", normals, find_unit_normals(vertices, self.search.faces)[self.inner]) > MIN_COSINE
+            looks = (
+                np.einsum("nd,nd->n", normals, find_unit_normals(vertices, self.search.faces)[self.inner]) > MIN_COSINE)
+            )
             has_normal = normals.any(axis=1)
             along = np.where(has_normal, np.einsum("nd,nd->n", towards, normals), distances)
             back_normals = np.where(has_normal[:, None], normals, towards / np.maximum(distances, 1e-9)[:, None])
@@ -168,9 +170,7 @@ class ModelFit:
             ids = np.repeat(self.inner[:, None], 3, axis=1).astype(np.int32)
             shares = np.zeros((len(ids), 3))
             shares[:, 0] = 1.0
-            add_model_rows(
-                JtJ, Jtr, J, ids, shares, here.back_normals, here.back_offsets, MM * MM * here.back_weights
-            )
+            add_model_rows(JtJ, Jtr, J, ids, shares, here.back_normals, here.back_offsets, MM * MM * here.back_weights)
         JtJ = np.tril(JtJ) + np.tril(JtJ, -1).T
         first, last = 6, 3 + 3 * len(model.parents)
         _, prior_JtJ, prior_Jtr = self.prior.linearize(here.state.pose[1:])
@@ -191,5 +191,3 @@ class ModelFit:
 def saturated(reach: float, sigma: float) -> float:
     """Cost of a point that nothing lies within `reach` of."""
     return reach * reach * sigma * sigma / (reach * reach + sigma * sigma)
-
-

@@ -1,4 +1,4 @@
-"""The points of a scan that are fitted: without objects and loose bits, in an order whose every beginning is spread evenly."""
+"""The points of a scan that are fitted: without objects and loose bits, any first of them spread evenly."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from tracker.capture.scan import Scan
 
@@ -57,8 +57,8 @@ class ScanPoints:
         return self.first(SURFACE_POINTS) if len(self.points) > SURFACE_POINTS else self
 
     @cached_property
-    def tree(self) -> cKDTree:
-        return cKDTree(self.points)
+    def tree(self) -> KDTree:
+        return KDTree(self.points)
 
     def mirrored(self) -> ScanPoints:
         """The points seen in the mirror x = 0."""
@@ -68,7 +68,7 @@ class ScanPoints:
 
 def find_hand_points(scan: Scan, use_colors: bool = True) -> tuple[Mask, list[str]]:
     """Points (N,) that may belong to a hand, and what was left out and why."""
-    keep = np.isfinite(scan.points).all(axis=1) & np.isfinite(scan.normals).all(axis=1)
+    keep = np.asarray(np.isfinite(np.concatenate([scan.points, scan.normals], axis=1)).all(axis=1))
     notes = [] if keep.all() else [f"{int((~keep).sum())} points are not finite"]
     if use_colors and scan.colors is not None:
         red, green = scan.colors[:, 0], scan.colors[:, 1]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial.transform import Rotation
 
 from tracker.model.blend_model import BlendModel
 from tracker.registration.hand_state import HandState
@@ -30,24 +32,31 @@ RIGID_POINTS, COARSE_POINTS, FINE_POINTS = 250, 500, 1000
 KEPT_RIGID, KEPT_COARSE = 10, 3
 
 
+@dataclass(frozen=True)
+class Start:
+    """A state that may be right: its cost a vertex, mm², the side and all of its evaluation."""
+
+    cost: float
+    side: str
+    evaluation: Evaluation
+
+
 def find_starts(
     fit: ModelFit,
-    scan: ScanPoints,
-    sides: tuple[str, ...],
+    scans: dict[str, ScanPoints],
     flexion_axes: Array,
     tell: Callable[[float], None] = lambda share: None,
-) -> list[tuple[float, str, Evaluation]]:
-    """States of the hand, best first, with cost a vertex (mm²) and the side they are on.
+) -> list[Start]:
+    """States of the hand, best first.
 
     Args:
         fit: The right-handed model.
-        scan: The points as they are.
-        sides: Which to try; for "left" the scan is mirrored.
+        scans: The points for each side to try, mirrored for "left".
         flexion_axes: (K, 3) of the joints behind the root.
         tell: Is told the share that is done.
     """
-    found: list[tuple[float, str, Evaluation]] = []
-    scans = {side: scan if side == "right" else scan.mirrored() for side in sides}
+    found: list[Start] = []
+    sides = tuple(scans)
     candidates = []
     for number, side in enumerate(sides):
         few = scans[side].first(RIGID_POINTS)
@@ -70,38 +79,35 @@ def find_starts(
         for candidate, _ in [c for c in fitted if c[1] == side][:KEPT_COARSE]:
             found.append(refine(fit, some, candidate.state, side))
     tell(0.8)
-    found.sort(key=lambda item: item[0])
+    found.sort(key=lambda item: item.cost)
     best = found[0]
-    for side in {best[1]}:
-        found.append(bend_fingers(fit, scans[side].first(FINE_POINTS), best, flexion_axes))
-    found.sort(key=lambda item: item[0])
+    found.append(bend_fingers(fit, scans[best.side].first(FINE_POINTS), best, flexion_axes))
+    found.sort(key=lambda item: item.cost)
     tell(1.0)
     return found
 
 
-def refine(fit: ModelFit, scan: ScanPoints, state: HandState, side: str) -> tuple[float, str, Evaluation]:
+def refine(fit: ModelFit, scan: ScanPoints, state: HandState, side: str) -> Start:
     """A state fitted closely, with its cost."""
     first = fit.fit(state, scan, FINE)
     second = fit.fit(first.state, scan, FINEST, first.matches.faces)
     judged = fit.evaluate(second.state, scan, JUDGE, second.matches.faces)
-    return judged.cost / len(fit.model.template), side, judged
+    return Start(judged.cost / len(fit.model.template), side, judged)
 
 
-def bend_fingers(
-    fit: ModelFit, scan: ScanPoints, best: tuple[float, str, Evaluation], flexion_axes: Array
-) -> tuple[float, str, Evaluation]:
+def bend_fingers(fit: ModelFit, scan: ScanPoints, best: Start, flexion_axes: Array) -> Start:
     """The best state after each finger was started anew, straight, half bent and folded."""
     chains = find_chains(fit.model)
     for chain in chains:
         for curl in CURLS:
-            state = best[2].state
+            state = best.evaluation.state
             pose = state.pose.copy()
             for bone, degrees in zip(chain, curl, strict=False):
                 pose[bone] = np.radians(degrees) * flexion_axes[bone - 1]
             if np.abs(pose - state.pose).max() < 0.2:
                 continue
-            tried = refine(fit, scan, HandState(pose, state.shape, state.translation), best[1])
-            if tried[0] < best[0] - 1e-3:
+            tried = refine(fit, scan, HandState(pose, state.shape, state.translation), best.side)
+            if tried.cost < best.cost - 1e-3:
                 best = tried
     return best
 
@@ -143,8 +149,6 @@ def _list_candidates(model: BlendModel, scan: ScanPoints, flexion_axes: Array) -
 
 
 def _log(R: Array) -> Array:
-    from scipy.spatial.transform import Rotation
-
     return Rotation.from_matrix(R).as_rotvec()
 
 

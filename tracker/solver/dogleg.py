@@ -1,4 +1,4 @@
-"""Powell's dogleg step within a trust region, and how the region changes ([R17] section 3.2, Nocedal and Wright ch. 4)."""
+"""Powell's dogleg step in a trust region, and how the region changes ([R17] section 3.2, Nocedal and Wright ch. 4)."""
 
 from __future__ import annotations
 

@@ -1,0 +1,200 @@
+"""`handloom register`: lay a hand model's mesh onto 3D scans."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tracker.cli.command import add_json, run_guarded
+from tracker.cli.progress import ProgressLine
+from tracker.errors import RegistrationError, ScanError, TrackerError
+
+if TYPE_CHECKING:
+    from tracker.registration.options import RegistrationOptions
+
+Job = tuple[Path, Path, Path | None, Path | None, "RegistrationOptions", float | None]
+
+
+def add_command(subparsers: argparse._SubParsersAction) -> None:
+    parser = subparsers.add_parser(
+        "register",
+        help="lay a hand model's mesh onto 3D scans",
+        description="Register the mesh of a hand model to each scan, without a manual start, and judge the result. For "
+        "each scan, OUT/NAME gets registration.npz and registration.ply. Scans whose registration is there already, "
+        "with the same scan and model, are skipped: an interrupted run goes on where it stopped.",
+    )
+    parser.add_argument(
+        "scans", type=Path, nargs="+", metavar="SCAN", help="PLY, OBJ, STL or npz; a folder stands for all in it"
+    )
+    parser.add_argument("--model", type=Path, metavar="FILE", help="the hand model (default: the untrained hand)")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="the folder for the registrations")
+    parser.add_argument("--side", choices=("right", "left"), help="which hand, if known (both are tried)")
+    parser.add_argument("--metres-per-unit", type=float, metavar="M", help="unit of the files (guessed from the size)")
+    parser.add_argument("--start", type=Path, metavar="DIR", help="begin with these earlier registrations of the scans")
+    parser.add_argument("--no-colors", action="store_true", help="keep green points (else taken for an object)")
+    parser.add_argument("--processes", type=int, default=1, metavar="N", help="scans at a time (1)")
+    parser.add_argument("--again", action="store_true", help="register finished scans again")
+    add_json(parser)
+    parser.set_defaults(run=run_guarded(register, show))
+
+
+def register(args: argparse.Namespace) -> list[dict[str, Any]]:
+    from tracker.registration.options import RegistrationOptions
+
+    if not 1 <= args.processes <= 256:
+        raise TrackerError(f"--processes {args.processes}: needed 1 to 256.")
+    paths = list_scans(args.scans)
+    if args.model is not None:
+        _load_model(args.model)  # said before anything is begun
+    options = RegistrationOptions(side=args.side, use_colors=not args.no_colors)
+    jobs: list[Job] = []
+    for path, name in name_scans(paths):
+        begin = None if args.start is None else args.start / name
+        jobs.append((path, args.out / name, args.model, begin, options, args.metres_per_unit))
+    line = ProgressLine(f"registering {len(jobs)} scans")
+    results: list[dict[str, Any]] = []
+    for result in _run(jobs, args.processes, args.again):
+        results.append(result)
+        line.show(len(results) / len(jobs), f"{result['scan']}: {result['verdict']}")
+    if all("error" in result for result in results):
+        raise TrackerError("; ".join(str(result["error"]) for result in results[:5]))
+    return results
+
+
+def list_scans(given: list[Path]) -> list[Path]:
+    """The scan files that are meant; those of a folder in the order of their names.
+
+    Raises:
+        TrackerError: There are none.
+    """
+    from tracker.capture.scan import SCAN_SUFFIXES
+
+    paths: list[Path] = []
+    for path in given:
+        if path.is_dir():
+            inside = (p for p in sorted(path.rglob("*")) if p.suffix.lower() in SCAN_SUFFIXES and p.is_file())
+            paths += [p for p in inside if p.name not in ("truth.npz", "registration.npz", "registration.ply")]
+        else:
+            paths.append(path)
+    if not paths:
+        raise TrackerError(f"No scans in {', '.join(map(str, given))}; needed {', '.join(SCAN_SUFFIXES)}.")
+    return paths
+
+
+def name_scans(paths: list[Path]) -> Iterator[tuple[Path, str]]:
+    """Each scan with the name of its folder in OUT: that of the file, or of its folder too where files share names."""
+    stems = [path.stem for path in paths]
+    is_shared = len(set(stems)) < len(stems)
+    taken: dict[str, Path] = {}
+    for path in paths:
+        name = f"{path.resolve().parent.name}_{path.stem}" if is_shared else path.stem
+        if name in taken:
+            raise TrackerError(f"{path} and {taken[name]} would share the name {name}; give them apart.")
+        taken[name] = path
+        yield path, name
+
+
+def _run(jobs: list[Job], processes: int, again: bool) -> Iterator[dict[str, Any]]:
+    if processes == 1:
+        for job in jobs:
+            yield register_one(job, again)
+        return
+    os.environ["OMP_NUM_THREADS"] = os.environ["NUMBA_NUM_THREADS"] = "1"
+    with ProcessPoolExecutor(processes) as pool:
+        try:
+            yield from pool.map(register_one, jobs, [again] * len(jobs))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def register_one(job: Job, again: bool) -> dict[str, Any]:
+    """Register one scan to its folder, unless that is done; what `--json` lists of it."""
+    from tracker.capture.scan import load_scan
+    from tracker.registration.register import prepare_tools, register_scan
+    from tracker.registration.registration import digest_scan
+    from tracker.registration.registration_files import (
+        REGISTRATION_FILE,
+        load_registration,
+        save_registration,
+        summarize_registration,
+    )
+
+    path, folder, model_path, start_folder, options, metres_per_unit = job
+    try:
+        scan = load_scan(path, metres_per_unit)
+        model = _load_model(model_path)
+        if not again and (folder / REGISTRATION_FILE).is_file():
+            try:
+                done = load_registration(folder)
+                if (done.scan_digest, done.model_digest) == (digest_scan(scan), prepare_tools(model).model_digest):
+                    return summarize_registration(done)
+            except RegistrationError:
+                pass  # damaged: made anew
+        start = None
+        if start_folder is not None and (start_folder / REGISTRATION_FILE).is_file():
+            earlier = load_registration(start_folder)
+            start = earlier.as_start() if earlier.verdict == "good" else None
+        registration = register_scan(scan, model, options, start)
+        subject, pose_name = _read_labels(path)
+        registration = replace(registration, subject=subject, pose_name=pose_name)
+        save_registration(registration, folder)
+        return summarize_registration(registration)
+    except (ScanError, RegistrationError) as error:
+        nothing = {"mean": None, "median": None, "p95": None}
+        return {
+            "scan": path.stem,
+            "seconds": 0.0,
+            "verdict": "bad",
+            "scan_to_mesh_mm": nothing,
+            "reasons": [str(error)],
+            "error": str(error),
+        }
+
+
+_models: dict[Path | None, Any] = {}
+
+
+def _load_model(path: Path | None):
+    if path not in _models:
+        from tracker.model.blend_files import load_blend_model
+        from tracker.model.untrained_hand import untrained_hand
+
+        _models[path] = untrained_hand() if path is None else load_blend_model(path)
+    return _models[path]
+
+
+def _read_labels(path: Path) -> tuple[str, str]:
+    """Subject and pose from `scans.json` beside the scan or one folder up, if that names it; else empty."""
+    import json
+
+    for folder in (path.parent, path.parent.parent):
+        listing = folder / "scans.json"
+        if not listing.is_file() or listing.stat().st_size > 64 * 2**20:
+            continue
+        try:
+            document = json.loads(listing.read_text())
+        except (OSError, ValueError):
+            continue
+        rows = document.get("scans", []) if isinstance(document, dict) else document
+        for row in rows if isinstance(rows, list) else []:
+            file = row.get("file", row.get("scan", row.get("name", ""))) if isinstance(row, dict) else ""
+            if isinstance(file, str) and file and Path(file).stem == path.stem:
+                return str(row.get("subject", ""))[:100], str(row.get("pose", row.get("pose_name", "")))[:100]
+    return "", ""
+
+
+def show(results: list[dict[str, Any]]) -> str:
+    lines = []
+    for result in results:
+        distance = result["scan_to_mesh_mm"]["median"]
+        told = "" if distance is None else f"{distance:.2f} mm median scan to mesh, "
+        why = f"; {result['reasons'][0]}" if result["verdict"] != "good" and result["reasons"] else ""
+        lines.append(f"{result['scan']}: {result['verdict']}, {told}{result['seconds']:.1f} s{why}")
+    counts = {name: sum(r["verdict"] == name for r in results) for name in ("good", "doubtful", "bad")}
+    return "\n".join([*lines, ", ".join(f"{count} {name}" for name, count in counts.items())])

@@ -14,7 +14,7 @@ from tracker.errors import TrackerError
 BAD_INPUT, FAILED = 2, 1
 
 
-def run_guarded(work: Callable[[argparse.Namespace], dict[str, Any]], show: Callable[[dict[str, Any]], str]):
+def run_guarded(work: Callable[[argparse.Namespace], Any], show: Callable[[Any], str]):
     """The function to run for a parsed command.
 
     Args:

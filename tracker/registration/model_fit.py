@@ -138,10 +138,9 @@ class ModelFit:
             ids = np.where(is_near, ids, 0)
             towards = mine - surface.points[ids]
             normals = surface.normals[ids]
-            looks = (
-                np.einsum("nd,nd->n", normals, find_unit_normals(vertices, self.search.faces)[self.inner]) > MIN_COSINE)
-            )
-            has_normal = normals.any(axis=1)
+            mine_normals = find_unit_normals(vertices, self.search.faces)[self.inner]
+            looks = np.asarray(np.einsum("nd,nd->n", normals, mine_normals) > MIN_COSINE)
+            has_normal = np.asarray(normals.any(axis=1))
             along = np.where(has_normal, np.einsum("nd,nd->n", towards, normals), distances)
             back_normals = np.where(has_normal[:, None], normals, towards / np.maximum(distances, 1e-9)[:, None])
             is_used = is_near & (looks | ~has_normal)

@@ -36,9 +36,6 @@ def pose_angles(subject: Subject, pose: HandPose) -> Array:
             target = {"flexion": flexion, "abduction": spread, "twist": 0.0}[dof.motion]
             rest = 0.0 if dof.motion == "twist" else rest_angle(subject, number)
             angles[number] = np.radians(target) - rest
-            if dof.motion == "abduction":
-                # A bent finger can hardly be spread: its collateral ligaments are tight.
-                angles[number] *= 1.0 - 0.9 * np.clip(flexion / 85.0, 0.0, 1.0)
     return angles
 
 

@@ -12,33 +12,46 @@ Ints = npt.NDArray[np.int64]
 
 @njit(cache=True, nogil=True)
 def pose_bones(
-    Ts: Array, angles: Array, dof_bones: Ints, axes: Array, joints: Array, parents: Ints, rolls: Array
+    Ts: Array,
+    turned: Array,
+    angles: Array,
+    dof_bones: Ints,
+    is_abduction: npt.NDArray[np.bool_],
+    axes: Array,
+    joints: Array,
+    parents: Ints,
+    rolls: Array,
 ) -> None:
     """Write Ts (B, 3, 4), rest to posed, for angles (D,) rad about axes (D, 3) through joints (B, 3).
 
-    A phalanx rolls over the head of the one before: its centre of rotation moves by rolls (B, 3) times one minus the
-    cosine of the first angle of the bone, which is flexion. Parents (B,) stand before their children.
+    Also writes turned (D, 3), the axes in the pose. A bone is spread first, then bent about its own axis, then twisted;
+    its angles stand in the order flexion, abduction, twist. A phalanx rolls over the head of the one before: its centre
+    of rotation moves by rolls (B, 3) times one minus the cosine of its flexion. Parents (B,) stand before children.
     """
     dof = 0
     for b in range(len(joints)):
+        p = parents[b]
+        Rp = np.eye(3) if p < 0 else np.ascontiguousarray(Ts[p, :, :3])
+        first = dof
+        while dof < len(angles) and dof_bones[dof] == b:
+            dof += 1
         R = np.eye(3)
         bend = 0.0
-        is_first = True
-        while dof < len(angles) and dof_bones[dof] == b:
-            if is_first:
-                bend = 1.0 - np.cos(angles[dof])
-                is_first = False
-            R = R @ _rotation(axes[dof], angles[dof])
-            dof += 1
+        for d in range(first, dof):
+            if is_abduction[d]:
+                R = _rotation(axes[d], angles[d])
+                turned[d] = Rp @ axes[d]
+        for d in range(first, dof):
+            if not is_abduction[d]:
+                turned[d] = Rp @ (R @ axes[d])
+                R = R @ _rotation(axes[d], angles[d])
+                if d == first:
+                    bend = 1.0 - np.cos(angles[d])
         t = joints[b] - R @ joints[b] + bend * rolls[b]
-        p = parents[b]
-        if p < 0:
-            Ts[b, :, :3] = R
-            Ts[b, :, 3] = t
-        else:
-            Rp = np.ascontiguousarray(Ts[p, :, :3])
-            Ts[b, :, :3] = Rp @ R
-            Ts[b, :, 3] = Rp @ t + Ts[p, :, 3]
+        Ts[b, :, :3] = Rp @ R
+        Ts[b, :, 3] = Rp @ t
+        if p >= 0:
+            Ts[b, :, 3] += Ts[p, :, 3]
 
 
 @njit(cache=True, nogil=True)

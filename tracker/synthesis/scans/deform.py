@@ -50,9 +50,9 @@ def rolling(number: int) -> Array:
 
 def place_bones(subject: Subject, angles: Array) -> Array:
     """Ts (20, 3, 4), rest to posed, for angles (31,) rad from the rest pose."""
-    Ts = np.empty((len(BONES), 3, 4))
-    rolls = rolling(subject.number)
-    pose_bones(Ts, angles, subject.dof_bones, subject.dof_axes, subject.joints, PARENTS, rolls)
+    Ts, turned = np.empty((len(BONES), 3, 4)), np.empty_like(subject.dof_axes)
+    moving = (subject.dof_bones, subject.is_abduction, subject.dof_axes, subject.joints, PARENTS)
+    pose_bones(Ts, turned, angles, *moving, rolling(subject.number))
     return Ts
 
 

@@ -28,6 +28,12 @@ STIFFNESS = 0.25e-3
 DEVIATIONS = {"flexion": np.radians(7.0), "abduction": np.radians(7.0), "twist": np.radians(2.0)}
 """How far joints give way, standard deviations."""
 
+THUMB_DEVIATION = np.radians(9.0)
+THUMB = (1, 2, 3)
+ITERATIONS = 14
+
+SEGMENTS = ("metacarpal", "proximal", "middle", "distal")
+
 PAD_SHARE = 0.62
 """Where along a distal phalanx the middle of the fingertip's pad is."""
 
@@ -41,7 +47,7 @@ class InnerBalls:
         radii: (N,) m.
         bones: (N,) the bone that each goes with.
         pairs: (P, 2) balls that must not overlap.
-        slack: (P,) by how much they do at rest, m.
+        slack: (P,) by how much they may, m: as much as they do at rest and as skin gives way.
         pads: For each bone that has them the ball at its pad.
     """
 
@@ -85,9 +91,14 @@ def load_balls(number: int) -> InnerBalls:
         centers_array[wider] = moved[wider]
     radii = np.asarray(tree.query(centers_array)[0])
     bone_array = np.array(bones)
+    for finger in FINGERS[1:]:
+        # At the webs a ball of the first phalanx would fill the skin between two fingers.
+        own = bone_array == BONES.index(f"{finger}_proximal")
+        radii[own] = np.minimum(radii[own], radii[pads[f"{finger}_proximal"]])
     pairs = np.array([(i, j) for i in range(len(bones)) for j in range(i) if _may_meet(bones[i], bones[j])])
     gap = np.linalg.norm(centers_array[pairs[:, 0]] - centers_array[pairs[:, 1]], axis=1)
-    slack = np.maximum(radii[pairs].sum(axis=1) - gap, 0.0)
+    slack = np.maximum(radii[pairs].sum(axis=1) - gap, 0.0) + GIVE
+    slack[_are_neighbours(bone_array[pairs])] += GIVE
     return InnerBalls(centers_array, radii, bone_array, pairs, slack, pads)
 
 
@@ -101,37 +112,54 @@ def _may_meet(first: int, second: int) -> bool:
     return not ({"metacarpal", "proximal"} == {segment_a, segment_b} and "thumb" not in (finger_a, finger_b))
 
 
-def settle(subject: Subject, angles: Array, touches: tuple[tuple[str, str], ...], iterations: int = 14) -> Array:
+def _are_neighbours(bones: Ints) -> npt.NDArray[np.bool_]:
+    """(P,) which pairs of bones (P, 2) are the same phalanx of fingers side by side, whose flanks are soft."""
+    fingers = np.array([FINGERS.index(name.split("_")[0]) if name != "wrist" else -9 for name in BONES])
+    segments = np.array([len(BONES) if name == "wrist" else SEGMENTS.index(name.split("_")[1]) for name in BONES])
+    a, b = bones.T
+    side_by_side = (np.abs(fingers[a] - fingers[b]) == 1) & (np.minimum(fingers[a], fingers[b]) > 0)
+    return side_by_side & (segments[a] == segments[b])
+
+
+def settle(subject: Subject, angles: Array, touches: tuple[tuple[str, str], ...]) -> Array:
     """Angles (31,) rad near the wanted ones at which nothing overlaps and what should touch does.
 
-    Damped Gauss-Newton on the angles' distance from the wanted ones, on overlaps and on the gaps of `touches`.
+    Damped Gauss-Newton on the angles' distance from the wanted ones, on overlaps and on the gaps of `touches`: the
+    four fingers first, then the thumb, to which only fingers that it should meet with their tips make way.
     """
     balls = load_balls(subject.number)
+    is_thumb = np.array([dof.finger == "thumb" for dof in subject.dofs])
+    has_thumb = np.isin(balls.bones[balls.pairs], THUMB).any(axis=1)
+    meeting = {bone.split("_")[0] for pair in touches for bone in pair if bone.endswith("_distal")}
+    stiff = np.array([0.35 if dof.finger != "thumb" and dof.finger not in meeting else 1.0 for dof in subject.dofs])
     deviations = np.array([DEVIATIONS[dof.motion] for dof in subject.dofs])
-    deviations[[dof.finger == "thumb" for dof in subject.dofs]] = np.radians(8.0 if touches else 6.0)
     deviations[[dof.finger != "thumb" and dof.segment == "metacarpal" for dof in subject.dofs]] = np.radians(1.5)
+    deviations[is_thumb] = THUMB_DEVIATION
+    touching = np.array([(balls.pads[a], balls.pads[b]) for a, b in touches], dtype=np.int64).reshape(-1, 2)
+    fingers = _solve(subject, angles, deviations, balls, ~has_thumb, touching[:0])
+    return _solve(subject, fingers, deviations * stiff, balls, np.ones_like(has_thumb), touching)
+
+
+def _solve(
+    subject: Subject,
+    angles: Array,
+    deviations: Array,
+    balls: InnerBalls,
+    is_used: npt.NDArray[np.bool_],
+    touching: Ints,
+) -> Array:
     lower = np.array([dof.lower for dof in subject.dofs])
     upper = np.array([dof.upper for dof in subject.dofs])
-    touching = np.array([(balls.pads[a], balls.pads[b]) for a, b in touches], dtype=np.int64).reshape(-1, 2)
-    return _settle(
-        angles,
-        deviations,
-        lower,
-        upper,
+    skeleton = (
         subject.dof_bones,
+        subject.is_abduction,
         subject.dof_axes,
         subject.joints,
         PARENTS,
         rolling(subject.number),
-        balls.centers,
-        balls.radii,
-        balls.bones,
-        balls.pairs,
-        balls.slack + GIVE,
-        touching,
-        STIFFNESS,
-        iterations,
     )
+    inside = (balls.centers, balls.radii, balls.bones, balls.pairs[is_used], balls.slack[is_used])
+    return _settle(angles, deviations, lower, upper, *skeleton, *inside, touching, STIFFNESS, ITERATIONS)
 
 
 @njit(cache=True, nogil=True)
@@ -141,6 +169,7 @@ def _settle(
     lower: Array,
     upper: Array,
     dof_bones: Ints,
+    is_abduction: npt.NDArray[np.bool_],
     axes: Array,
     joints: Array,
     parents: Ints,
@@ -163,14 +192,13 @@ def _settle(
     best = np.inf
     kept = angles.copy()
     for _ in range(iterations):
-        pose_bones(Ts, angles, dof_bones, axes, joints, parents, rolls)
+        pose_bones(Ts, turned, angles, dof_bones, is_abduction, axes, joints, parents, rolls)
         for n in range(len(centers)):
             T = Ts[bones[n]]
             for k in range(3):
                 placed[n, k] = T[k, 0] * centers[n, 0] + T[k, 1] * centers[n, 1] + T[k, 2] * centers[n, 2] + T[k, 3]
         for d in range(count):
             b = dof_bones[d]
-            turned[d] = np.ascontiguousarray(Ts[parents[b], :, :3]) @ axes[d]
             pivots[d] = np.ascontiguousarray(Ts[b, :, :3]) @ joints[b] + Ts[b, :, 3]
         cost = 0.0
         JtJ, Jtr = np.zeros((count, count)), np.zeros(count)

@@ -64,6 +64,7 @@ class Subject:
         ends: (20, 3) where each bone ends; the wrist's at the middle knuckle.
         dofs: 31 revolute joints.
         dof_bones: (31,) the bone that each turns.
+        is_abduction: (31,).
         dof_axes: (31, 3).
     """
 
@@ -74,6 +75,7 @@ class Subject:
     ends: Array
     dofs: tuple[HandJoint, ...]
     dof_bones: Ints
+    is_abduction: npt.NDArray[np.bool_]
     dof_axes: Array
 
 
@@ -151,6 +153,7 @@ def load_subject(number: int) -> Subject:
         np.array(ends),
         dofs,
         np.array([BONES.index(f"{dof.finger}_{dof.segment}") for dof in dofs], dtype=np.int64),
+        np.array([dof.motion == "abduction" for dof in dofs]),
         np.array([dof.axis for dof in dofs]),
     )
 

@@ -11,7 +11,7 @@ WEB := web/dist/.stamp
 TRACKER_SOURCES := $(shell find tracker -name '*.py')
 WEB_SOURCES := $(shell find web -type f -not -path '*/node_modules/*' -not -path '*/dist/*' -not -path '*/test-results/*' -not -name '*.tsbuildinfo')
 
-.PHONY: setup demo test test-python test-web lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies clean
+.PHONY: setup demo test test-python test-rooms test-browser test-web lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies clean
 .DELETE_ON_ERROR:
 
 setup: $(PROJECT) $(WEB) $(COMPILED)
@@ -47,12 +47,18 @@ $(COMPILED): $(PROJECT) $(TRACKER_SOURCES)
 demo: setup
 	$(BIN)/handloom demo
 
-# Both suites run even if one fails; pytest last, so that its closing line closes.
+# All suites run even if one fails; pytest last, so that its closing line closes. Browsers need the processors for themselves.
 test: setup
 	@status=0; $(MAKE) --no-print-directory test-web || status=1; $(MAKE) --no-print-directory test-python || status=1; exit $$status
 
 test-python: setup
-	$(BIN)/python -m pytest -rs
+	@status=0; $(MAKE) --no-print-directory test-rooms || status=1; $(MAKE) --no-print-directory test-browser || status=1; exit $$status
+
+test-rooms: setup
+	$(BIN)/python -m pytest -rs -m "not browser" --numprocesses auto --maxprocesses 4 --dist loadfile
+
+test-browser: setup
+	$(BIN)/python -m pytest -rs -m browser
 
 test-web: setup
 	cd web && npm test --silent

@@ -143,8 +143,7 @@ def synthesized(tmp_path_factory: pytest.TempPathFactory) -> Synthesized:
     return Synthesized(folder, archive, [(x, y) for x, y, _ in first["points"]])
 
 
-@pytest.fixture
-def recording(studio: Studio, synthesized: Synthesized) -> dict[str, Any]:
+def import_copy(studio: Studio, synthesized: Synthesized) -> dict[str, Any]:
     """A fresh copy of the recording in the studio, imported through the API."""
     with synthesized.archive.open("rb") as file:
         made = studio.send("POST", "/imports", files={"files": ("opening-hand.zip", file)})
@@ -153,6 +152,12 @@ def recording(studio: Studio, synthesized: Synthesized) -> dict[str, Any]:
     stored = studio.send("POST", f"/imports/{made.json()['id']}/confirm", json={"name": "Opening hand"})
     stored.raise_for_status()
     return stored.json()
+
+
+@pytest.fixture
+def recording(studio: Studio, synthesized: Synthesized) -> dict[str, Any]:
+    """A recording that no other test has seen."""
+    return import_copy(studio, synthesized)
 
 
 @pytest.fixture(scope="session")

@@ -14,6 +14,7 @@ import { EmptyState } from "./parts/EmptyState";
 import { Failure } from "./parts/Failure";
 import { JobRow } from "./parts/JobRow";
 import { useTitle } from "./parts/useTitle";
+import { For } from "./parts/For";
 
 /** Queue and workers, live; batches; every job there was, to be found, chosen and acted on. */
 export function JobsPage() {
@@ -39,7 +40,9 @@ export function JobsPage() {
     <div className="page">
       <Group mb="lg" justify="space-between">
         <Title order={1}>Jobs</Title>
-        <Button onClick={starting.open}>Track several …</Button>
+        <For role="reviewer">
+          <Button onClick={starting.open}>Track several …</Button>
+        </For>
       </Group>
       <Stack gap="xl">
         <Workers />

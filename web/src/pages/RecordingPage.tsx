@@ -25,6 +25,7 @@ import { Sentences } from "./parts/Sentences";
 import { StartTracking } from "./parts/StartTracking";
 import { TrackTable } from "./parts/TrackTable";
 import { useTitle } from "./parts/useTitle";
+import { For } from "./parts/For";
 
 function Cameras({ recording }: { recording: Recording }) {
   return (
@@ -140,9 +141,11 @@ export function RecordingPage() {
           <Button variant="default" component={Link} to={`/recordings/${recording.id}/annotate`} leftSection={<IconPencil size={16} aria-hidden />}>
             Annotate
           </Button>
-          <Button onClick={tracking.open} leftSection={<IconPlayerPlay size={16} aria-hidden />}>
-            Track …
-          </Button>
+          <For role="reviewer">
+            <Button onClick={tracking.open} leftSection={<IconPlayerPlay size={16} aria-hidden />}>
+              Track …
+            </Button>
+          </For>
           <Menu position="bottom-end">
             <Menu.Target>
               <Tooltip label="More">
@@ -155,9 +158,11 @@ export function RecordingPage() {
               <Menu.Item component="a" href={`${API}/sequences/${recording.id}/annotations.json`} download leftSection={<IconDownload size={16} aria-hidden />}>
                 Download annotations.json
               </Menu.Item>
-              <Menu.Item color="red" onClick={drop} leftSection={<IconTrash size={16} aria-hidden />}>
-                Delete (can be undone)
-              </Menu.Item>
+              <For role="lead">
+                <Menu.Item color="red" onClick={drop} leftSection={<IconTrash size={16} aria-hidden />}>
+                  Delete (can be undone)
+                </Menu.Item>
+              </For>
             </Menu.Dropdown>
           </Menu>
         </Group>
@@ -204,9 +209,11 @@ export function RecordingPage() {
           ) : (
             <Group className="card" p="md" justify="space-between">
               <Text className="quiet">Not tracked yet. The tracker starts from the annotation of its first frame, or from the depth alone.</Text>
-              <Button variant="default" onClick={tracking.open}>
-                Track …
-              </Button>
+              <For role="reviewer">
+                <Button variant="default" onClick={tracking.open}>
+                  Track …
+                </Button>
+              </For>
             </Group>
           )}
         </section>

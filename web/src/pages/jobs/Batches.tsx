@@ -3,6 +3,7 @@ import { useBatches, useBulkAct } from "../../api/jobs";
 import { fetchAll } from "../../api/recordings";
 import type { Batch, Job } from "../../api/types";
 import { formatAgo, formatCount, formatDuration } from "../../model/format";
+import { For } from "../parts/For";
 
 const SHOWN = 3;
 
@@ -45,16 +46,18 @@ function BatchRow({ batch, isChosen, onChoose }: { batch: Batch; isChosen: boole
         <Button size="xs" variant={isChosen ? "filled" : "default"} aria-pressed={isChosen} onClick={onChoose}>
           {isChosen ? "Show all jobs" : "Show its jobs"}
         </Button>
-        {!batch.ended_at && (
-          <Button size="xs" variant="default" loading={act.isPending} onClick={() => void actOn("cancel", ["queued", "running"])}>
-            Cancel the batch
-          </Button>
-        )}
-        {batch.ended_at && failed > 0 && (
-          <Button size="xs" variant="default" loading={act.isPending} onClick={() => void actOn("retry", ["failed", "cancelled"])}>
-            Try {failed} again
-          </Button>
-        )}
+        <For role="reviewer">
+          {!batch.ended_at && (
+            <Button size="xs" variant="default" loading={act.isPending} onClick={() => void actOn("cancel", ["queued", "running"])}>
+              Cancel the batch
+            </Button>
+          )}
+          {batch.ended_at && failed > 0 && (
+            <Button size="xs" variant="default" loading={act.isPending} onClick={() => void actOn("retry", ["failed", "cancelled"])}>
+              Try {failed} again
+            </Button>
+          )}
+        </For>
       </Group>
     </div>
   );

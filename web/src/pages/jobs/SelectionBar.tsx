@@ -6,6 +6,7 @@ import { isActive, useBulkAct } from "../../api/jobs";
 import type { BulkAct, Job } from "../../api/types";
 import { formatCount } from "../../model/format";
 import classes from "./SelectionBar.module.css";
+import { For } from "../parts/For";
 
 const SAID: Record<BulkAct, string> = { cancel: "cancelled", retry: "queued again", resume: "resumed" };
 
@@ -34,21 +35,23 @@ export function SelectionBar({ jobs, onClear }: { jobs: readonly Job[]; onClear:
       <Text fw={600} size="sm" role="status">
         {formatCount(jobs.length, "job")} chosen
       </Text>
-      {active.length > 0 && (
-        <Button size="xs" variant="default" loading={bulk.isPending} onClick={() => act("cancel", active)}>
-          Cancel {active.length}
-        </Button>
-      )}
-      {stopped.length > 0 && (
-        <Button size="xs" variant="default" loading={bulk.isPending} onClick={() => act("resume", stopped)}>
-          Resume {stopped.length}
-        </Button>
-      )}
-      {ended.length > 0 && (
-        <Button size="xs" variant="default" loading={bulk.isPending} onClick={() => act("retry", ended)}>
-          Run {ended.length} again
-        </Button>
-      )}
+      <For role="reviewer">
+        {active.length > 0 && (
+          <Button size="xs" variant="default" loading={bulk.isPending} onClick={() => act("cancel", active)}>
+            Cancel {active.length}
+          </Button>
+        )}
+        {stopped.length > 0 && (
+          <Button size="xs" variant="default" loading={bulk.isPending} onClick={() => act("resume", stopped)}>
+            Resume {stopped.length}
+          </Button>
+        )}
+        {ended.length > 0 && (
+          <Button size="xs" variant="default" loading={bulk.isPending} onClick={() => act("retry", ended)}>
+            Run {ended.length} again
+          </Button>
+        )}
+      </For>
       {jobs.length === 2 && (
         <Button size="xs" component={Link} to={`/jobs/compare?a=${jobs[1]?.id}&b=${jobs[0]?.id}`} leftSection={<IconArrowsDiff size={14} aria-hidden />}>
           Compare

@@ -12,6 +12,7 @@ import { ExportCard } from "./ExportCard";
 import { ImportCard } from "./ImportCard";
 import classes from "./LabelsPage.module.css";
 import { SnapshotTable } from "./SnapshotTable";
+import { For } from "../parts/For";
 
 /** Labels of a recording: kept as snapshots, compared, taken out and in. `?compare=` and `?with=` hold what is compared. */
 export function LabelsPage() {
@@ -54,7 +55,9 @@ export function LabelsPage() {
         </Stack>
         <Stack gap="lg" style={{ minWidth: 0 }}>
           <ExportCard recording={recording} snapshots={snapshots.data ?? []} />
-          <ImportCard recording={recording} />
+          <For role="lead">
+            <ImportCard recording={recording} />
+          </For>
         </Stack>
       </div>
     </div>

@@ -9,6 +9,7 @@ import { formatAgo, formatCount } from "../../model/format";
 import { Failure } from "../parts/Failure";
 import classes from "./LabelsPage.module.css";
 import { useUndoable } from "./useUndoable";
+import { For } from "../parts/For";
 
 interface SnapshotTableProps {
   recording: Recording;
@@ -170,9 +171,11 @@ export function SnapshotTable({ recording, snapshots, compared, onCompare }: Sna
                             <Menu.Item onClick={() => void verify(snapshot)} leftSection={<IconShieldCheck size={16} aria-hidden />}>
                               Verify its hash
                             </Menu.Item>
-                            <Menu.Item onClick={() => bringBack(snapshot)} leftSection={<IconArrowBackUp size={16} aria-hidden />}>
-                              Restore (can be undone)
-                            </Menu.Item>
+                            <For role="lead">
+                              <Menu.Item onClick={() => bringBack(snapshot)} leftSection={<IconArrowBackUp size={16} aria-hidden />}>
+                                Restore (can be undone)
+                              </Menu.Item>
+                            </For>
                           </Menu.Dropdown>
                         </Menu>
                       </Group>

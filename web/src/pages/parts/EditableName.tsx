@@ -4,6 +4,7 @@ import { IconPencil } from "@tabler/icons-react";
 import { useState } from "react";
 import { useRenameRecording } from "../../api/recordings";
 import type { Recording } from "../../api/types";
+import { For } from "./For";
 
 /** A recording's name; the pencil turns it into a field. */
 export function EditableName({ recording }: { recording: Recording }) {
@@ -43,11 +44,13 @@ export function EditableName({ recording }: { recording: Recording }) {
       <Title order={1} className="one-line" title={recording.name}>
         {rename.isPending ? rename.variables : recording.name}
       </Title>
-      <Tooltip label="Rename">
-        <ActionIcon aria-label="Rename the recording" onClick={() => setDraft(recording.name)}>
-          <IconPencil size={16} />
-        </ActionIcon>
-      </Tooltip>
+      <For role="lead">
+        <Tooltip label="Rename">
+          <ActionIcon aria-label="Rename the recording" onClick={() => setDraft(recording.name)}>
+            <IconPencil size={16} />
+          </ActionIcon>
+        </Tooltip>
+      </For>
     </Group>
   );
 }

@@ -4,6 +4,7 @@ import { useRef, type ChangeEvent } from "react";
 import { useNavigate } from "react-router";
 import { readChoice } from "../../actions/readDrop";
 import { sendIncoming } from "../../state/incoming";
+import { For } from "./For";
 
 /** Choose files or a folder without dragging. */
 export function ImportButton({ label = "Import a recording" }: { label?: string }) {
@@ -18,7 +19,7 @@ export function ImportButton({ label = "Import a recording" }: { label?: string 
     void navigate("/imports/new");
   };
   return (
-    <>
+    <For role="lead">
       <Menu position="bottom-end" withinPortal>
         <Menu.Target>
           <Button leftSection={<IconUpload size={16} aria-hidden />} rightSection={<IconChevronDown size={14} aria-hidden />}>
@@ -47,6 +48,6 @@ export function ImportButton({ label = "Import a recording" }: { label?: string 
         data-testid="choose-folder"
         aria-label="Choose a folder to import"
       />
-    </>
+    </For>
   );
 }

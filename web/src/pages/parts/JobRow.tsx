@@ -5,6 +5,7 @@ import { isActive, useJobAction } from "../../api/jobs";
 import type { Job, JobState } from "../../api/types";
 import { formatAgo, formatDuration, formatName } from "../../model/format";
 import classes from "./JobRow.module.css";
+import { For } from "./For";
 
 const STATES: Record<JobState, { color: string; icon: typeof IconCheck; label: string }> = {
   queued: { color: "gray", icon: IconClock, label: "waiting" },
@@ -47,21 +48,23 @@ export function JobActions({ job }: { job: Job }) {
           Open the track
         </Button>
       )}
-      {isActive(job) && (
-        <Button size="xs" variant="default" loading={cancel.isPending} onClick={() => cancel.mutate(job.id)}>
-          Cancel
-        </Button>
-      )}
-      {(job.state === "failed" || job.state === "cancelled") && job.frames_done > 0 && (
-        <Button size="xs" variant="default" loading={resume.isPending} onClick={() => resume.mutate(job.id)}>
-          Resume
-        </Button>
-      )}
-      {(job.state === "failed" || job.state === "cancelled") && (
-        <Button size="xs" variant="default" loading={retry.isPending} onClick={() => retry.mutate(job.id)}>
-          Try again
-        </Button>
-      )}
+      <For role="reviewer">
+        {isActive(job) && (
+          <Button size="xs" variant="default" loading={cancel.isPending} onClick={() => cancel.mutate(job.id)}>
+            Cancel
+          </Button>
+        )}
+        {(job.state === "failed" || job.state === "cancelled") && job.frames_done > 0 && (
+          <Button size="xs" variant="default" loading={resume.isPending} onClick={() => resume.mutate(job.id)}>
+            Resume
+          </Button>
+        )}
+        {(job.state === "failed" || job.state === "cancelled") && (
+          <Button size="xs" variant="default" loading={retry.isPending} onClick={() => retry.mutate(job.id)}>
+            Try again
+          </Button>
+        )}
+      </For>
     </Group>
   );
 }

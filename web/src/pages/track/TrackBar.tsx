@@ -20,6 +20,7 @@ import { EXPORTS, exportUrl, trackFileUrl, useDeleteTrack, useRestoreTrack } fro
 import type { Recording, Track } from "../../api/types";
 import { useHint } from "../../state/keys";
 import classes from "./TrackReview.module.css";
+import { For } from "../parts/For";
 
 interface TrackBarProps {
   track: Track;
@@ -147,9 +148,11 @@ export function TrackBar(props: TrackBarProps) {
                 To the job
               </Menu.Item>
             )}
-            <Menu.Item color="red" onClick={drop} leftSection={<IconTrash size={16} aria-hidden />}>
-              Delete (can be undone)
-            </Menu.Item>
+            <For role="lead">
+              <Menu.Item color="red" onClick={drop} leftSection={<IconTrash size={16} aria-hidden />}>
+                Delete (can be undone)
+              </Menu.Item>
+            </For>
           </Menu.Dropdown>
         </Menu>
       </Group>

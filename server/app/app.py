@@ -15,7 +15,7 @@ from server.app.browser_app import BrowserApp
 from server.app.door import Door
 from server.app.error_handler import install_error_handler
 from server.app.guard import Guard
-from server.app.parts import LIFESPANS, PAGE_ROUTERS, PLACE_GUARDS, ROUTERS, SEQUENCE_FACTS
+from server.app.parts import LIFESPANS, PAGE_ROUTERS, PLACE_GUARDS, ROUTERS, SCAN_FACTS, SEQUENCE_FACTS
 from server.database import Database
 from server.database.migrate import upgrade
 from server.errors import error_responses
@@ -34,7 +34,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app = FastAPI(
         title="Handloom",
         version="1",
-        description="A studio that captures hands in action: recordings, annotations, tracking.",
+        description="A studio that captures hands in action: recordings, annotations, tracking, scans, hand models.",
         openapi_url=f"{API}/openapi.json",
         docs_url=None,  # both of FastAPI's pages load scripts from elsewhere
         redoc_url=None,
@@ -45,6 +45,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.failed_tries = FailedTries()
     app.state.place_guards = PLACE_GUARDS
     app.state.sequence_facts = SEQUENCE_FACTS
+    app.state.scan_facts = SCAN_FACTS
     install_error_handler(app)
     for router in ROUTERS:
         app.include_router(router, prefix=API, responses=error_responses(401, 403, 500))

@@ -13,6 +13,7 @@ from server.annotations import routes as annotations
 from server.annotations.guards import PlaceGuard
 from server.annotations.service import find_annotated_frames
 from server.app import health
+from server.decisions import routes as decisions
 from server.evaluations import routes as evaluations
 from server.exchange import routes as exchange
 from server.exchange import snapshot_routes
@@ -20,7 +21,12 @@ from server.hand_models import routes as hand_models
 from server.imports import routes as imports
 from server.imports.lifespan import clean_imports
 from server.jobs import routes as jobs
+from server.lineage import routes as lineage
 from server.quality import routes as quality
+from server.registrations import routes as registrations
+from server.registrations.service import find_newest
+from server.scans import routes as scans
+from server.scans.facts import FactFinder as ScanFactFinder
 from server.sequences import frame_routes
 from server.sequences import routes as sequences
 from server.sequences.facts import FactFinder
@@ -30,6 +36,7 @@ from server.teams import routes as teams
 from server.teams.guard import ASSIGNMENTS
 from server.tracks import routes as tracks
 from server.tracks.facts import find_best_tracks
+from server.training_sets import routes as training_sets
 from server.viewer import routes as viewer
 
 Lifespan = Callable[[FastAPI], AbstractAsyncContextManager[None]]
@@ -55,6 +62,11 @@ ROUTERS: tuple[APIRouter, ...] = (
     *teams.ROUTERS,
     exchange.router,
     snapshot_routes.router,
+    scans.router,
+    registrations.router,
+    decisions.router,
+    training_sets.router,
+    lineage.router,
 )
 """All under `/api/v1`."""
 
@@ -66,6 +78,9 @@ LIFESPANS: tuple[Lifespan, ...] = (clean_imports, viewer.lifespan)
 
 SEQUENCE_FACTS: tuple[FactFinder, ...] = (find_annotated_frames, find_best_tracks)
 """What rooms above the recordings know of them."""
+
+SCAN_FACTS: tuple[ScanFactFinder, ...] = (find_newest,)
+"""What rooms above the scans know of them."""
 
 PLACE_GUARDS: tuple[PlaceGuard, ...] = (ASSIGNMENTS,)
 """What rooms above the annotations forbid at a place."""

@@ -8,15 +8,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
-from anyio import CancelScope
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import ValidationError
-from starlette.concurrency import run_in_threadpool
 
 from server.accounts.service import CurrentAccount, LeadAccount
 from server.annotations.guards import GuardsDep
 from server.database import Database, DatabaseDep
-from server.errors import InvalidError, TooLargeError, error_responses
+from server.errors import InvalidError, error_responses
 from server.exchange import importing
 from server.exchange.describe import describe_imported, describe_report
 from server.exchange.label_sets import check_track, keep_visible, open_label_set, read_labels
@@ -29,16 +27,15 @@ from server.exchange.schemas import (
     LabelImportReport,
 )
 from server.exchange.snapshots import get_snapshot
-from server.imports.upload import Upload, receive_upload
 from server.sequences.service import get_sequence
 from server.storage import Storage, StorageDep
+from server.storage.upload import Upload, UploadLimits, work_on_upload
 from tracker import JOINT_ORDERS, LABEL_FORMATS, ExportedLabels, ImportHints, export_labels, pack_files
 
 router = APIRouter(tags=["labels"], responses=error_responses(404))
 
 AREA = "label_uploads"
-MAX_UPLOAD_BYTES = 256 * 1024 * 1024
-MAX_UPLOAD_FILES = 100_000
+LIMITS = UploadLimits(files=100_000, total_bytes=256 * 1024 * 1024)
 MAX_RECORDINGS = 100
 MEDIA_TYPES = {".json": "application/json", ".csv": "text/csv; charset=utf-8", ".zip": "application/zip"}
 
@@ -231,33 +228,33 @@ async def import_several(
 async def _check(
     ids: Sequence[uuid.UUID], request: Request, database: Database, storage: Storage, account: Any, guards: Any
 ) -> LabelImportReport:
-    def work(folder: Path, fields: dict[str, str]) -> LabelImportReport:
+    def work(folder: Path, upload: Upload) -> LabelImportReport:
         with database.reading() as session:
             rows = [get_sequence(session, id_) for id_ in dict.fromkeys(ids)]
-        labels = _read(storage, folder, rows, fields)
+        labels = _read(storage, folder, rows, upload.fields)
         with database.reading() as session:
             return describe_report(labels, importing.plan_import(session, rows, labels, account, guards))
 
-    return await _with_upload(request, storage, work)
+    return await work_on_upload(request, storage, AREA, LIMITS, work)
 
 
 async def _import(
     ids: Sequence[uuid.UUID], request: Request, database: Database, storage: Storage, account: Any, guards: Any
 ) -> LabelImportDone:
-    def work(folder: Path, fields: dict[str, str]) -> LabelImportDone:
-        policy, check = fields.get("policy", ""), fields.get("check", "")
+    def work(folder: Path, upload: Upload) -> LabelImportDone:
+        policy, check = upload.fields.get("policy", ""), upload.fields.get("check", "")
         if policy not in ("keep", "replace"):
             raise InvalidError(f"The field `policy` is {policy[:40]!r}; needed keep or replace.")
         if not check:
             raise InvalidError("The field `check` is missing: have the files looked at first, then send its `check`.")
         with database.reading() as session:
             rows = [get_sequence(session, id_) for id_ in dict.fromkeys(ids)]
-        labels = _read(storage, folder, rows, fields)
+        labels = _read(storage, folder, rows, upload.fields)
         with database.writing() as session:
             done = importing.apply_import(session, storage, rows, labels, account, guards, policy, check)
             return LabelImportDone(format=labels.format, recordings=describe_imported(session, done))
 
-    return await _with_upload(request, storage, work)
+    return await work_on_upload(request, storage, AREA, LIMITS, work)
 
 
 def _read(storage: Storage, folder: Path, rows: Any, fields: dict[str, str]) -> importing.ReadLabels:
@@ -275,22 +272,3 @@ def parse_options(text: str) -> LabelImportOptions:
         first = fault.errors()[0] if isinstance(fault, ValidationError) else {"loc": (), "msg": "it is no JSON object"}
         where = ".".join(map(str, first["loc"]))
         raise InvalidError(f"The field `options` {f'({where}) ' if where else ''}is wrong: {first['msg']}.") from None
-
-
-async def _with_upload(request: Request, storage: Storage, work: Any) -> Any:
-    """Receive the files into a folder of their own, work on them in a thread, and remove them whatever happens."""
-    length = request.headers.get("content-length", "")
-    if length.isdecimal() and int(length) > MAX_UPLOAD_BYTES + 2**20:
-        raise TooLargeError(f"The upload has {length} bytes; labels have at most {MAX_UPLOAD_BYTES}.")
-    id_ = uuid.uuid4()
-    folder = storage.folder(AREA, id_)
-    try:
-        await run_in_threadpool(folder.mkdir)
-        upload = Upload(folder, MAX_UPLOAD_FILES, MAX_UPLOAD_BYTES)
-        await receive_upload(request.stream(), request.headers.get("content-type", ""), upload)
-        if not upload.names:
-            raise InvalidError("The upload holds no files. Choose the labels: a .json, .csv, .txt, or a .zip of them.")
-        return await run_in_threadpool(work, folder, upload.fields)
-    finally:
-        with CancelScope(shield=True):
-            await run_in_threadpool(storage.remove, AREA, id_)

@@ -1,9 +1,10 @@
-"""Hand models as the API gives them."""
+"""Hand models as the API gives and takes them."""
 
 from __future__ import annotations
 
 import uuid
-from typing import Literal
+from datetime import datetime
+from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
@@ -17,14 +18,35 @@ class HandSkeleton(BaseModel):
 
 
 class HandModelOut(BaseModel):
-    """A hand model that recordings can be tracked with."""
+    """A hand model. The `default` ones come with Handloom and track; the others register scans and learn from them."""
 
     id: uuid.UUID
     name: str
+    kind: Literal["default", "untrained", "trained", "uploaded"]
     side: Literal["right", "left"]
     vertices: int
     faces: int
     bones: list[str]
     degrees_of_freedom: int = Field(description="Of its pose, the 6 of the whole hand among them.")
     shape_parameters: list[str] = Field(description="What can be fitted of whose hand it is.")
+    pose_components: int = Field(default=0, description="Of its pose space.")
+    has_pose_shapes: bool = Field(
+        default=False, description="Whether its surface changes with its pose beyond skinning."
+    )
     provenance: dict[str, str] = Field(description="Where it comes from and under which licence.")
+    digest: str | None = Field(default=None, description="SHA-256 of its file.")
+    round: int = Field(default=0, description="0 before any training.")
+    parent_id: uuid.UUID | None = Field(default=None, description="The model that training began with.")
+    training_set_id: uuid.UUID | None = None
+    job_id: uuid.UUID | None = Field(default=None, description="The job that trained it.")
+    registers: bool = Field(default=False, description="Whether scans can be registered with it.")
+    has_report: bool = False
+    registration_count: int = Field(default=0, description="Registrations by it.")
+    created_at: datetime | None = Field(default=None, description="Null for those that come with Handloom.")
+    created_by_name: str | None = None
+
+
+class HandModelReport(BaseModel):
+    """What training found."""
+
+    report: dict[str, Any]

@@ -1,33 +1,45 @@
-"""The hand models there are. So far those that come with Handloom."""
+"""The hand models there are: those that come with Handloom, and those that were trained or uploaded."""
 
 from __future__ import annotations
 
 import uuid
+from collections.abc import Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
+from sqlalchemy import select, tuple_
+from sqlalchemy.orm import Session
+
+from server.accounts.service import find_names
+from server.database import utc_now
+from server.database.paging import read_moment_cursor, write_cursor
+from server.errors import NotFoundError
+from server.hand_models.models import HandModelRow
 from server.hand_models.schemas import HandModelOut
 
 if TYPE_CHECKING:
     from tracker import ArticulatedModel
 
+AREA = "models"
+FILE = "model.npz"
 NAMESPACE = uuid.UUID("6d9a0f4e-64d5-4f0e-9a39-0b8f3f4c6f11")
 """Of the ids of models that come with Handloom: they are the same everywhere."""
 
 
 @cache
-def list_hand_models() -> tuple[HandModelOut, ...]:
+def list_default_models() -> tuple[HandModelOut, ...]:
     """The default right and left hand."""
     from tracker import default_hand  # loads numba: not before somebody asks
 
-    return tuple(_describe(default_hand(side)) for side in ("right", "left"))
+    return tuple(_describe_default(default_hand(side)) for side in ("right", "left"))
 
 
-def _describe(model: ArticulatedModel) -> HandModelOut:
+def _describe_default(model: ArticulatedModel) -> HandModelOut:
     assert model.hand is not None
     return HandModelOut(
         id=uuid.uuid5(NAMESPACE, f"default/{model.hand.side}"),
         name=model.name,
+        kind="default",
         side="right" if model.hand.side == "right" else "left",
         vertices=len(model.vertices),
         faces=len(model.faces),
@@ -36,3 +48,66 @@ def _describe(model: ArticulatedModel) -> HandModelOut:
         shape_parameters=[] if model.shape is None else list(model.shape.names),
         provenance=model.provenance,
     )
+
+
+def list_built_in(session: Session) -> list[HandModelOut]:
+    """Those that come with Handloom."""
+    return list(list_default_models())
+
+
+def list_hand_models(session: Session, cursor: str | None, limit: int) -> tuple[Sequence[HandModelRow], str | None]:
+    """Those that were trained or uploaded, the newest first."""
+    query = select(HandModelRow).where(HandModelRow.deleted_at.is_(None))
+    if cursor is not None:
+        query = query.where(tuple_(HandModelRow.created_at, HandModelRow.id) < read_moment_cursor(cursor))
+    query = query.order_by(HandModelRow.created_at.desc(), HandModelRow.id.desc())
+    rows = session.scalars(query.limit(limit + 1)).all()
+    if len(rows) <= limit:
+        return rows, None
+    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+
+
+def get_hand_model(session: Session, model_id: uuid.UUID, *, deleted_too: bool = False) -> HandModelRow:
+    """The stored model of this id."""
+    row = session.get(HandModelRow, model_id)
+    if row is None or (row.deleted_at is not None and not deleted_too):
+        raise NotFoundError(f"There is no hand model {model_id}." if row is None else "This hand model was deleted.")
+    return row
+
+
+def delete_hand_model(session: Session, row: HandModelRow) -> None:
+    """Hide a model; `restore_hand_model` brings it back. What came of it stays."""
+    row.deleted_at = utc_now()
+    session.flush()
+
+
+def restore_hand_model(session: Session, row: HandModelRow) -> None:
+    """Undo a deletion; nothing happens when there was none."""
+    row.deleted_at = None
+    session.flush()
+
+
+def describe_hand_models(session: Session, rows: Sequence[HandModelRow]) -> list[HandModelOut]:
+    """Stored models as the API gives them."""
+    people = find_names(session, (row.created_by for row in rows))
+    return [
+        HandModelOut.model_validate(
+            {
+                **row.facts,
+                "id": row.id,
+                "name": row.name,
+                "kind": row.kind,
+                "side": row.side,
+                "digest": row.digest,
+                "round": row.round,
+                "parent_id": row.parent_id,
+                "training_set_id": row.training_set_id,
+                "job_id": row.job_id,
+                "registers": True,
+                "has_report": row.report is not None,
+                "created_at": row.created_at,
+                "created_by_name": people.get(row.created_by),
+            }
+        )
+        for row in rows
+    ]

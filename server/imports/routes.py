@@ -25,10 +25,10 @@ from server.imports.schemas import (
     ImportOut,
 )
 from server.imports.service import ImportDesk
-from server.imports.upload import receive_upload
 from server.sequences.facts import FactsDep, describe_sequences
 from server.sequences.schemas import SequenceOut
 from server.storage import StorageDep
+from server.storage.upload import receive_upload
 from tracker import IMPORT_FORMATS, ImportOptions
 
 router = APIRouter(prefix="/imports", tags=["imports"], responses=error_responses())

@@ -23,11 +23,11 @@ from server.annotations.service import add_imported_annotations
 from server.database import Database, utc_now
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.imports.models import ImportRow
-from server.imports.upload import Upload
 from server.sequences import service as sequences
 from server.sequences.models import SequenceRow
 from server.settings import Settings
 from server.storage import Storage
+from server.storage.upload import Upload
 from tracker import (
     ArchiveLimits,
     ImportOptions,

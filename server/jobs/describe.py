@@ -18,17 +18,19 @@ def describe_jobs(session: Session, rows: Sequence[JobRow]) -> list[JobOut]:
     if not rows:
         return []
     people = find_names(session, (row.created_by for row in rows))
-    names = select(SequenceRow.id, SequenceRow.name).where(SequenceRow.id.in_({row.sequence_id for row in rows}))
+    about = {row.sequence_id for row in rows if row.sequence_id is not None}
+    names = select(SequenceRow.id, SequenceRow.name).where(SequenceRow.id.in_(about))
     recordings = {row.id: row.name for row in session.execute(names)}
     holders = {row.worker_id for row in rows if row.worker_id is not None}
     query = select(WorkerRow).where(WorkerRow.id.in_(holders))
     workers = {worker.id: worker for worker in session.scalars(query)} if holders else {}
-    own = JobOut.model_fields.keys() - {"sequence_name", "created_by_name", "worker"}
+    own = JobOut.model_fields.keys() - {"title", "unit", "created_by_name", "worker"}
     return [
         JobOut.model_validate(
             {field: getattr(row, field) for field in own}
             | {
-                "sequence_name": recordings[row.sequence_id],
+                "title": row.title if row.sequence_id is None else recordings[row.sequence_id],
+                "unit": "frames" if row.kind == "track" else "scans",
                 "created_by_name": people.get(row.created_by),
                 "worker": _describe_worker(workers.get(row.worker_id)) if row.worker_id is not None else None,
             }

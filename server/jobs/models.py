@@ -10,6 +10,8 @@ from sqlalchemy import CheckConstraint, ForeignKey, Index, String, Text, UniqueC
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
+from server.hand_models.models import HandModelRow
+from server.scans.models import ScanRow
 from server.sequences.models import SequenceRow
 from server.tracks.models import TrackRow
 
@@ -32,8 +34,14 @@ class JobRow(Base):
 
     kind: Mapped[str] = mapped_column(String(20))
     state: Mapped[str] = mapped_column(String(10), default="queued")
-    sequence_id: Mapped[uuid.UUID] = mapped_column(ForeignKey(SequenceRow.id))
+    sequence_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(SequenceRow.id))
+    """Of a tracking job."""
     track_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(TrackRow.id))
+    """What a tracking job produced."""
+    hand_model_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(HandModelRow.id))
+    """What training produced, the last one of a loop."""
+    title: Mapped[str] = mapped_column(String(300), default="")
+    """What it is about, when that is no recording."""
     params: Mapped[dict[str, Any]]
     progress: Mapped[float] = mapped_column(default=0.0)
     stage: Mapped[str] = mapped_column(String(200), default="queued")
@@ -59,6 +67,17 @@ class JobRow(Base):
     updated_at: Mapped[datetime] = mapped_column(default=utc_now)
     started_at: Mapped[datetime | None]
     ended_at: Mapped[datetime | None]
+
+
+class JobScanRow(Base):
+    """A scan that a job is to register, as chosen when the job was made; `number` counts from 0."""
+
+    __tablename__ = "job_scans"
+    __table_args__ = (UniqueConstraint("job_id", "number"),)
+
+    job_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("jobs.id"))
+    number: Mapped[int]
+    scan_id: Mapped[uuid.UUID] = mapped_column(ForeignKey(ScanRow.id))
 
 
 class JobLogRow(Base):

@@ -8,6 +8,8 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from server.scans.schemas import Label, Name
+
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
@@ -19,6 +21,51 @@ class JobCreate(BaseModel):
     params: dict[str, Any] = Field(
         default_factory=dict, description="Options of the tracker; `GET /jobs/form` lists them."
     )
+
+
+class RegisterCreate(BaseModel):
+    """Scans to register."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    scan_ids: list[uuid.UUID] = Field(default_factory=list, max_length=5000, description="Empty: as the rest says.")
+    collection: str | None = Field(default=None, max_length=200, description="Null: of all collections.")
+    subject: str | None = Field(default=None, max_length=100)
+    only: Literal["new", "not_accepted", "all"] = Field(
+        default="new",
+        description="`new`: those that this model has not registered as they are cropped now; `not_accepted`: those "
+        "whose newest registration nobody accepted.",
+    )
+    model_id: uuid.UUID | None = Field(default=None, description="Null: the model that nobody has trained yet.")
+
+
+class TrainCreate(BaseModel):
+    """A hand model to train."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    training_set_id: uuid.UUID
+    name: Name
+    model_id: uuid.UUID | None = Field(default=None, description="To begin with; null: the one not trained yet.")
+    params: dict[str, Any] = Field(default_factory=dict, description="Options of training.")
+
+
+class LoopCreate(BaseModel):
+    """Register, choose, train, register again."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: Name = Field(description="Of the models; the round is added.")
+    collection: str | None = Field(default=None, max_length=200, description="Null: all scans.")
+    model_id: uuid.UUID | None = Field(default=None, description="To begin with; null: the one not trained yet.")
+    by: Literal["verdict", "decisions"] = Field(
+        default="verdict",
+        description="What is trained from. `verdict`: what the program calls good and nobody rejected; `decisions`: "
+        "what people have accepted by now. Then one round is done, and its registrations wait for people.",
+    )
+    rounds: int = Field(default=1, ge=1, le=10, description="By decisions: 1.")
+    leave_out_subjects: list[Label] = Field(default_factory=list, max_length=1000, description="Kept for testing.")
+    params: dict[str, Any] = Field(default_factory=dict, description="Options of training.")
 
 
 class BatchCreate(BaseModel):
@@ -45,14 +92,16 @@ class JobOut(BaseModel):
     id: uuid.UUID
     kind: str
     state: JobState
-    sequence_id: uuid.UUID
-    sequence_name: str = Field(description="Of the recording, as it is called now.")
-    track_id: uuid.UUID | None = Field(description="What it produced.")
+    title: str = Field(description="The recording as it is called now, or what else it is about.")
+    sequence_id: uuid.UUID | None = Field(description="The recording of a tracking job.")
+    track_id: uuid.UUID | None = Field(description="What a tracking job produced.")
+    hand_model_id: uuid.UUID | None = Field(description="What training produced, the last model of a loop.")
     params: dict[str, Any]
     progress: float = Field(ge=0, le=1)
     stage: str = Field(description="What is being done, for people.")
-    frames_done: int
+    frames_done: int = Field(description="Or scans, see `unit`.")
     frames_total: int = Field(description="0 while not known.")
+    unit: Literal["frames", "scans"] = Field(description="What is counted.")
     seconds_left: float | None
     error: str | None = Field(description="What went wrong, for people.")
     attempt: int = Field(description="1, and one more for every resume.")

@@ -89,7 +89,7 @@ def list_jobs(
 def create_job(
     session: Session,
     kind: str,
-    sequence_id: UUID,
+    sequence_id: UUID | None,
     params: dict[str, Any],
     *,
     created_by: UUID | None = None,

@@ -110,8 +110,13 @@ class _Run:
         self.files = JobFiles(storage.folder("jobs", job_id), storage.remote_folder("jobs", job_id))
 
     @property
+    def _sequence_id(self) -> UUID:
+        assert self._row.sequence_id is not None, "a tracking job has a recording"
+        return self._row.sequence_id
+
+    @property
     def job(self) -> TrackingJob:
-        recording = self._context.storage.refresh("sequences", self._row.sequence_id)
+        recording = self._context.storage.refresh("sequences", self._sequence_id)
         return TrackingJob(recording, self._row.params, self.files)
 
     def progress(self, attempt: int) -> JobProgress:
@@ -140,7 +145,7 @@ class _Run:
         if kept is not None:
             return kept
         with self._context.database.reading() as session:
-            document = export_annotations(session, self._row.sequence_id)
+            document = export_annotations(session, self._sequence_id)
         self.files.write(self.files.annotations, lambda path: path.write_text(json.dumps(document)))
         return self.files.write_manifest("snapshot", [self.files.annotations], {})
 
@@ -151,7 +156,7 @@ class _Run:
         self.job.finish(begun, folder, self.progress(attempt))
         self._context.storage.publish("tracks", track_id)
         with self._context.database.writing() as session:
-            add_track(session, folder, track_id, self._row.sequence_id, self._job_id)
+            add_track(session, folder, track_id, self._sequence_id, self._job_id)
             self._end(session, attempt, "succeeded", track_id=track_id, progress=1.0, frames_done=begun["frames"])
         return track_id
 

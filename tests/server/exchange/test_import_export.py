@@ -169,7 +169,7 @@ def test_more_than_labels_ever_have_is_not_read(
     studio: Studio, add_recording: AddRecording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sequence = add_recording()
-    monkeypatch.setattr(routes, "MAX_UPLOAD_BYTES", 1000)
+    monkeypatch.setattr(routes, "LIMITS", routes.UploadLimits(files=10, total_bytes=1000))
     answer = send(studio.client, f"/sequences/{sequence['id']}/labels/check", {"a.json": b" " * 2000})
     assert answer.status_code == 413
     answer = send(studio.client, f"/sequences/{sequence['id']}/labels/check", {"a.json": b" " * 2_000_000})

@@ -44,7 +44,7 @@ def test_a_batch_is_a_job_for_each_recording_with_the_same_options(
     client: TestClient, made: dict, sequence_ids: list[str]
 ) -> None:
     assert [job["sequence_id"] for job in made["jobs"]] == sequence_ids
-    assert [job["sequence_name"] for job in made["jobs"]] == ["left hand waves", "right hand waves", "both hands clap"]
+    assert [job["title"] for job in made["jobs"]] == ["left hand waves", "right hand waves", "both hands clap"]
     assert {job["batch_id"] for job in made["jobs"]} == {made["batch"]["id"]}
     assert {job["params"]["iterations"] for job in made["jobs"]} == {7}
     assert {job["created_by_name"] for job in made["jobs"]} == {client.get(f"{API}/account").json()["name"]}
@@ -130,7 +130,7 @@ def test_jobs_are_found_by_state_person_and_words_of_the_recording(
 ) -> None:
     def names(**params: object) -> list[str]:
         items = client.get(f"{API}/jobs", params=params).json()["items"]
-        return sorted(job["sequence_name"] for job in items)
+        return sorted(job["title"] for job in items)
 
     somebody = uuid.uuid4()
     with studio.database.writing() as session:

@@ -54,8 +54,8 @@ export const useJobList = (filters: JobFilters) =>
 export const useActiveJobs = () =>
   useQuery({ queryKey: jobKeys.active, queryFn: () => fetchAll<Job>("/jobs", { state: ["queued", "running"] }) });
 
-export const useRecordingJobs = (recording: string) =>
-  useQuery({ queryKey: jobKeys.ofRecording(recording), queryFn: () => fetchAll<Job>("/jobs", { sequence_id: recording }) });
+export const useRecordingJobs = (recording: string | null) =>
+  useQuery({ queryKey: jobKeys.ofRecording(recording ?? ""), enabled: recording !== null, queryFn: () => fetchAll<Job>("/jobs", { sequence_id: recording ?? "" }) });
 
 /** Workers of the last day; asked again and again, since a silent one says nothing. */
 export const useWorkers = () =>
@@ -107,7 +107,7 @@ function takeIn(client: QueryClient, job: Job): void {
   if (before && before.version > job.version) return;
   client.setQueryData(jobKeys.one(job.id), job);
   client.setQueryData<Job[]>(jobKeys.active, (jobs) => (isActive(job) ? put(jobs, job) : jobs?.filter((other) => other.id !== job.id)));
-  client.setQueryData<Job[]>(jobKeys.ofRecording(job.sequence_id), (jobs) => put(jobs, job));
+  if (job.sequence_id) client.setQueryData<Job[]>(jobKeys.ofRecording(job.sequence_id), (jobs) => put(jobs, job));
   client.setQueriesData<InfiniteData<Page<Job>>>({ queryKey: jobKeys.lists }, (list) =>
     list && { ...list, pages: list.pages.map((page) => ({ ...page, items: page.items.map((other) => (other.id === job.id ? job : other)) })) },
   );

@@ -424,6 +424,126 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/curation/agreement": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Review Agreement
+         * @description How people agree who decided about the same registrations without seeing each other's decisions.
+         */
+        get: operations["get_review_agreement"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/curation/reasons": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Reasons
+         * @description Reasons to reject, in the order of their keys.
+         */
+        get: operations["list_reasons"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/curation/second-reviews": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Ask Second Review
+         * @description Have a second person decide about a share of the registrations, without seeing the first one's decision.
+         */
+        post: operations["ask_second_review"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/curation/throughput": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Throughput
+         * @description How many registrations everybody decided about, and how fast.
+         */
+        get: operations["get_throughput"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/decisions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Decisions
+         * @description Decisions, the newest first; without what is hidden from you.
+         */
+        get: operations["list_decisions"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/decisions/{decision_id}/undo": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Undo Decision
+         * @description Take a decision of one's own back; what one decided before it stands again. Both stay in the history.
+         */
+        post: operations["undo_decision"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/evaluations": {
         parameters: {
             query?: never;
@@ -473,11 +593,75 @@ export interface paths {
         };
         /**
          * List Hand Models
-         * @description Hand models that recordings can be tracked with.
+         * @description Hand models: first those that come with Handloom, then those that were trained or uploaded, the newest first.
          */
         get: operations["list_hand_models"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/hand-models/{model_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Hand Model
+         * @description One hand model.
+         */
+        get: operations["get_hand_model"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Hand Model
+         * @description Hide a hand model. Nothing of it is lost: `restore` brings it back.
+         */
+        delete: operations["delete_hand_model"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/hand-models/{model_id}/report": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Hand Model Report
+         * @description What training found: errors, spaces of shape and pose, times.
+         */
+        get: operations["get_hand_model_report"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/hand-models/{model_id}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore Hand Model
+         * @description Undo a deletion.
+         */
+        post: operations["restore_hand_model"];
         delete?: never;
         options?: never;
         head?: never;
@@ -974,6 +1158,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/lineage/{kind}/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Lineage
+         * @description Scan to registration to decision to training set to model and back: where a thing comes from, what came of it.
+         */
+        get: operations["get_lineage"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/login": {
         parameters: {
             query?: never;
@@ -1234,6 +1438,130 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/registrations": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Registrations
+         * @description Registrations; of each scan the newest one, unless a scan, a job or all rounds are asked for.
+         */
+        get: operations["list_registrations"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/registrations/counts": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Count Registrations
+         * @description How many registrations are in each queue.
+         */
+        get: operations["count_registrations"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/registrations/{registration_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Registration
+         * @description One registration.
+         */
+        get: operations["get_registration"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/registrations/{registration_id}/decisions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Registration Decisions
+         * @description Everything that was decided about a registration, the newest first; without what is hidden from you.
+         */
+        get: operations["list_registration_decisions"];
+        put?: never;
+        /**
+         * Make Decision
+         * @description Accept, reject or be unsure. The same operation sent again is answered by 200 and what it made at first.
+         */
+        post: operations["make_decision"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/registrations/{registration_id}/geometry": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Registration Geometry
+         * @description The registered mesh with the error of each vertex, and of each point of the scan's geometry. It never changes.
+         */
+        get: operations["get_registration_geometry"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/registrations/{registration_id}/registration.npz": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download Registration
+         * @description The file, as `handloom register` writes it.
+         */
+        get: operations["download_registration"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/replica-sets/{replica_set_id}": {
         parameters: {
             query?: never;
@@ -1352,6 +1680,182 @@ export interface paths {
          * @description Undo a withdrawal.
          */
         post: operations["restore_replica_set"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/scans": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Scans
+         * @description Scans, the newest first.
+         */
+        get: operations["list_scans"];
+        put?: never;
+        /**
+         * Create Scans
+         * @description Upload scans. Each file is judged by itself; one sent again is not kept twice.
+         */
+        post: operations["create_scans"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/scans/collections": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Scan Collections
+         * @description Collections of scans, by name.
+         */
+        get: operations["list_scan_collections"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/scans/{scan_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Scan
+         * @description One scan.
+         */
+        get: operations["get_scan"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Scan
+         * @description Hide a scan. Nothing of it is lost: `restore` brings it back.
+         */
+        delete: operations["delete_scan"];
+        options?: never;
+        head?: never;
+        /**
+         * Update Scan
+         * @description Change name, collection, subject or pose.
+         */
+        patch: operations["update_scan"];
+        trace?: never;
+    };
+    "/api/v1/scans/{scan_id}/crop": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Scan Crop
+         * @description What is left out of a scan now.
+         */
+        get: operations["get_scan_crop"];
+        /**
+         * Put Scan Crop
+         * @description Replace what is left out of a scan; the file stays as it is. 409 carries the scan as it is now in `theirs`.
+         */
+        put: operations["put_scan_crop"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/scans/{scan_id}/crop/history": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Scan Crops
+         * @description Every crop of a scan, the newest first. To go back to one, put its strokes again.
+         */
+        get: operations["list_scan_crops"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/scans/{scan_id}/file": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download Scan
+         * @description The file as it was uploaded.
+         */
+        get: operations["download_scan"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/scans/{scan_id}/geometry/{key}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Scan Geometry
+         * @description Points for the browser: positions, normals, colours, and flags (1 cropped, 2 of an object). It never changes.
+         */
+        get: operations["get_scan_geometry"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/scans/{scan_id}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore Scan
+         * @description Undo a deletion.
+         */
+        post: operations["restore_scan"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2152,6 +2656,130 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/training-sets": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Training Sets
+         * @description Training sets, the newest first.
+         */
+        get: operations["list_training_sets"];
+        put?: never;
+        /**
+         * Create Training Set
+         * @description Keep what a rule chooses now. The same registrations are kept once: 200 and the set that holds them already.
+         */
+        post: operations["create_training_set"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/training-sets/preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Preview Training Set
+         * @description What a rule would choose now. Nothing is stored.
+         */
+        post: operations["preview_training_set"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/training-sets/{training_set_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Training Set
+         * @description One training set.
+         */
+        get: operations["get_training_set"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/training-sets/{training_set_id}/registrations": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Training Members
+         * @description Registrations of a training set, by the names of their scans.
+         */
+        get: operations["list_training_members"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/training-sets/{training_set_id}/registrations.zip": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download Training Set
+         * @description All registrations, as `handloom train-model` takes them, with the list of what they are.
+         */
+        get: operations["download_training_set"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/training-sets/{training_set_id}/verify": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Verify Training Set
+         * @description Hash every file again: are they still what they were?
+         */
+        get: operations["verify_training_set"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/viewer-sessions": {
         parameters: {
             query?: never;
@@ -2874,6 +3502,22 @@ export interface components {
             expires_at: string;
         };
         /**
+         * ScanCollection
+         * @description Scans that belong together.
+         */
+        CollectionOut: {
+            /** Failed */
+            failed: number;
+            /** Name */
+            name: string;
+            /** Registered */
+            registered: number;
+            /** Scans */
+            scans: number;
+            /** Subjects */
+            subjects: number;
+        };
+        /**
          * CollidingParts
          * @description Two parts that stand in each other.
          */
@@ -3076,6 +3720,127 @@ export interface components {
              * @description Combinations of parts tried.
              */
             simulated: number;
+        };
+        /**
+         * DecisionDone
+         * @description A decision and what it makes of its registration.
+         */
+        DecisionDone: {
+            decision: components["schemas"]["DecisionOut"];
+            registration: components["schemas"]["RegistrationOut"];
+        };
+        /**
+         * DecisionMake
+         * @description What somebody decides.
+         */
+        DecisionMake: {
+            /**
+             * Decision
+             * @enum {string}
+             */
+            decision: "accept" | "reject" | "unsure";
+            /**
+             * Note
+             * @default
+             */
+            note: string;
+            /**
+             * Operation Id
+             * Format: uuid
+             * @description Made anew for each decision; sent again, nothing is done twice.
+             */
+            operation_id: string;
+            /**
+             * Reasons
+             * @description Names from `/curation/reasons`.
+             */
+            reasons?: string[];
+            /**
+             * Seconds
+             * @description How long it was looked at.
+             */
+            seconds?: number | null;
+        };
+        /**
+         * Decision
+         * @description One thing that somebody decided, or took back.
+         */
+        DecisionOut: {
+            /**
+             * Account Id
+             * Format: uuid
+             */
+            account_id: string;
+            /** Author Name */
+            author_name: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /**
+             * Decision
+             * @enum {string}
+             */
+            decision: "accept" | "reject" | "unsure" | "undo";
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /**
+             * Is Blind
+             * @description Whether its author could not see what others had decided.
+             */
+            is_blind: boolean;
+            /**
+             * Model Id
+             * Format: uuid
+             * @description The model version that was judged.
+             */
+            model_id: string;
+            /** Model Name */
+            model_name: string;
+            /** Note */
+            note: string;
+            /**
+             * Number
+             * @description Counts the decisions about the registration from 1.
+             */
+            number: number;
+            /**
+             * Operation Id
+             * Format: uuid
+             */
+            operation_id: string;
+            /** Reasons */
+            reasons: string[];
+            /**
+             * Registration Id
+             * Format: uuid
+             */
+            registration_id: string;
+            /** Seconds */
+            seconds: number | null;
+            /**
+             * Stands
+             * @description Whether it is what its author thinks now.
+             */
+            stands: boolean;
+            /** Undoes Id */
+            undoes_id: string | null;
+        };
+        /**
+         * DecisionUndo
+         * @description Take a decision of one's own back.
+         */
+        DecisionUndo: {
+            /**
+             * Operation Id
+             * Format: uuid
+             * @description Made anew for each undo; sent again, nothing is done twice.
+             */
+            operation_id: string;
         };
         /**
          * DetectionView
@@ -3391,25 +4156,69 @@ export interface components {
         };
         /**
          * HandModelOut
-         * @description A hand model that recordings can be tracked with.
+         * @description A hand model. The `default` ones come with Handloom and track; the others register scans and learn from them.
          */
         HandModelOut: {
             /** Bones */
             bones: string[];
             /**
+             * Created At
+             * @description Null for those that come with Handloom.
+             */
+            created_at?: string | null;
+            /** Created By Name */
+            created_by_name?: string | null;
+            /**
              * Degrees Of Freedom
              * @description Of its pose, the 6 of the whole hand among them.
              */
             degrees_of_freedom: number;
+            /**
+             * Digest
+             * @description SHA-256 of its file.
+             */
+            digest?: string | null;
             /** Faces */
             faces: number;
+            /**
+             * Has Pose Shapes
+             * @description Whether its surface changes with its pose beyond skinning.
+             * @default false
+             */
+            has_pose_shapes: boolean;
+            /**
+             * Has Report
+             * @default false
+             */
+            has_report: boolean;
             /**
              * Id
              * Format: uuid
              */
             id: string;
+            /**
+             * Job Id
+             * @description The job that trained it.
+             */
+            job_id?: string | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "default" | "untrained" | "trained" | "uploaded";
             /** Name */
             name: string;
+            /**
+             * Parent Id
+             * @description The model that training began with.
+             */
+            parent_id?: string | null;
+            /**
+             * Pose Components
+             * @description Of its pose space.
+             * @default 0
+             */
+            pose_components: number;
             /**
              * Provenance
              * @description Where it comes from and under which licence.
@@ -3417,6 +4226,24 @@ export interface components {
             provenance: {
                 [key: string]: string;
             };
+            /**
+             * Registers
+             * @description Whether scans can be registered with it.
+             * @default false
+             */
+            registers: boolean;
+            /**
+             * Registration Count
+             * @description Registrations by it.
+             * @default 0
+             */
+            registration_count: number;
+            /**
+             * Round
+             * @description 0 before any training.
+             * @default 0
+             */
+            round: number;
             /**
              * Shape Parameters
              * @description What can be fitted of whose hand it is.
@@ -3427,8 +4254,20 @@ export interface components {
              * @enum {string}
              */
             side: "right" | "left";
+            /** Training Set Id */
+            training_set_id?: string | null;
             /** Vertices */
             vertices: number;
+        };
+        /**
+         * HandModelReport
+         * @description What training found.
+         */
+        HandModelReport: {
+            /** Report */
+            report: {
+                [key: string]: unknown;
+            };
         };
         /**
          * HandSkeleton
@@ -3705,13 +4544,21 @@ export interface components {
              * @description What went wrong, for people.
              */
             error: string | null;
-            /** Frames Done */
+            /**
+             * Frames Done
+             * @description Or scans, see `unit`.
+             */
             frames_done: number;
             /**
              * Frames Total
              * @description 0 while not known.
              */
             frames_total: number;
+            /**
+             * Hand Model Id
+             * @description What training produced, the last model of a loop.
+             */
+            hand_model_id: string | null;
             /**
              * Id
              * Format: uuid
@@ -3731,14 +4578,9 @@ export interface components {
             seconds_left: number | null;
             /**
              * Sequence Id
-             * Format: uuid
+             * @description The recording of a tracking job.
              */
-            sequence_id: string;
-            /**
-             * Sequence Name
-             * @description Of the recording, as it is called now.
-             */
-            sequence_name: string;
+            sequence_id: string | null;
             /**
              * Stage
              * @description What is being done, for people.
@@ -3752,10 +4594,21 @@ export interface components {
              */
             state: "queued" | "running" | "succeeded" | "failed" | "cancelled";
             /**
+             * Title
+             * @description The recording as it is called now, or what else it is about.
+             */
+            title: string;
+            /**
              * Track Id
-             * @description What it produced.
+             * @description What a tracking job produced.
              */
             track_id: string | null;
+            /**
+             * Unit
+             * @description What is counted.
+             * @enum {string}
+             */
+            unit: "frames" | "scans";
             /**
              * Version
              * @description Grows with every change.
@@ -4019,6 +4872,63 @@ export interface components {
             warnings: string[];
         };
         /**
+         * Lineage
+         * @description Where a thing comes from, and what came of it; nearest first.
+         */
+        Lineage: {
+            /** Comes From */
+            comes_from: components["schemas"]["LineageGroup"][];
+            of: components["schemas"]["LineageItem"];
+            /** Went Into */
+            went_into: components["schemas"]["LineageGroup"][];
+        };
+        /**
+         * LineageGroup
+         * @description Things of one kind.
+         */
+        LineageGroup: {
+            /**
+             * Items
+             * @description The newest ones.
+             */
+            items: components["schemas"]["LineageItem"][];
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model";
+            /** Total */
+            total: number;
+        };
+        /**
+         * LineageItem
+         * @description One thing on the way from a scan to a model.
+         */
+        LineageItem: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /**
+             * Detail
+             * @description For people, such as `accept by Anna`.
+             */
+            detail: string;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model";
+            /** Name */
+            name: string;
+        };
+        /**
          * LoginIn
          * @description A name and a password.
          */
@@ -4222,10 +5132,30 @@ export interface components {
              */
             next_cursor: string | null;
         };
+        /** Page[CollectionOut] */
+        Page_CollectionOut_: {
+            /** Items */
+            items: components["schemas"]["CollectionOut"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
         /** Page[CommentOut] */
         Page_CommentOut_: {
             /** Items */
             items: components["schemas"]["CommentOut"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[DecisionOut] */
+        Page_DecisionOut_: {
+            /** Items */
+            items: components["schemas"]["DecisionOut"][];
             /**
              * Next Cursor
              * @description For `?cursor=` to get what follows; null at the end.
@@ -4302,10 +5232,50 @@ export interface components {
              */
             next_cursor: string | null;
         };
+        /** Page[ReasonOut] */
+        Page_ReasonOut_: {
+            /** Items */
+            items: components["schemas"]["ReasonOut"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[RegistrationOut] */
+        Page_RegistrationOut_: {
+            /** Items */
+            items: components["schemas"]["RegistrationOut"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
         /** Page[ReplicaSetOut] */
         Page_ReplicaSetOut_: {
             /** Items */
             items: components["schemas"]["ReplicaSetOut"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[ScanCropOut] */
+        Page_ScanCropOut_: {
+            /** Items */
+            items: components["schemas"]["ScanCropOut"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[ScanOut] */
+        Page_ScanOut_: {
+            /** Items */
+            items: components["schemas"]["ScanOut"][];
             /**
              * Next Cursor
              * @description For `?cursor=` to get what follows; null at the end.
@@ -4356,6 +5326,26 @@ export interface components {
         Page_TrackOut_: {
             /** Items */
             items: components["schemas"]["TrackOut"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[TrainingMember] */
+        Page_TrainingMember_: {
+            /** Items */
+            items: components["schemas"]["TrainingMember"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[TrainingSetOut] */
+        Page_TrainingSetOut_: {
+            /** Items */
+            items: components["schemas"]["TrainingSetOut"][];
             /**
              * Next Cursor
              * @description For `?cursor=` to get what follows; null at the end.
@@ -4512,6 +5502,94 @@ export interface components {
             role?: ("annotator" | "reviewer" | "lead" | "admin") | null;
         };
         /**
+         * PersonThroughput
+         * @description What somebody decided since a moment.
+         */
+        PersonThroughput: {
+            /** Accept */
+            accept: number;
+            /**
+             * Account Id
+             * Format: uuid
+             */
+            account_id: string;
+            /**
+             * Active Minutes
+             * @description Pauses of more than a minute count as none.
+             */
+            active_minutes: number;
+            /** Decisions */
+            decisions: number;
+            /** Name */
+            name: string;
+            /**
+             * Per Minute
+             * @description Decisions in an active minute; null before the second decision.
+             */
+            per_minute: number | null;
+            /** Reject */
+            reject: number;
+            /** Undone */
+            undone: number;
+            /** Unsure */
+            unsure: number;
+        };
+        /**
+         * PlaneStroke
+         * @description Removes what lies beyond a plane.
+         */
+        PlaneStroke: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "plane";
+            /**
+             * Normal
+             * @description Not zero.
+             */
+            normal: [
+                number,
+                number,
+                number
+            ];
+            /**
+             * Offset
+             * @description m; points p with normal . p > offset are removed.
+             */
+            offset: number;
+        };
+        /**
+         * PolygonStroke
+         * @description A line drawn around points on the screen.
+         */
+        PolygonStroke: {
+            /**
+             * Corners
+             * @description In normalised device coordinates: x right, y up, -1 to 1.
+             */
+            corners: [
+                number,
+                number
+            ][];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "polygon";
+            /**
+             * Removes
+             * @default inside
+             * @enum {string}
+             */
+            removes: "inside" | "outside";
+            /**
+             * View
+             * @description 4x4, row by row: scan coordinates (m) to clip coordinates. Points behind the camera stay.
+             */
+            view: number[];
+        };
+        /**
          * ProjectMake
          * @description A new project.
          */
@@ -4593,6 +5671,21 @@ export interface components {
             name: string;
         };
         /**
+         * ReasonOut
+         * @description A reason to reject a registration.
+         */
+        ReasonOut: {
+            /**
+             * Key
+             * @description The key that gives it.
+             */
+            key: string;
+            /** Label */
+            label: string;
+            /** Name */
+            name: string;
+        };
+        /**
          * RecordingImport
          * @description What an import would do to one recording.
          */
@@ -4651,6 +5744,144 @@ export interface components {
              * Format: uuid
              */
             sequence_id: string;
+        };
+        /**
+         * RegistrationCounts
+         * @description How much there is in each queue, of the newest registration of each scan unless asked otherwise.
+         */
+        RegistrationCounts: {
+            /** Accept */
+            accept: number;
+            /** All */
+            all: number;
+            /** Flagged */
+            flagged: number;
+            /** Reject */
+            reject: number;
+            /** Second */
+            second: number;
+            /** Undecided */
+            undecided: number;
+            /** Unsure */
+            unsure: number;
+        };
+        /**
+         * Registration
+         * @description The template brought onto a scan.
+         */
+        RegistrationOut: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /**
+             * Decision
+             * @description The last one that stands; null when none does, or when it is hidden.
+             */
+            decision: ("accept" | "reject" | "unsure") | null;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /**
+             * Is Current
+             * @description Whether it is the newest one of its scan.
+             */
+            is_current: boolean;
+            /**
+             * Is Hidden
+             * @description Somebody has decided, and you are to decide without seeing it.
+             */
+            is_hidden: boolean;
+            /** Job Id */
+            job_id: string | null;
+            /**
+             * Likely Failure
+             * @description The more, the likelier it is wrong; orders the queue.
+             */
+            likely_failure: number;
+            /**
+             * Model Id
+             * Format: uuid
+             */
+            model_id: string;
+            /** Model Name */
+            model_name: string;
+            /** My Decision */
+            my_decision: ("accept" | "reject" | "unsure") | null;
+            /**
+             * My Decision Id
+             * @description For undo.
+             */
+            my_decision_id: string | null;
+            /**
+             * Needs Second
+             * @description A second person is to decide without seeing the first one's decision.
+             */
+            needs_second: boolean;
+            /** Reasons */
+            reasons: string[];
+            /**
+             * Reviewer Count
+             * @description People whose decision stands.
+             */
+            reviewer_count: number;
+            /**
+             * Round
+             * @description 1: by an untrained model; 2: by a model trained from round 1; and so on.
+             */
+            round: number;
+            scan: components["schemas"]["RegistrationScan"];
+            scan_to_mesh_mm: components["schemas"]["ScanToMesh"];
+            /**
+             * Score
+             * @description The program's own; less is better.
+             */
+            score: number;
+            /** Seconds */
+            seconds: number;
+            /**
+             * Side
+             * @description As found.
+             * @enum {string}
+             */
+            side: "right" | "left";
+            /**
+             * Verdict
+             * @description The program's own.
+             * @enum {string}
+             */
+            verdict: "good" | "doubtful" | "bad";
+        };
+        /**
+         * RegistrationScan
+         * @description The scan of a registration, in brief.
+         */
+        RegistrationScan: {
+            /** Collection */
+            collection: string;
+            /**
+             * Geometry Key
+             * @description As it was when it was registered.
+             */
+            geometry_key: string;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Name */
+            name: string;
+            /** Point Count */
+            point_count: number;
+            /** Pose */
+            pose: string;
+            /** Side */
+            side: ("right" | "left") | null;
+            /** Subject */
+            subject: string;
         };
         /**
          * ReplicaAnnotator
@@ -4731,6 +5962,318 @@ export interface components {
              * Format: uuid
              */
             sequence_id: string;
+        };
+        /**
+         * ReviewAgreement
+         * @description How people agree about registrations that two of them decided about.
+         */
+        ReviewAgreement: {
+            /** Both */
+            both: number;
+            /**
+             * Disputed
+             * @description Registrations about which two people decided otherwise, the first 200.
+             */
+            disputed: string[];
+            /**
+             * Kappa
+             * @description Cohen's, all pairs together.
+             */
+            kappa: number | null;
+            /** Pairs */
+            pairs: components["schemas"]["ReviewerPair"][];
+            /** Share Agreed */
+            share_agreed: number | null;
+            /**
+             * Waiting
+             * @description Registrations that still need a second person.
+             */
+            waiting: number;
+        };
+        /**
+         * ReviewerPair
+         * @description How two people agree, on what both decided.
+         */
+        ReviewerPair: {
+            /**
+             * Both
+             * @description Registrations that both decided about.
+             */
+            both: number;
+            /**
+             * First Id
+             * Format: uuid
+             */
+            first_id: string;
+            /** First Name */
+            first_name: string;
+            /**
+             * Kappa
+             * @description Cohen's; null where both always decided the same one thing.
+             */
+            kappa: number | null;
+            /**
+             * Second Id
+             * Format: uuid
+             */
+            second_id: string;
+            /** Second Name */
+            second_name: string;
+            /** Share Agreed */
+            share_agreed: number;
+            /**
+             * Table
+             * @description First person's decision, then the second's.
+             */
+            table: {
+                [key: string]: {
+                    [key: string]: number;
+                };
+            };
+        };
+        /**
+         * ScanCrop
+         * @description What is left out of a scan. The scan itself stays as it is.
+         */
+        ScanCrop: {
+            /**
+             * Drops Objects
+             * @description Leave out points of an object painted green too: G > max(R, 20), [R17] 3.1.
+             * @default false
+             */
+            drops_objects: boolean;
+            /**
+             * Strokes
+             * @description All of them; an empty list takes the crop back.
+             */
+            strokes: (components["schemas"]["PolygonStroke"] | components["schemas"]["PlaneStroke"])[];
+        };
+        /**
+         * ScanCropRevision
+         * @description What is left out of a scan, as of one revision.
+         */
+        ScanCropOut: {
+            /** Author Name */
+            author_name: string | null;
+            /**
+             * Created At
+             * @description Null for the whole scan.
+             */
+            created_at: string | null;
+            /** Drops Objects */
+            drops_objects: boolean;
+            /** Removed Count */
+            removed_count: number;
+            /** Revision */
+            revision: number;
+            /** Strokes */
+            strokes: (components["schemas"]["PolygonStroke"] | components["schemas"]["PlaneStroke"])[];
+        };
+        /**
+         * Scan
+         * @description A 3D scan of a hand.
+         */
+        ScanOut: {
+            /** Byte Count */
+            byte_count: number;
+            /**
+             * Collection
+             * @description Scans that belong together carry the same text here.
+             */
+            collection: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Created By Name */
+            created_by_name: string | null;
+            /**
+             * Digest
+             * @description SHA-256 of the file.
+             */
+            digest: string;
+            /**
+             * Extent M
+             * @description Of its box along x, y, z.
+             */
+            extent_m: number[];
+            /** Face Count */
+            face_count: number;
+            /**
+             * Geometry Key
+             * @description Part of the address of its geometry; changes with every crop.
+             */
+            geometry_key: string;
+            /** Has Colors */
+            has_colors: boolean;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /** Metres Per Unit */
+            metres_per_unit: number | null;
+            /** Name */
+            name: string;
+            /**
+             * Notes
+             * @description What was noticed when it was read.
+             */
+            notes: string[];
+            /** Point Count */
+            point_count: number;
+            /**
+             * Pose
+             * @description Name of the pose; empty when nobody said.
+             */
+            pose: string;
+            /** Problem */
+            problem: string | null;
+            registration?: components["schemas"]["ScanRegistration"] | null;
+            /**
+             * Removed Count
+             * @description Points that are cropped or belong to an object.
+             */
+            removed_count: number;
+            /**
+             * Revision
+             * @description Of what is cropped; 1 is the whole scan.
+             */
+            revision: number;
+            /**
+             * Side
+             * @description As the uploader says; null leaves it to the registration.
+             */
+            side: ("right" | "left") | null;
+            /**
+             * State
+             * @description `failed`: it could not be registered; `problem` says why.
+             * @enum {string}
+             */
+            state: "new" | "registered" | "failed";
+            /**
+             * Subject
+             * @description Whose hand; empty when nobody said.
+             */
+            subject: string;
+        };
+        /**
+         * ScanPatch
+         * @description What can be changed of a scan; what is left out stays.
+         */
+        ScanPatch: {
+            /** Collection */
+            collection?: string | null;
+            /** Name */
+            name?: string | null;
+            /** Pose */
+            pose?: string | null;
+            /** Subject */
+            subject?: string | null;
+        };
+        /**
+         * ScanRefusal
+         * @description A file that is no scan, or none that can be used.
+         */
+        ScanRefusal: {
+            /** Detail */
+            detail: string;
+            /** File */
+            file: string;
+        };
+        /**
+         * ScanRegistration
+         * @description The newest registration of a scan, in brief.
+         */
+        ScanRegistration: {
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /**
+             * Model Id
+             * Format: uuid
+             */
+            model_id: string;
+            /** Round */
+            round: number;
+            /** Score */
+            score: number;
+            /**
+             * Verdict
+             * @enum {string}
+             */
+            verdict: "good" | "doubtful" | "bad";
+        };
+        /**
+         * ScanToMesh
+         * @description Distances from the points of a scan to the registered mesh, mm.
+         */
+        ScanToMesh: {
+            /** Mean */
+            mean: number;
+            /** Median */
+            median: number;
+            /** P95 */
+            p95: number;
+        };
+        /**
+         * ScansAdded
+         * @description What an upload brought.
+         */
+        ScansAdded: {
+            /** Added */
+            added: components["schemas"]["ScanOut"][];
+            /**
+             * Known
+             * @description Files that the collection held already, by their SHA-256.
+             */
+            known: components["schemas"]["ScanOut"][];
+            /**
+             * Notes
+             * @description What was noticed beside, such as lines of scans.json without a file.
+             */
+            notes: string[];
+            /** Refused */
+            refused: components["schemas"]["ScanRefusal"][];
+        };
+        /**
+         * SecondReviewAsk
+         * @description Have a second person decide, who does not see the first one's decision.
+         */
+        SecondReviewAsk: {
+            /**
+             * Collection
+             * @description Null: of all.
+             */
+            collection?: string | null;
+            /**
+             * Only Decided
+             * @description Only of those that somebody has decided about.
+             * @default false
+             */
+            only_decided: boolean;
+            /**
+             * Share
+             * @description Of the registrations there are.
+             * @default 1
+             */
+            share: number;
+        };
+        /**
+         * SecondReviewAsked
+         * @description What was asked for.
+         */
+        SecondReviewAsked: {
+            /** Already */
+            already: number;
+            /**
+             * Marked
+             * @description Registrations that now need a second person.
+             */
+            marked: number;
         };
         /**
          * SequenceCamera
@@ -5094,6 +6637,19 @@ export interface components {
             name: string;
         };
         /**
+         * Throughput
+         * @description How fast registrations are decided about.
+         */
+        Throughput: {
+            /** People */
+            people: components["schemas"]["PersonThroughput"][];
+            /**
+             * Since
+             * Format: date-time
+             */
+            since: string;
+        };
+        /**
          * TokenIn
          * @description A token to be made.
          */
@@ -5228,6 +6784,158 @@ export interface components {
             summary: {
                 [key: string]: unknown;
             };
+        };
+        /**
+         * TrainingMember
+         * @description A registration in a training set.
+         */
+        TrainingMember: {
+            /** Decision Id */
+            decision_id: string | null;
+            /** Digest */
+            digest: string;
+            /** Pose */
+            pose: string;
+            /**
+             * Registration Id
+             * Format: uuid
+             */
+            registration_id: string;
+            /**
+             * Scan Id
+             * Format: uuid
+             */
+            scan_id: string;
+            /** Scan Name */
+            scan_name: string;
+            /**
+             * Side
+             * @enum {string}
+             */
+            side: "right" | "left";
+            /** Subject */
+            subject: string;
+        };
+        /**
+         * TrainingPreview
+         * @description What a rule would choose now.
+         */
+        TrainingPreview: {
+            /**
+             * Mirrored
+             * @description Left hands.
+             */
+            mirrored: number;
+            /** Registrations */
+            registrations: number;
+            /** Subjects */
+            subjects: number;
+            /**
+             * Undecided
+             * @description Newest registrations in its collections about which nobody has decided.
+             */
+            undecided: number;
+        };
+        /**
+         * TrainingRule
+         * @description Which registrations go in.
+         */
+        TrainingRule: {
+            /**
+             * By
+             * @description `decisions`: what the last decision of somebody accepts; `verdict`: what the program itself calls good, unless somebody rejected it.
+             * @default decisions
+             * @enum {string}
+             */
+            by: "decisions" | "verdict";
+            /**
+             * Collections
+             * @description Of these collections; empty: of all.
+             */
+            collections?: string[];
+            /**
+             * Leave Out Subjects
+             * @description Kept for testing.
+             */
+            leave_out_subjects?: string[];
+            /**
+             * Model Id
+             * @description By this model only.
+             */
+            model_id?: string | null;
+            /**
+             * Needs Two
+             * @description Only what two people accept, and nobody rejects.
+             * @default false
+             */
+            needs_two: boolean;
+            /**
+             * Verdicts
+             * @description Only with one of these verdicts; empty: with any.
+             */
+            verdicts?: ("good" | "doubtful" | "bad")[];
+        };
+        /**
+         * TrainingSetMake
+         * @description Keep the registrations that a rule chooses now.
+         */
+        TrainingSetMake: {
+            /** Name */
+            name: string;
+            rule?: components["schemas"]["TrainingRule"];
+        };
+        /**
+         * TrainingSet
+         * @description Registrations as a rule chose them at one moment.
+         */
+        TrainingSetOut: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Created By Name */
+            created_by_name: string | null;
+            /**
+             * Digest
+             * @description SHA-256 of the list of its registrations, with the SHA-256 of each.
+             */
+            digest: string;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /**
+             * Mirrored Count
+             * @description Left hands.
+             */
+            mirrored_count: number;
+            /**
+             * Model Count
+             * @description Models trained from it.
+             */
+            model_count: number;
+            /** Name */
+            name: string;
+            /** Registration Count */
+            registration_count: number;
+            rule: components["schemas"]["TrainingRule"];
+            /** Subject Count */
+            subject_count: number;
+        };
+        /**
+         * TrainingVerification
+         * @description Whether the files of a training set are still what they were.
+         */
+        TrainingVerification: {
+            /**
+             * Damaged
+             * @description Registrations whose file has changed or is gone, the first 100.
+             */
+            damaged: string[];
+            /** Is Intact */
+            is_intact: boolean;
         };
         /**
          * TriangulatedJoint
@@ -7285,6 +8993,391 @@ export interface operations {
             };
         };
     };
+    get_review_agreement: {
+        parameters: {
+            query?: {
+                collection?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReviewAgreement"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_reasons: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_ReasonOut_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    ask_second_review: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SecondReviewAsk"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SecondReviewAsked"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_throughput: {
+        parameters: {
+            query?: {
+                /** @description With its zone; without one, midnight UTC. */
+                since?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Throughput"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_decisions: {
+        parameters: {
+            query?: {
+                /** @description Whose. */
+                account_id?: string | null;
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_DecisionOut_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    undo_decision: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                decision_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DecisionUndo"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DecisionDone"];
+                };
+            };
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DecisionDone"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     compare_tracks: {
         parameters: {
             query?: {
@@ -7463,7 +9556,12 @@ export interface operations {
     };
     list_hand_models: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -7490,6 +9588,272 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_hand_model: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HandModelOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    delete_hand_model: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_hand_model_report: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HandModelReport"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    restore_hand_model: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HandModelOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -9351,6 +11715,74 @@ export interface operations {
             };
         };
     };
+    get_lineage: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                kind: "scan" | "registration" | "decision" | "training_set" | "hand_model";
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Lineage"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     log_in: {
         parameters: {
             query?: never;
@@ -10562,6 +12994,505 @@ export interface operations {
             };
         };
     };
+    list_registrations: {
+        parameters: {
+            query?: {
+                /** @description `undecided`: nobody has decided; `flagged`: the program doubts them, or somebody is unsure; `second`: you are to decide without seeing what somebody else decided. */
+                queue?: "undecided" | "all" | "flagged" | "second";
+                order?: "likely_failures" | "newest";
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+                /** @description Most items of a page. */
+                limit?: number;
+                scan_id?: string | null;
+                model_id?: string | null;
+                job_id?: string | null;
+                round?: number | null;
+                collection?: string | null;
+                subject?: string | null;
+                verdict?: ("good" | "doubtful" | "bad") | null;
+                /** @description The last one that stands and is not hidden. */
+                decision?: ("accept" | "reject" | "unsure") | null;
+                /** @description Also those that a newer one of the scan has followed. */
+                all_rounds?: boolean;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_RegistrationOut_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    count_registrations: {
+        parameters: {
+            query?: {
+                scan_id?: string | null;
+                model_id?: string | null;
+                job_id?: string | null;
+                round?: number | null;
+                collection?: string | null;
+                subject?: string | null;
+                verdict?: ("good" | "doubtful" | "bad") | null;
+                /** @description The last one that stands and is not hidden. */
+                decision?: ("accept" | "reject" | "unsure") | null;
+                /** @description Also those that a newer one of the scan has followed. */
+                all_rounds?: boolean;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RegistrationCounts"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_registration: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                registration_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RegistrationOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_registration_decisions: {
+        parameters: {
+            query?: {
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
+            header?: never;
+            path: {
+                registration_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_DecisionOut_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    make_decision: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                registration_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DecisionMake"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DecisionDone"];
+                };
+            };
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DecisionDone"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_registration_geometry: {
+        parameters: {
+            query?: {
+                /** @description As the scan's geometry was asked for. */
+                size?: number;
+            };
+            header?: never;
+            path: {
+                registration_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Arrays, as `docs/curation.md` describes them. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.handloom.geometry": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    download_registration: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                registration_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     get_replica_set: {
         parameters: {
             query?: never;
@@ -10993,6 +13924,847 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ReplicaSetOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_scans: {
+        parameters: {
+            query?: {
+                collection?: string | null;
+                subject?: string | null;
+                pose?: string | null;
+                side?: ("right" | "left") | null;
+                state?: ("new" | "registered" | "failed") | null;
+                /** @description Words of the name. */
+                search?: string | null;
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_ScanOut_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    create_scans: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "multipart/form-data": {
+                    /** @description PLY, OBJ or STL files, perhaps with a `scans.json`; or one .zip of them. */
+                    files: string[];
+                    /** @description JSON: `collection`, and for scans that no `scans.json` names `subject`, `pose`, `side`, `metres_per_unit`. */
+                    options?: string;
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScansAdded"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_scan_collections: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_CollectionOut_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_scan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                scan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScanOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    delete_scan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                scan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    update_scan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                scan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ScanPatch"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScanOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_scan_crop: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                scan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScanCropOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    put_scan_crop: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The revision that is changed, such as `"3"`. */
+                "if-match"?: string | null;
+            };
+            path: {
+                scan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ScanCrop"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScanOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Precondition Required */
+            428: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_scan_crops: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                scan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_ScanCropOut_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    download_scan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                scan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_scan_geometry: {
+        parameters: {
+            query?: {
+                /** @description Most points. */
+                size?: number;
+            };
+            header?: never;
+            path: {
+                scan_id: string;
+                key: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Arrays, as `docs/curation.md` describes them. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/vnd.handloom.geometry": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    restore_scan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                scan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScanOut"];
                 };
             };
             /** @description Unauthorized */
@@ -14452,6 +18224,478 @@ export interface operations {
             };
             /** @description Conflict */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_training_sets: {
+        parameters: {
+            query?: {
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_TrainingSetOut_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    create_training_set: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TrainingSetMake"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrainingSetOut"];
+                };
+            };
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrainingSetOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    preview_training_set: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TrainingRule"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrainingPreview"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_training_set: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                training_set_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrainingSetOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_training_members: {
+        parameters: {
+            query?: {
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
+            header?: never;
+            path: {
+                training_set_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_TrainingMember_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    download_training_set: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                training_set_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/zip": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    verify_training_set: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                training_set_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TrainingVerification"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -37,7 +37,7 @@ export function JobPage() {
   const { jobId = "" } = useParams();
   const { data: job, error, refetch } = useJob(jobId);
   const recording = useRecording(job?.sequence_id ?? undefined).data;
-  useTitle(job ? `${formatName(job.kind)} ${recording?.name ?? ""}` : "Job");
+  useTitle(job ? `${formatName(job.kind)} ${job.title}` : "Job");
   if (error && !job) return <Failure what="The job could not be loaded" error={error} safe="If it runs, it goes on by itself." onRetry={() => void refetch()} />;
   if (!job) return <PageSkeleton />;
   const params = Object.entries(job.params);
@@ -47,7 +47,7 @@ export function JobPage() {
         <div style={{ minWidth: 0 }}>
           <Group gap="md" wrap="nowrap">
             <Title order={1} className="one-line">
-              {formatName(job.kind)} {recording?.name}
+              {formatName(job.kind)} {job.title}
             </Title>
             <JobBadge state={job.state} />
           </Group>
@@ -100,7 +100,7 @@ export function JobPage() {
         </Fact>
         <Fact label="Started by">{job.created_by_name ?? "–"}</Fact>
         <Fact label={job.state === "running" ? "Runs on" : "Ran on"}>{job.worker ? job.worker.name : "–"}</Fact>
-        <Fact label="Frames">{job.frames_total ? `${job.frames_done ?? 0} of ${job.frames_total}` : "–"}</Fact>
+        <Fact label={job.unit === "scans" ? "Scans" : "Frames"}>{job.frames_total ? `${job.frames_done ?? 0} of ${job.frames_total}` : "–"}</Fact>
       </SimpleGrid>
       {job.track_id && <JobResult trackId={job.track_id} />}
       <div className={classes.columns}>

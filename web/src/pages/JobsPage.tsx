@@ -73,9 +73,9 @@ export function JobsPage() {
           )}
           {jobs.map((job) => (
             <Group key={job.id} gap="sm" wrap="nowrap">
-              <Checkbox aria-label={`Choose the job of ${job.sequence_name}`} checked={chosen.has(job.id)} onChange={(event) => choose(job.id, event.currentTarget.checked)} />
+              <Checkbox aria-label={`Choose the job of ${job.title}`} checked={chosen.has(job.id)} onChange={(event) => choose(job.id, event.currentTarget.checked)} />
               <div style={{ flex: 1, minWidth: 0 }}>
-                <JobRow job={job} recording={job.sequence_name} />
+                <JobRow job={job} recording={job.title} />
               </div>
             </Group>
           ))}

@@ -38,7 +38,7 @@ function RunHead({ job, letter }: { job: Job; letter: string }) {
         <span className={classes.letter}>{letter}</span>
         <div style={{ minWidth: 0 }}>
           <Link to={`/jobs/${job.id}`} className={`${classes.link} one-line`}>
-            {job.sequence_name}
+            {job.title}
           </Link>
           <Text size="xs" className="quiet" fw={400}>
             {formatAgo(job.created_at)}

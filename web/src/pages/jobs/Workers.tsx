@@ -32,7 +32,7 @@ function WorkerCard({ worker, job }: { worker: Worker; job: Job | undefined }) {
       <Text size="sm" className="one-line">
         {isBusy ? (
           <Link to={`/jobs/${worker.job_id}`} className={classes.link}>
-            {job ? `${job.sequence_name}, ${Math.round(100 * job.progress)} %` : "a job"}
+            {job ? `${job.title}, ${Math.round(100 * job.progress)} %` : "a job"}
           </Link>
         ) : (
           <span className="quiet">{worker.state === "running" ? "waits for a job" : "others have taken over its work"}</span>

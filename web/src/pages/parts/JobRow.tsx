@@ -28,7 +28,7 @@ export function JobBadge({ state }: { state: JobState }) {
 export function jobProgress(job: Job): string {
   const parts = [];
   if (job.stage && isActive(job)) parts.push(formatName(job.stage));
-  if (job.frames_total) parts.push(`${job.frames_done ?? 0} of ${job.frames_total} frames`);
+  if (job.frames_total) parts.push(`${job.frames_done ?? 0} of ${job.frames_total} ${job.unit}`);
   if (job.state === "running" && job.seconds_left !== null) parts.push(`${formatDuration(job.seconds_left)} left`);
   if (job.state === "queued") parts.push("a worker takes it as soon as one is free");
   return parts.join(" · ");

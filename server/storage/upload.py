@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import errno
 import unicodedata
-from collections.abc import AsyncIterator
+import uuid
+from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, TypeVar
 
+from anyio import CancelScope
 from python_multipart.exceptions import MultipartParseError
 from python_multipart.multipart import MultipartParser, parse_options_header
 from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
 
 from server.errors import InvalidError, StudioError, TooLargeError
+from server.storage.storage import Storage
 from tracker import find_path_fault
 
 MAX_FIELD_BYTES = 64 * 1024
 MAX_DEPTH = 12
+Result = TypeVar("Result")
 WRITE_BYTES = 1024 * 1024
 
 
@@ -189,3 +194,40 @@ async def receive_upload(stream: AsyncIterator[bytes], content_type: str, upload
         await run_in_threadpool(parser.finish)
     finally:
         parser.close()
+
+
+@dataclass(frozen=True)
+class UploadLimits:
+    """What one upload may bring."""
+
+    files: int
+    total_bytes: int
+
+
+async def work_on_upload(
+    request: Request, storage: Storage, area: str, limits: UploadLimits, work: Callable[[Path, Upload], Result]
+) -> Result:
+    """Receive the files into a folder of their own, work on them in a thread, and remove them whatever happens.
+
+    Args:
+        request: With a body of `multipart/form-data`.
+        storage: Where the folder is made.
+        area: Below which.
+        limits: More is refused.
+        work: Takes the folder, and the upload with its fields; gives the answer.
+    """
+    length = request.headers.get("content-length", "")
+    if length.isdecimal() and int(length) > limits.total_bytes + 2**20:
+        raise TooLargeError(f"The upload has {length} bytes; allowed are {limits.total_bytes}.")
+    id_ = uuid.uuid4()
+    folder = storage.folder(area, id_)
+    try:
+        await run_in_threadpool(folder.mkdir)
+        upload = Upload(folder, limits.files, limits.total_bytes)
+        await receive_upload(request.stream(), request.headers.get("content-type", ""), upload)
+        if not upload.names:
+            raise InvalidError("The upload holds no files. Choose some, or a zip of them.")
+        return await run_in_threadpool(work, folder, upload)
+    finally:
+        with CancelScope(shield=True):
+            await run_in_threadpool(storage.remove, area, id_)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from server.errors import InvalidError, TooLargeError
-from server.imports.upload import MAX_FIELD_BYTES, Upload, receive_upload
+from server.storage.upload import MAX_FIELD_BYTES, Upload, receive_upload
 
 BOUNDARY = "----b7"
 KIND = f"multipart/form-data; boundary={BOUNDARY}"

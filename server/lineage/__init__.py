@@ -1,0 +1,1 @@
+"""From scan to registration to decision to training set to model, and back."""

@@ -1,0 +1,180 @@
+"""Walks the chain scan - registration - decision - training set - model, up and down."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from server.accounts.service import find_names
+from server.decisions.models import DecisionRow
+from server.errors import NotFoundError
+from server.hand_models.models import HandModelRow
+from server.lineage.schemas import Kind, Lineage, LineageGroup, LineageItem
+from server.registrations.models import RegistrationRow
+from server.registrations.service import is_hidden_from
+from server.scans.models import ScanRow
+from server.training_sets.models import TrainingMemberRow, TrainingSetRow
+
+Ids = set[uuid.UUID]
+MOST_ITEMS = 50
+AT_ONCE = 500
+"""Ids in one query."""
+
+
+@dataclass
+class _Found:
+    """Ids of each kind, in the order in which the kinds were reached."""
+
+    ids: dict[Kind, Ids] = field(default_factory=dict)
+
+    def add(self, kind: Kind, ids: Iterable[uuid.UUID | None]) -> Ids:
+        """Note ids; gives those that are new."""
+        known = self.ids.setdefault(kind, set())
+        new = {id_ for id_ in ids if id_ is not None} - known
+        known |= new
+        return new
+
+
+def find_lineage(session: Session, kind: Kind, id_: uuid.UUID, reader_id: uuid.UUID) -> Lineage:
+    """Where a thing comes from and what came of it, as far as the reader may see it."""
+    of = _describe(session, kind, {id_}, reader_id).items
+    if not of:
+        raise NotFoundError(f"There is no {kind.replace('_', ' ')} {id_}.")
+    up, down = _Found(), _Found()
+    _walk(session, kind, {id_}, up, _find_sources)
+    _walk(session, kind, {id_}, down, _find_results)
+    return Lineage(
+        of=of[0],
+        comes_from=[_describe(session, *group, reader_id) for group in up.ids.items() if group[1]],
+        went_into=[_describe(session, *group, reader_id) for group in down.ids.items() if group[1]],
+    )
+
+
+def _walk(
+    session: Session,
+    kind: Kind,
+    ids: Ids,
+    found: _Found,
+    step: Callable[[Session, Kind, Ids], list[tuple[Kind, list[uuid.UUID | None]]]],
+) -> None:
+    todo: list[tuple[Kind, Ids]] = [(kind, ids)]
+    while todo:
+        at, some = todo.pop(0)
+        for reached, more in step(session, at, some):
+            if new := found.add(reached, more):
+                todo.append((reached, new))
+
+
+def _pick(session: Session, wanted: object, by: object, ids: Ids) -> list[uuid.UUID | None]:
+    """Values of one column where another is among the ids."""
+    listed = list(ids)
+    return [
+        value
+        for first in range(0, len(listed), AT_ONCE)
+        for value in session.scalars(
+            select(wanted).where(by.in_(listed[first : first + AT_ONCE])).distinct()  # type: ignore[attr-defined,arg-type]
+        )
+    ]
+
+
+def _find_sources(session: Session, kind: Kind, ids: Ids) -> list[tuple[Kind, list[uuid.UUID | None]]]:
+    def pick(wanted: object, by: object) -> list[uuid.UUID | None]:
+        return _pick(session, wanted, by, ids)
+
+    if kind == "hand_model":
+        return [
+            ("training_set", pick(HandModelRow.training_set_id, HandModelRow.id)),
+            ("hand_model", pick(HandModelRow.parent_id, HandModelRow.id)),
+        ]
+    if kind == "training_set":
+        member = TrainingMemberRow
+        return [
+            ("decision", pick(member.decision_id, member.training_set_id)),
+            ("registration", pick(member.registration_id, member.training_set_id)),
+        ]
+    if kind == "decision":
+        return [("registration", pick(DecisionRow.registration_id, DecisionRow.id))]
+    if kind == "registration":
+        row = RegistrationRow
+        return [("scan", pick(row.scan_id, row.id)), ("hand_model", pick(row.model_id, row.id))]
+    return []
+
+
+def _find_results(session: Session, kind: Kind, ids: Ids) -> list[tuple[Kind, list[uuid.UUID | None]]]:
+    def pick(wanted: object, by: object) -> list[uuid.UUID | None]:
+        return _pick(session, wanted, by, ids)
+
+    if kind == "scan":
+        return [("registration", pick(RegistrationRow.id, RegistrationRow.scan_id))]
+    if kind == "registration":
+        return [
+            ("decision", pick(DecisionRow.id, DecisionRow.registration_id)),
+            ("training_set", pick(TrainingMemberRow.training_set_id, TrainingMemberRow.registration_id)),
+        ]
+    if kind == "decision":
+        return [("training_set", pick(TrainingMemberRow.training_set_id, TrainingMemberRow.decision_id))]
+    if kind == "training_set":
+        return [("hand_model", pick(HandModelRow.id, HandModelRow.training_set_id))]
+    return [
+        ("hand_model", pick(HandModelRow.id, HandModelRow.parent_id)),
+        ("registration", pick(RegistrationRow.id, RegistrationRow.model_id)),
+    ]
+
+
+def _describe(session: Session, kind: Kind, ids: Ids, reader_id: uuid.UUID) -> LineageGroup:
+    """The newest things of a kind, and how many there are."""
+    listed = list(ids)
+    rows = []
+    table = TABLES[kind]
+    for first in range(0, len(listed), AT_ONCE):
+        query = select(table).where(table.id.in_(listed[first : first + AT_ONCE]))
+        if kind == "decision":
+            query = query.join(RegistrationRow, RegistrationRow.id == DecisionRow.registration_id)
+            query = query.where(~is_hidden_from(reader_id) | (DecisionRow.account_id == reader_id))
+        rows += session.scalars(query)
+    rows.sort(key=lambda row: (row.created_at, row.id), reverse=True)
+    shown = rows[:MOST_ITEMS]
+    names = _Names(session, shown)
+    return LineageGroup(kind=kind, total=len(rows), items=[names.describe(kind, row) for row in shown])
+
+
+TABLES = {
+    "scan": ScanRow,
+    "registration": RegistrationRow,
+    "decision": DecisionRow,
+    "training_set": TrainingSetRow,
+    "hand_model": HandModelRow,
+}
+
+
+class _Names:
+    """Names of what some rows point to."""
+
+    def __init__(self, session: Session, rows: list) -> None:
+        scans = {row.scan_id for row in rows if isinstance(row, RegistrationRow)}
+        models = {row.model_id for row in rows if isinstance(row, RegistrationRow | DecisionRow)}
+        self._people = find_names(session, (row.account_id for row in rows if isinstance(row, DecisionRow)))
+        self._scans = dict(
+            session.execute(select(ScanRow.id, ScanRow.name).where(ScanRow.id.in_(scans))).tuples().all()
+        )
+        query = select(HandModelRow.id, HandModelRow.name).where(HandModelRow.id.in_(models))
+        self._models = dict(session.execute(query).tuples().all())
+
+    def describe(self, kind: Kind, row: object) -> LineageItem:
+        if isinstance(row, ScanRow):
+            name, detail = row.name, " ".join(filter(None, (row.subject, row.pose))) or row.collection
+        elif isinstance(row, RegistrationRow):
+            name, detail = self._scans[row.scan_id], f"{row.verdict}, by {self._models[row.model_id]}"
+        elif isinstance(row, DecisionRow):
+            name = f"{row.decision} by {self._people.get(row.account_id, '')}"
+            detail = f"of a registration by {self._models[row.model_id]}"
+        elif isinstance(row, TrainingSetRow):
+            name, detail = row.name, f"{row.registration_count} registrations, {row.subject_count} subjects"
+        else:
+            assert isinstance(row, HandModelRow)
+            name, detail = row.name, f"{row.kind}, round {row.round}"
+        return LineageItem(kind=kind, id=row.id, name=name, detail=detail, created_at=row.created_at)

@@ -1,0 +1,1 @@
+"""Registrations: the template brought onto a scan, and how well that seems to have gone."""

@@ -1,0 +1,1 @@
+"""3D scans of hands: uploaded, cropped, shown."""

@@ -1,0 +1,265 @@
+"""`/scans`."""
+
+from __future__ import annotations
+
+import uuid
+from pathlib import Path
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+from starlette.requests import HTTPConnection
+
+from server.accounts.audit import record_act
+from server.accounts.service import AccountIdDep, CurrentAccount, LeadAccount, find_names, require_lead
+from server.database import DatabaseDep, SessionDep
+from server.database.paging import Cursor, Limit, Page
+from server.database.revision import IfMatch, read_if_match, write_etag
+from server.errors import ConflictError, error_responses
+from server.scans import service
+from server.scans.adding import add_scans, parse_options
+from server.scans.facts import FactsDep, describe_scans
+from server.scans.geometry import MEDIA_TYPE
+from server.scans.models import ScanCropRow
+from server.scans.schemas import (
+    CollectionOut,
+    ScanCrop,
+    ScanCropOut,
+    ScanOut,
+    ScanPatch,
+    ScansAdded,
+    Side,
+    State,
+)
+from server.storage import StorageDep
+from server.storage.upload import Upload, UploadLimits, work_on_upload
+from tracker import ArchiveLimits, extract_archive
+
+router = APIRouter(prefix="/scans", tags=["scans"], responses=error_responses())
+
+UPLOADS = "scan_uploads"
+IMMUTABLE = "private, max-age=31536000, immutable"
+GEOMETRY: dict[int | str, dict[str, Any]] = {
+    200: {
+        "content": {MEDIA_TYPE: {"schema": {"type": "string", "format": "binary"}}},
+        "description": "Arrays, as `docs/curation.md` describes them.",
+    }
+}
+_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["files"],
+                    "properties": {
+                        "files": {
+                            "type": "array",
+                            "items": {"type": "string", "format": "binary"},
+                            "description": "PLY, OBJ or STL files, perhaps with a `scans.json`; or one .zip of them.",
+                        },
+                        "options": {
+                            "type": "string",
+                            "description": "JSON: `collection`, and for scans that no `scans.json` names `subject`, "
+                            "`pose`, `side`, `metres_per_unit`.",
+                        },
+                    },
+                }
+            }
+        },
+    }
+}
+
+
+def get_shelf(connection: HTTPConnection) -> service.ScanShelf:
+    """The app's scans that were asked for lately."""
+    state = connection.app.state
+    if not hasattr(state, "scan_shelf"):
+        state.scan_shelf = service.ScanShelf(state.storage)
+    return state.scan_shelf
+
+
+ShelfDep = Annotated[service.ScanShelf, Depends(get_shelf)]
+
+
+@router.get("")
+def list_scans(
+    session: SessionDep,
+    facts: FactsDep,
+    collection: Annotated[str | None, Query(max_length=200)] = None,
+    subject: Annotated[str | None, Query(max_length=100)] = None,
+    pose: Annotated[str | None, Query(max_length=100)] = None,
+    side: Side | None = None,
+    state: State | None = None,
+    search: Annotated[str | None, Query(max_length=200, description="Words of the name.")] = None,
+    cursor: Cursor = None,
+    limit: Limit = 100,
+) -> Page[ScanOut]:
+    """Scans, the newest first."""
+    wanted = service.ScanFilter(collection, subject, pose, side, state, search)
+    rows, next_cursor = service.list_scans(session, wanted, cursor, limit)
+    return Page(items=describe_scans(session, rows, facts), next_cursor=next_cursor)
+
+
+@router.post(
+    "",
+    status_code=201,
+    responses=error_responses(413, 507),
+    openapi_extra=_BODY,
+    dependencies=[Depends(require_lead)],
+)
+async def create_scans(
+    request: Request, database: DatabaseDep, storage: StorageDep, facts: FactsDep, account_id: AccountIdDep
+) -> ScansAdded:
+    """Upload scans. Each file is judged by itself; one sent again is not kept twice."""
+    settings = request.app.state.settings
+    limits = UploadLimits(settings.max_upload_files, settings.max_upload_bytes)
+
+    def work(folder: Path, upload: Upload) -> ScansAdded:
+        options = parse_options(upload.fields.get("options", ""))
+        source = folder
+        if len(upload.names) == 1 and upload.names[0].lower().endswith(".zip"):
+            source = folder / ".unpacked"
+            allowed = ArchiveLimits(files=limits.files, total_bytes=limits.total_bytes)
+            extract_archive(folder / upload.names[0], source, allowed)
+        done = add_scans(database, storage, source, options, account_id, moves=True)
+        with database.reading() as session:
+            return ScansAdded(
+                added=describe_scans(session, done.added, facts),
+                known=describe_scans(session, done.known, facts),
+                refused=done.refused,
+                notes=done.notes,
+            )
+
+    return await work_on_upload(request, storage, UPLOADS, limits, work)
+
+
+@router.get("/collections")
+def list_scan_collections(session: SessionDep) -> Page[CollectionOut]:
+    """Collections of scans, by name."""
+    return Page(items=service.list_collections(session), next_cursor=None)
+
+
+@router.get("/{scan_id}", responses=error_responses(404))
+def get_scan(scan_id: uuid.UUID, session: SessionDep, facts: FactsDep, response: Response) -> ScanOut:
+    """One scan."""
+    row = service.get_scan(session, scan_id)
+    response.headers["ETag"] = write_etag(row.revision)
+    return describe_scans(session, [row], facts)[0]
+
+
+@router.patch("/{scan_id}", responses=error_responses(404))
+def update_scan(
+    scan_id: uuid.UUID, patch: ScanPatch, session: SessionDep, facts: FactsDep, lead: LeadAccount
+) -> ScanOut:
+    """Change name, collection, subject or pose."""
+    row = service.get_scan(session, scan_id)
+    service.update_scan(session, row, patch)
+    record_act(session, lead.id, "scan.change", "scan", row.id)
+    return describe_scans(session, [row], facts)[0]
+
+
+@router.delete("/{scan_id}", status_code=204, responses=error_responses(404))
+def delete_scan(scan_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> None:
+    """Hide a scan. Nothing of it is lost: `restore` brings it back."""
+    service.delete_scan(session, service.get_scan(session, scan_id))
+    record_act(session, lead.id, "scan.delete", "scan", scan_id)
+
+
+@router.post("/{scan_id}/restore", responses=error_responses(404))
+def restore_scan(scan_id: uuid.UUID, session: SessionDep, facts: FactsDep, lead: LeadAccount) -> ScanOut:
+    """Undo a deletion."""
+    row = service.get_scan(session, scan_id, deleted_too=True)
+    service.restore_scan(session, row)
+    record_act(session, lead.id, "scan.restore", "scan", row.id)
+    return describe_scans(session, [row], facts)[0]
+
+
+@router.get(
+    "/{scan_id}/file",
+    response_class=Response,
+    responses=error_responses(404)
+    | {200: {"content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}}},
+)
+def download_scan(scan_id: uuid.UUID, session: SessionDep, storage: StorageDep) -> Response:
+    """The file as it was uploaded."""
+    row = service.get_scan(session, scan_id)
+    data = (storage.folder(service.AREA, row.id) / row.file).read_bytes()
+    name = f"scan-{row.digest[:12]}{Path(row.file).suffix}"
+    headers = {"Content-Disposition": f'attachment; filename="{name}"', "ETag": f'"{row.digest}"'}
+    return Response(data, media_type="application/octet-stream", headers=headers)
+
+
+@router.get("/{scan_id}/geometry/{key}", response_class=Response, responses=GEOMETRY | error_responses(404))
+def get_scan_geometry(
+    scan_id: uuid.UUID,
+    key: str,
+    session: SessionDep,
+    shelf: ShelfDep,
+    size: Annotated[int, Query(ge=1, le=200_000, description="Most points.")] = 20_000,
+) -> Response:
+    """Points for the browser: positions, normals, colours, and flags (1 cropped, 2 of an object). It never changes."""
+    row = service.get_scan(session, scan_id, deleted_too=True)
+    revision = service.find_geometry_revision(row, key)
+    crop = service.read_crop(service.get_crop(session, scan_id, revision))
+    return Response(shelf.pack(row, crop, size), media_type=MEDIA_TYPE, headers={"Cache-Control": IMMUTABLE})
+
+
+@router.get("/{scan_id}/crop", responses=error_responses(404))
+def get_scan_crop(scan_id: uuid.UUID, session: SessionDep, response: Response) -> ScanCropOut:
+    """What is left out of a scan now."""
+    row = service.get_scan(session, scan_id)
+    response.headers["ETag"] = write_etag(row.revision)
+    return _describe_crops(session, [service.get_crop(session, scan_id, row.revision)])[0]
+
+
+@router.put("/{scan_id}/crop", responses=error_responses(404, 409, 428))
+def put_scan_crop(
+    scan_id: uuid.UUID,
+    crop: ScanCrop,
+    session: SessionDep,
+    shelf: ShelfDep,
+    facts: FactsDep,
+    account: CurrentAccount,
+    response: Response,
+    if_match: IfMatch = None,
+) -> ScanOut:
+    """Replace what is left out of a scan; the file stays as it is. 409 carries the scan as it is now in `theirs`."""
+    row = service.get_scan(session, scan_id)
+    revision = read_if_match(if_match)
+    try:
+        row = service.put_crop(session, row, crop, service.count_removed(shelf.get(row), crop), revision, account.id)
+    except service.StaleScanError as stale:
+        row = service.get_scan(session, scan_id)
+        theirs = describe_scans(session, [row], facts)[0].model_dump(mode="json")
+        raise ConflictError(stale.detail, headers={"ETag": write_etag(row.revision)}, theirs=theirs) from None
+    record_act(session, account.id, "scan.crop", "scan", row.id, revision=row.revision)
+    response.headers["ETag"] = write_etag(row.revision)
+    return describe_scans(session, [row], facts)[0]
+
+
+@router.get("/{scan_id}/crop/history", responses=error_responses(404))
+def list_scan_crops(scan_id: uuid.UUID, session: SessionDep) -> Page[ScanCropOut]:
+    """Every crop of a scan, the newest first. To go back to one, put its strokes again."""
+    service.get_scan(session, scan_id)
+    return Page(items=_describe_crops(session, [*service.list_crops(session, scan_id), None]), next_cursor=None)
+
+
+def _describe_crops(session: Any, rows: list[ScanCropRow | None]) -> list[ScanCropOut]:
+    people = find_names(session, (row.author_id for row in rows if row is not None))
+    whole = ScanCropOut(revision=1, strokes=[], drops_objects=False, removed_count=0, author_name=None, created_at=None)
+    return [
+        whole
+        if row is None
+        else ScanCropOut.model_validate(
+            {
+                "revision": row.revision,
+                "strokes": row.strokes,
+                "drops_objects": row.drops_objects,
+                "removed_count": row.removed_count,
+                "author_name": people.get(row.author_id),
+                "created_at": row.created_at,
+            }
+        )
+        for row in rows
+    ]

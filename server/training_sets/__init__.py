@@ -1,0 +1,1 @@
+"""Registrations that a hand model is trained from, kept as they are."""

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         SequenceError,
         TrackerError,
         TrackingError,
+        TrainingError,
     )
     from tracker.evaluation.comparison import JudgedTrack, compare_tracks
     from tracker.evaluation.evaluation import Evaluation, evaluate_track
@@ -74,6 +75,9 @@ if TYPE_CHECKING:
     from tracker.tracking.track import Track, join_chunks, load_track
     from tracker.tracking.view_aids import ViewAids
     from tracker.tracking.warm_up import warm_up
+    from tracker.training.options import TrainingOptions
+    from tracker.training.train import Training, train_model
+    from tracker.training.training_set import TrainingSet, load_training_set, make_training_set
 
 _HOMES = {
     "add_commands": "tracker.cli",
@@ -124,6 +128,7 @@ _HOMES = {
     "load_registration": "tracker.registration.registration_files",
     "load_scan": "tracker.capture.scan",
     "load_sequence": "tracker.capture.sequence",
+    "load_training_set": "tracker.training.training_set",
     "load_track": "tracker.tracking.track",
     "make_anatomical_prior": "tracker.registration.anatomy",
     "make_gaussian_prior": "tracker.registration.pose_prior",
@@ -162,7 +167,13 @@ _HOMES = {
     "TrackPreset": "tracker.tracking.presets",
     "TrackSetup": "tracker.tracking.setup",
     "TrackState": "tracker.tracking.state",
+    "make_training_set": "tracker.training.training_set",
+    "train_model": "tracker.training.train",
     "triangulate": "tracker.capture.triangulation",
+    "Training": "tracker.training.train",
+    "TrainingError": "tracker.errors",
+    "TrainingOptions": "tracker.training.options",
+    "TrainingSet": "tracker.training.training_set",
     "Triangulation": "tracker.capture.triangulation",
     "untrained_hand": "tracker.model.untrained_hand",
     "USUAL_PRESET": "tracker.tracking.presets",
@@ -223,6 +234,10 @@ __all__ = [
     "TrackState",
     "TrackerError",
     "TrackingError",
+    "Training",
+    "TrainingError",
+    "TrainingOptions",
+    "TrainingSet",
     "Triangulation",
     "ViewAids",
     "add_commands",
@@ -247,8 +262,10 @@ __all__ = [
     "load_scan",
     "load_sequence",
     "load_track",
+    "load_training_set",
     "make_anatomical_prior",
     "make_gaussian_prior",
+    "make_training_set",
     "pack_files",
     "read_label_files",
     "register_scan",
@@ -263,6 +280,7 @@ __all__ = [
     "start_tracking",
     "summarize_registration",
     "track_frames",
+    "train_model",
     "triangulate",
     "untrained_hand",
     "view_track_hands",

@@ -86,3 +86,7 @@ class SolveError(TrackerError):
 
 class TrackingError(TrackerError):
     """A recording cannot be tracked as asked."""
+
+
+class TrainingError(TrackerError):
+    """Registrations cannot be learnt from."""

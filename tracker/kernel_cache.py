@@ -25,6 +25,8 @@ SHARED_KERNELS = (
     "terms/residual.py",
     "terms/surface_point.py",
     "observation/observation.py",
+    "training/linearize.py",
+    "training/motion.py",
 )
 """Files whose kernels, or whose constants, kernels of other files use."""
 

@@ -1,0 +1,86 @@
+import numpy as np
+
+from tests.tracker.training.fingers import PARENTS, crude_regressor, make_fingers, make_tube, make_weights, pose
+from tracker.training.joints import fit_joints
+from tracker.training.learn import Data, begin, improve
+from tracker.training.motion import fill_skinning, sparsen_skinning, turn
+from tracker.training.options import TrainingOptions
+from tracker.training.pose_fit import Poses, Rig
+
+
+def learn(fingers, rounds, **options):
+    options = TrainingOptions(weight_stiffness=0.001, **options)
+    tube, faces = make_tube()
+    data = Data(fingers.targets, fingers.owners, fingers.owners, faces)
+    crude = make_weights(tube[:, 0], 0.004)
+    learnt = begin(data, tube, PARENTS, crude, crude_regressor(tube), options, lambda share: None)
+    errors = [np.sqrt(np.mean(learnt.poses.errors**2))]
+    for number in range(rounds):
+        learnt = improve(learnt, data, options, number == rounds - 1, lambda stage, share: None)
+        errors.append(np.sqrt(np.mean(learnt.poses.errors**2)))
+    return learnt, errors
+
+
+def posed_joints(learnt, owners):
+    return np.array(
+        [
+            pose(
+                learnt.templates[person],
+                learnt.joints[person],
+                PARENTS,
+                learnt.rig.skinning,
+                learnt.rig.directions,
+                learnt.poses.rotations[n],
+                learnt.poses.translations[n],
+            )[1]
+            for n, person in enumerate(owners)
+        ]
+    )
+
+
+def test_plain_skinning_is_found_again_from_a_crude_start():
+    fingers = make_fingers(with_bulges=False)
+    learnt, errors = learn(fingers, 8, with_pose_shapes=False, joint_stiffness=0.01)
+    assert errors[-1] < 0.1e-3 < errors[0]
+    away = np.linalg.norm(posed_joints(learnt, fingers.owners) - fingers.posed_joints, axis=2)
+    assert away.mean() < 0.15e-3
+    assert np.abs(fill_skinning(learnt.rig.skinning, 4) - fingers.weights).sum(1).mean() < 0.01
+
+
+def test_bulges_are_learnt_by_blend_shapes_and_joints_stay_right():
+    fingers = make_fingers(with_bulges=True)
+    with_shapes, errors = learn(fingers, 4)
+    _, plain = learn(fingers, 4, with_pose_shapes=False)
+    assert errors[-1] < 0.3 * plain[-1]
+    away = np.linalg.norm(posed_joints(with_shapes, fingers.owners) - fingers.posed_joints, axis=2)
+    assert away.mean() < 0.6e-3
+
+
+def test_weights_are_a_partition_over_at_most_four_bones():
+    learnt, _ = learn(make_fingers(), 2)
+    skinning = learnt.rig.skinning
+    assert skinning.bones.shape[1] == 4 and (skinning.weights >= 0.0).all()
+    np.testing.assert_allclose(skinning.weights.sum(1), 1.0, atol=1e-12)
+    rows = learnt.regressor.toarray()
+    assert (rows >= 0.0).all()
+    np.testing.assert_allclose(rows.sum(1), 1.0, atol=1e-12)
+    assert (rows != 0).sum(1).max() < 40
+
+
+def test_where_a_hinge_tells_nothing_joints_stay_where_they_were_expected():
+    """Bent about the y axis only, a joint may lie anywhere along y; across it, it is found."""
+    fingers = make_fingers(people=1, poses=12, with_bulges=False)
+    skinning = sparsen_skinning(fingers.weights)
+    template, joints = fingers.templates[0], fingers.joints[0]
+    rotations, owners = np.tile(np.eye(3), (12, 4, 1, 1)), np.zeros(12, dtype=int)
+    for n in range(12):
+        for b in range(1, 4):
+            turn(rotations[n, b], 0.0, 0.1 * n + 0.05 * b, 0.0)
+    nothing = np.zeros((*template.shape, 0))
+    targets = np.stack([pose(template, joints, PARENTS, skinning, nothing, R, np.zeros(3))[0] for R in rotations])
+    expected = joints + np.array([[0, 0, 0], [0.002, 0.003, 0.002], [0.002, -0.003, 0.001], [0.001, 0.002, -0.002]])
+    rig = Rig(PARENTS, skinning, nothing)
+    start = Poses(rotations, np.zeros((12, 3)), np.zeros(12))
+    _, found = fit_joints(start, targets, template[None], owners, expected[None], expected[None], 1e-3, rig, 30)
+    np.testing.assert_allclose(found[0, 1:, [0, 2]], joints[1:, [0, 2]].T, atol=0.1e-3)
+    np.testing.assert_allclose(found[0, 1:, 1], expected[1:, 1], atol=0.1e-3)

@@ -1,0 +1,1 @@
+"""From accepted registrations to a hand model, [R17] section 3.3."""

@@ -1,0 +1,105 @@
+"""Rest joints of each person together with the poses of all their registrations.
+
+[R17] keeps everything else constant while it improves the joints. Poses make up for wrong joints, so that alternation
+hardly moves them; here the poses are eliminated from each step by their Schur complement (variable projection), which
+lets the joints move as far as the poses would follow. What the registrations cannot tell, such as where along a hinge's
+axis its joint lies, stays where the joint regressor puts it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.training.linearize import linearize
+from tracker.training.motion import turn
+from tracker.training.pose_fit import Poses, Rig, each
+
+Array = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+
+def fit_joints(
+    start: Poses,
+    targets: Array,
+    templates: Array,
+    owners: Integers,
+    joints: Array,
+    expected: Array,
+    stiffness: float,
+    rig: Rig,
+    iterations: int,
+    threads: int = 1,
+    progress: Callable[[float], None] | None = None,
+) -> tuple[Poses, Array]:
+    """Poses and joints (S, B, 3), m, that bring the templates onto their targets.
+
+    Args:
+        start: Poses to begin with.
+        targets: (N, V, 3) m; templates (S, V, 3) m; owners (N,) whose template; joints (S, B, 3) m to begin with.
+        expected: (S, B, 3) where the joints should be as far as registrations do not tell, m.
+        stiffness: Weight of (joint - expected)² against that of one vertex, per registration.
+        iterations: Steps for each person.
+        progress: Told the share done; may raise to cancel.
+    """
+    rotations, translations = start.rotations.copy(), start.translations.copy()
+    errors, found = start.errors.copy(), joints.copy()
+
+    def fit(person: int) -> None:
+        mine = np.flatnonzero(owners == person)
+        if len(mine):
+            pose = rotations[mine], translations[mine]
+            pose, found[person], costs = _fit_person(
+                pose, targets[mine], templates[person], joints[person], expected[person], stiffness, rig, iterations
+            )
+            rotations[mine], translations[mine] = pose
+            errors[mine] = np.sqrt(costs / targets.shape[1])
+
+    each(fit, len(templates), threads, progress)
+    return Poses(rotations, translations, errors), found
+
+
+def _fit_person(pose, targets, template, joints, expected, stiffness, rig: Rig, iterations):
+    rotations, translations = pose
+    B = len(joints)
+    P, D = 3 * B + 3, 6 * B + 3
+    stiff = stiffness * len(targets)
+
+    def evaluate(turns, shifts, at, H, g):
+        return np.array(
+            [
+                linearize(template, at, rig.parents, *rig.skinning, rig.directions, target, R, t, True, H[n], g[n])
+                for n, (target, R, t) in enumerate(zip(targets, turns, shifts, strict=True))
+            ]
+        )
+
+    H, g = np.empty((len(targets), D, D)), np.empty((len(targets), D))
+    none, nothing = np.empty((len(targets), 0, 0)), np.empty((len(targets), 0))
+    costs = evaluate(rotations, translations, joints, H, g)
+    for _ in range(iterations):
+        total = costs.sum() + stiff * np.sum((joints - expected) ** 2)
+        own = H[:, :P, :P] + 1e-9 * np.eye(P)
+        gains = np.linalg.solve(own, np.concatenate([H[:, :P, P:], g[:, :P, None]], axis=2))
+        S = (H[:, P:, P:] - np.swapaxes(H[:, :P, P:], 1, 2) @ gains[:, :, :-1]).sum(0) + stiff * np.eye(3 * B)
+        s = (g[:, P:] - np.einsum("npj,np->nj", H[:, :P, P:], gains[:, :, -1])).sum(0)
+        s += stiff * (joints - expected).ravel()
+        step = -np.linalg.solve(S, s)
+        steps = -gains[:, :, -1] - gains[:, :, :-1] @ step
+        for share in (1.0, 0.3, 0.1):
+            turns, shifts = rotations.copy(), translations + share * steps[:, 3 * B : P]
+            at = joints + share * step.reshape(B, 3)
+            for n in range(len(targets)):
+                for b in range(B):
+                    turn(turns[n, b], *(share * steps[n, 3 * b : 3 * b + 3]))
+            new = evaluate(turns, shifts, at, none, nothing)
+            if new.sum() + stiff * np.sum((at - expected) ** 2) < total:
+                break
+        else:
+            break
+        rotations, translations, joints, costs = turns, shifts, at, new
+        if total - (new.sum() + stiff * np.sum((at - expected) ** 2)) < 1e-4 * total:
+            break
+        evaluate(rotations, translations, joints, H, g)
+    return (rotations, translations), joints, costs

@@ -1,0 +1,176 @@
+"""The parameters of a hand model in turn, each against all the others, [R17] section 3.3."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import csr_array
+
+from tracker.geometry.geodesics import compute_geodesics
+from tracker.training.blend_weights import fit_blend_weights
+from tracker.training.joints import fit_joints
+from tracker.training.motion import compute_features, fill_skinning, sparsen_skinning
+from tracker.training.options import TrainingOptions
+from tracker.training.pose_fit import Poses, Rig, fit_poses, start_poses
+from tracker.training.pose_shapes import PoseShapes, compute_costs, fit_pose_shapes
+from tracker.training.regressor import fit_joint_regressor
+from tracker.training.spaces import align_rigidly
+from tracker.training.templates import fit_templates, unpose, weigh_by_pose
+
+Array = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Data:
+    """targets (N, V, 3) registrations, m; owners (N,) which template they are of; people (N,) whose; faces (F, 3)."""
+
+    targets: Array
+    owners: Integers
+    people: Integers
+    faces: Integers
+
+
+@dataclass(frozen=True)
+class Learnt:
+    """What is known about N registrations of S people's hands, and about hands.
+
+    Attributes:
+        templates: (S, V, 3) m; joints: (S, B, 3) m.
+        poses: Of the registrations.
+        rig: Skinning and pose blend shapes.
+        regressor: (B, V).
+        shapes: The last blend shapes and how their weight was chosen; None without.
+    """
+
+    templates: Array
+    joints: Array
+    poses: Poses
+    rig: Rig
+    regressor: csr_array
+    shapes: PoseShapes | None = None
+
+
+def begin(
+    data: Data,
+    template: Array,
+    parents: Integers,
+    skinning_weights: Array,
+    regressor: csr_array,
+    options: TrainingOptions,
+    progress: Callable[[float], None],
+) -> Learnt:
+    """First poses and templates, from a crude model and without blend shapes; templates weighted by Eq. 11.
+
+    Args:
+        data: Registrations.
+        template, parents, skinning_weights, regressor: Of the crude model.
+        progress: Told the share done.
+    """
+    targets, owners = data.targets, data.owners
+    S = int(owners.max()) + 1
+    rig = Rig(parents, sparsen_skinning(skinning_weights), np.zeros((*template.shape, 0)))
+    templates = np.tile(template, (S, 1, 1))
+    joints = np.tile(regressor @ template, (S, 1, 1))
+    poses = start_poses(targets, templates, owners, joints, rig)
+    for turn in range(2):
+        poses = fit_poses(
+            poses, targets, templates, owners, joints, rig, 6, options.threads, lambda s, t=turn: progress((t + s) / 2)
+        )
+        templates = fit_templates(poses, targets, owners, weigh_by_pose(poses, owners), joints, rig)
+        joints = np.stack([regressor @ own for own in templates])
+    return Learnt(templates, joints, poses, rig, regressor)
+
+
+def improve(
+    learnt: Learnt,
+    data: Data,
+    options: TrainingOptions,
+    is_last: bool,
+    progress: Callable[[str, float], None],
+) -> Learnt:
+    """One round: poses with joints, templates, blend weights, blend shapes, joint regressor.
+
+    In the last round the joints are those that the regressor gives, so that all the rest fits to them.
+    """
+    targets, owners, rig, regressor = data.targets, data.owners, learnt.rig, learnt.regressor
+    expected = np.stack([regressor @ own for own in learnt.templates])
+    progress("poses and joints", 0.0)
+    poses, joints = fit_joints(
+        learnt.poses,
+        targets,
+        learnt.templates,
+        owners,
+        learnt.joints,
+        expected,
+        options.joint_stiffness,
+        rig,
+        4,
+        options.threads,
+        lambda share: progress("poses and joints", share),
+    )
+    even = np.ones(len(targets))
+    progress("templates", 0.0)
+    templates = fit_templates(poses, targets, owners, even, joints, rig)
+    roots = joints[:, 0]
+    palm = fill_skinning(rig.skinning, len(rig.parents))[:, 0]
+    templates, joints, turned = align_rigidly(templates, joints, palm)
+    poses = _turn_poses(poses, owners, turned, roots, joints[:, 0])
+    progress("blend weights", 0.0)
+    rig = replace(
+        rig, skinning=fit_blend_weights(poses, targets, templates, owners, joints, rig, options.weight_stiffness)
+    )
+    progress("joint regressor", 0.0)
+    regressor = fit_joint_regressor(templates, joints, fill_skinning(rig.skinning, len(rig.parents)), rig.parents)
+    if is_last:
+        joints = np.stack([regressor @ own for own in templates])
+    poses = fit_poses(
+        poses, targets, templates, owners, joints, rig, 3, options.threads, lambda share: progress("poses", share)
+    )
+    shapes = None
+    if options.with_pose_shapes:
+        progress("pose blend shapes", 0.0)
+        costs = compute_costs(measure_from_joints(templates.mean(0), data.faces, regressor))
+        rest = unpose(poses, targets, owners, joints, rig)
+        ridges = options.ridges if learnt.shapes is None or is_last else (learnt.shapes.ridge,)
+        shapes = fit_pose_shapes(find_features(poses), rest, owners, data.people, costs, ridges)
+        rig = replace(rig, directions=shapes.directions)
+    templates = fit_templates(poses, targets, owners, even, joints, rig)
+    return Learnt(templates, joints, poses, rig, regressor, shapes)
+
+
+def find_features(poses: Poses) -> Array:
+    """(N, 9(B-1)) features of Eq. 4."""
+    features = np.empty((len(poses.rotations), 9 * (poses.rotations.shape[1] - 1)))
+    for rotations, row in zip(poses.rotations, features, strict=True):
+        compute_features(rotations, row)
+    return features
+
+
+def measure_from_joints(template: Array, faces: Integers, regressor: csr_array) -> Array:
+    """(B-1, V) mean geodesic distance from the vertices that a joint is averaged from, m, [R17] Eq. 10.
+
+    A vertex that no path along the surface leads to counts as far away as the farthest that one leads to.
+    """
+    weights = regressor.toarray()[1:]
+    sources = np.flatnonzero(weights.any(0))
+    distances = compute_geodesics(template, faces, sources)
+    is_reached = np.isfinite(distances)
+    distances[~is_reached] = distances[is_reached].max()
+    return weights[:, sources] @ distances
+
+
+def _turn_poses(poses: Poses, owners: Integers, turned: Array, before: Array, after: Array) -> Poses:
+    """Poses of templates that were turned as a whole: the posed vertices stay where they are.
+
+    Args:
+        turned: (S, 3, 3) rotations of the templates; before, after: (S, 3) their roots, m.
+    """
+    R = turned[owners]
+    rotations = poses.rotations.copy()
+    rotations[:, 0] = rotations[:, 0] @ np.swapaxes(R, 1, 2)
+    rotations[:, 1:] = R[:, None] @ rotations[:, 1:] @ np.swapaxes(R, 1, 2)[:, None]
+    return replace(poses, rotations=rotations, translations=poses.translations + (before - after)[owners])

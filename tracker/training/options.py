@@ -1,0 +1,52 @@
+"""What can be chosen about training a hand model."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from tracker.errors import TrainingError
+from tracker.training.pose_shapes import RIDGES
+
+
+@dataclass(frozen=True)
+class TrainingOptions:
+    """Attributes:
+    name: Of the model.
+    rounds: Times that templates, joints, weights and blend shapes are improved in turn.
+    with_pose_shapes: Without, what is trained is plain linear blend skinning.
+    with_mirrored: Whether mirrored left hands are learnt from, too.
+    ridges: Weights of Eq. 10 to choose from by leaving people out; a single one is taken as it is.
+    num_shapes: Shape directions kept, at most.
+    joint_stiffness: How strongly joints keep to the joint regressor, in vertices per registration.
+    weight_stiffness: How strongly blend weights keep to what they were, mm².
+    threads: Poses fitted at a time.
+    """
+
+    name: str = "trained hand"
+    rounds: int = 3
+    with_pose_shapes: bool = True
+    with_mirrored: bool = True
+    ridges: tuple[float, ...] = RIDGES
+    num_shapes: int = 10
+    joint_stiffness: float = 1.0
+    weight_stiffness: float = 0.1
+    threads: int = 1
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.rounds <= 20:
+            raise TrainingError(f"rounds is {self.rounds}; it must be from 1 to 20.")
+        if not self.ridges or min(self.ridges) <= 0.0:
+            raise TrainingError(f"ridges are {self.ridges}; give one or more weights above 0.")
+        if not 1 <= self.num_shapes <= 200:
+            raise TrainingError(f"num_shapes is {self.num_shapes}; it must be from 1 to 200.")
+        if self.joint_stiffness <= 0.0 or self.weight_stiffness <= 0.0:
+            raise TrainingError("joint_stiffness and weight_stiffness must be above 0.")
+        if not 1 <= self.threads <= 256:
+            raise TrainingError(f"threads is {self.threads}; it must be from 1 to 256.")
+
+    def describe(self) -> dict[str, Any]:
+        """For a report; how many threads did it is left out, for the result does not depend on it."""
+        described = asdict(self)
+        del described["threads"]
+        return {**described, "ridges": list(self.ridges)}

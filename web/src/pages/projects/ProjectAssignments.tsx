@@ -7,6 +7,7 @@ import { formatCount } from "../../model/format";
 import { offerUndo, tellFailure } from "./offerUndo";
 import { Loading } from "./ProjectPage";
 import classes from "./projects.module.css";
+import { EditAssignment } from "./EditAssignment";
 import { StateBadge } from "./StateBadge";
 
 /** Who marks which frames, person by person, and how far they are. */
@@ -38,6 +39,7 @@ export function ProjectAssignments({ project, mayChange }: { project: Project; m
 
 function PersonWork({ person, work, mayChange }: { person: string; work: readonly Assignment[]; mayChange: boolean }) {
   const change = useTeamChange();
+  const [edited, setEdited] = useState<string | null>(null);
   const done = work.reduce((sum, one) => sum + one.frames_done, 0);
   const frames = work.reduce((sum, one) => sum + one.frames, 0);
   const withdraw = async (one: Assignment): Promise<void> => {
@@ -59,34 +61,47 @@ function PersonWork({ person, work, mayChange }: { person: string; work: readonl
       </div>
       <Table verticalSpacing="sm" horizontalSpacing="md">
         <Table.Tbody>
-          {work.map((one) => (
-            <Table.Tr key={one.id}>
-              <Table.Td w={128}>
-                <StateBadge state={one.state} />
-              </Table.Td>
-              <Table.Td>
-                <Link to={assignmentAddress(one, one.state === "open" || one.state === "returned" ? one.next_frame : one.frame_first)} className={classes.link} style={{ fontSize: 14 }}>
-                  {one.recording}, {one.replica_set ? `${one.replica_set} (blind)` : `frames ${one.frame_first}–${one.frame_last}`}
-                </Link>
-                {one.note && (
-                  <Text size="xs" className="quiet">
-                    {one.note}
-                  </Text>
-                )}
-              </Table.Td>
-              <Table.Td ta="right" style={{ whiteSpace: "nowrap" }}>
-                {one.open_comments > 0 && `${one.open_comments} to resolve · `}
-                {one.frames_done} of {one.frames}
-              </Table.Td>
-              <Table.Td w={96} ta="right">
-                {mayChange && (
-                  <Button size="compact-xs" variant="subtle" color="gray" aria-label={`Withdraw the work of ${person} on ${one.recording}`} onClick={() => void withdraw(one).catch(tellFailure)}>
-                    Withdraw
-                  </Button>
-                )}
-              </Table.Td>
-            </Table.Tr>
-          ))}
+          {work.map((one) =>
+            one.id === edited ? (
+              <Table.Tr key={one.id}>
+                <Table.Td colSpan={4}>
+                  <EditAssignment assignment={one} onDone={() => setEdited(null)} />
+                </Table.Td>
+              </Table.Tr>
+            ) : (
+              <Table.Tr key={one.id}>
+                <Table.Td w={128}>
+                  <StateBadge state={one.state} />
+                </Table.Td>
+                <Table.Td>
+                  <Link to={assignmentAddress(one, one.state === "open" || one.state === "returned" ? one.next_frame : one.frame_first)} className={classes.link} style={{ fontSize: 14 }}>
+                    {one.recording}, {one.replica_set ? `${one.replica_set} (blind)` : `frames ${one.frame_first}–${one.frame_last}`}
+                  </Link>
+                  {one.note && (
+                    <Text size="xs" className="quiet">
+                      {one.note}
+                    </Text>
+                  )}
+                </Table.Td>
+                <Table.Td ta="right" style={{ whiteSpace: "nowrap" }}>
+                  {one.open_comments > 0 && `${one.open_comments} to resolve · `}
+                  {one.frames_done} of {one.frames}
+                </Table.Td>
+                <Table.Td w={176} ta="right" style={{ whiteSpace: "nowrap" }}>
+                  {mayChange && (
+                    <>
+                      <Button size="compact-xs" variant="subtle" color="gray" aria-label={`Change the work of ${person} on ${one.recording}`} onClick={() => setEdited(one.id)}>
+                        Change
+                      </Button>
+                      <Button size="compact-xs" variant="subtle" color="gray" aria-label={`Withdraw the work of ${person} on ${one.recording}`} onClick={() => void withdraw(one).catch(tellFailure)}>
+                        Withdraw
+                      </Button>
+                    </>
+                  )}
+                </Table.Td>
+              </Table.Tr>
+            ),
+          )}
         </Table.Tbody>
       </Table>
     </div>

@@ -9,17 +9,34 @@ import os
 import sys
 import tempfile
 import uuid
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from server.cli.guarded import CommandError, load_settings, run_guarded
 from server.cli.import_command import import_recording
 from server.cli.open_studio import OpenStudio, open_studio
 from server.cli.serve import add_serve_arguments, listen, serve
 
-NAME = "Sample: open and close"
-MOTION, FRAMES = "open-close", 60
+if TYPE_CHECKING:
+    from server.sequences.models import SequenceRow
+
 ANNOTATED_EVERY = 15
 """Frames between annotations that are kept; the others are for people to make."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A recording that the demo renders."""
+
+    name: str
+    motion: str
+    frames: int
+    cameras: int = 1
+
+
+SAMPLE = Sample("Sample: open and close", "open-close", 60)
+CAMERAS_SAMPLE = Sample("Sample: a pinch in three cameras", "pinch", 20, 3)
 
 MARKER = "demo.json"
 
@@ -28,8 +45,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "demo",
         help="run the studio with a sample project",
-        description="Run the studio with a sample project: a rendered recording, annotated here and there, and its "
-        "track. It is made once; what you do with it stays.",
+        description="Run the studio with samples: a rendered recording, annotated here and there, with its track, and "
+        "a recording of three cameras. They are made once; what you do with them stays.",
     )
     add_serve_arguments(parser)
     parser.set_defaults(run=run_guarded(run))
@@ -47,18 +64,14 @@ def run(args: argparse.Namespace) -> int:
 
 
 def make_sample(studio: OpenStudio) -> None:
-    """Import the sample recording and queue a job that tracks it, unless that was done before."""
+    """Import the sample recordings and queue a job that tracks the first, unless that was done before."""
     from server.jobs.service import check_track_params, create_job
 
     marker = studio.storage.root / MARKER
     if marker.exists():
         return
-    sys.stderr.write(f"handloom: rendering the sample recording, {FRAMES} frames ...\n")
-    with tempfile.TemporaryDirectory(prefix="handloom-demo-") as folder:
-        recording = Path(folder) / "recording"
-        _render(recording)
-        _thin_annotations(recording / "annotations.json")
-        row = import_recording(studio, recording, {"name": NAME})
+    row = _import_sample(studio, SAMPLE)
+    _import_sample(studio, CAMERAS_SAMPLE)
     with studio.database.writing() as session:
         job = create_job(session, "track", row.id, check_track_params(session, row.id, {}))
     unfinished = marker.with_name(f".{uuid.uuid4().hex}.json")
@@ -66,13 +79,23 @@ def make_sample(studio: OpenStudio) -> None:
     os.replace(unfinished, marker)
 
 
-def _render(folder: Path) -> None:
+def _import_sample(studio: OpenStudio, sample: Sample) -> SequenceRow:
+    sys.stderr.write(f"handloom: rendering {sample.name!r}, {sample.frames} frames ...\n")
+    with tempfile.TemporaryDirectory(prefix="handloom-demo-") as folder:
+        recording = Path(folder) / "recording"
+        _render(sample, recording)
+        _thin_annotations(recording / "annotations.json")
+        return import_recording(studio, recording, {"name": sample.name})
+
+
+def _render(sample: Sample, folder: Path) -> None:
     """Render it with the tracker's own command."""
     from tracker import add_commands
 
     parser = argparse.ArgumentParser()
     add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args(["synthesize", "--motion", MOTION, "--frames", f"0:{FRAMES}", "--out", str(folder)])
+    what = ["--motion", sample.motion, "--frames", f"0:{sample.frames}", "--cameras", str(sample.cameras)]
+    args = parser.parse_args(["synthesize", *what, "--out", str(folder)])
     with contextlib.redirect_stdout(sys.stderr):
         code = args.run(args)
     if code != 0:

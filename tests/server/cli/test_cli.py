@@ -221,12 +221,15 @@ def test_the_studio_does_jobs_and_outlives_its_worker_and_itself(tmp_path: Path,
     assert not [entry for entry in tmp_path.iterdir() if entry.name.startswith(".")]
 
 
-def test_the_demo_makes_its_sample_once_and_tracks_it(tmp_path: Path) -> None:
+def test_the_demo_makes_its_samples_once_and_tracks_one(tmp_path: Path) -> None:
     data = tmp_path / "data"
     for _ in range(2):
         with serving(data, "demo", "--port", "0") as (_studio, address):
-            (recording,) = httpx.get(f"{address}/{API}/sequences").json()["items"]
-            assert recording["annotated_frames"] == 4
+            recordings = httpx.get(f"{address}/{API}/sequences").json()["items"]
+            found = {recording["name"]: recording for recording in recordings}
+            assert len(recordings) == len(found) == 2
+            assert len(found["Sample: a pinch in three cameras"]["cameras"]) == 3
+            assert found["Sample: open and close"]["annotated_frames"] == 4
             (job,) = httpx.get(f"{address}/{API}/jobs").json()["items"]
             job = wait_for_job(address, job["id"])
             result = httpx.get(f"{address}/{API}/tracks/{job['track_id']}/evaluation", timeout=60).json()

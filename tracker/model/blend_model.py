@@ -34,7 +34,7 @@ class BlendModel:
 
     Attributes:
         name: For people.
-        side: "right" or "left".
+        side: "right" or "left"; "body" of SMPL-H, whose joints are 52 and whose tips are those of right and left hand.
         template: (V, 3) mean shape in the zero pose, model frame, m.
         faces: (F, 3) counter-clockwise seen from outside; open at the wrist.
         shape_directions: (V, 3, S) m per standard deviation.
@@ -45,7 +45,7 @@ class BlendModel:
         joint_names: B names.
         pose_mean: (3K,) mean of the poses the pose space was learnt from, rad.
         pose_components: (C, 3K) its principal components, in rows; none for a model without a pose space.
-        tips: (5,) vertex at the tip of thumb, index, middle, ring, little finger.
+        tips: (5,) or (10,) vertex at the tip of thumb, index, middle, ring, little finger.
         provenance: Where the model came from, licence, what was done to it.
     """
 
@@ -66,14 +66,14 @@ class BlendModel:
 
     def __post_init__(self) -> None:
         vertices, bones = len(self.template), len(self.parents)
-        assert self.side in ("right", "left"), f"side is {self.side!r}, not 'right' or 'left'"
+        assert self.side in ("right", "left", "body"), f"side is {self.side!r}, not 'right', 'left' or 'body'"
         assert self.template.shape == (vertices, 3) and self.faces.shape[1:] == (3,)
         assert self.shape_directions.shape[:2] == (vertices, 3) and self.shape_directions.ndim == 3
         assert self.pose_directions.shape == (vertices, 3, 9 * (bones - 1)), self.pose_directions.shape
         assert self.skinning_weights.shape == (vertices, bones) and self.joint_regressor.shape == (bones, vertices)
         assert self.parents[0] == -1 and np.all(self.parents[1:] < np.arange(1, bones)) and self.parents[1:].min() >= 0
         assert len(self.joint_names) == bones and self.pose_mean.shape == (3 * (bones - 1),)
-        assert self.pose_components.shape[1:] == self.pose_mean.shape and self.tips.shape == (5,)
+        assert self.pose_components.shape[1:] == self.pose_mean.shape and self.tips.shape in ((5,), (10,))
 
     @property
     def num_bones(self) -> int:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import struct
 import zipfile
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +26,19 @@ def read_npz_arrays(path: Path) -> dict[str, npt.NDArray]:
     Raises:
         ModelFileError: Not an archive of such arrays, damaged, or too large.
     """
+    return _read_archive(path, _read_member)
+
+
+def read_foreign_npz(path: Path) -> dict[str, npt.NDArray]:
+    """All arrays of numbers and texts of another program's .npz file; pickled objects in it are left out, unread.
+
+    Raises:
+        ModelFileError: Not an archive of arrays, damaged, or too large.
+    """
+    return {name: array for name, array in _read_archive(path, _read_foreign_member).items() if array.dtype.kind != "O"}
+
+
+def _read_archive(path: Path, read_member: Callable[[zipfile.ZipFile, zipfile.ZipInfo], npt.NDArray]):
     needed = "an .npz archive of arrays"
     try:
         with zipfile.ZipFile(path) as archive:
@@ -32,7 +47,7 @@ def read_npz_arrays(path: Path) -> dict[str, npt.NDArray]:
                 raise ModelFileError(
                     path, "an archive with too many or too large members", f"at most {MAX_BYTES} bytes"
                 )
-            return {member.filename.removesuffix(".npy"): _read_member(archive, member) for member in members}
+            return {member.filename.removesuffix(".npy"): read_member(archive, member) for member in members}
     except ModelFileError:
         raise
     except (zipfile.BadZipFile, zlib.error, OSError, EOFError, struct.error, NotImplementedError) as error:
@@ -63,6 +78,25 @@ def _read_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArr
     if len(data) != expected:
         raise ValueError(f"{member.filename} holds {len(data)} bytes of data where its shape needs {expected}")
     return np.frombuffer(data, dtype=dtype).reshape(shape).copy()
+
+
+def _read_foreign_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArray:
+    """As `_read_member`, but of any kind of number and order; an empty object array where objects are pickled."""
+    with archive.open(member) as file:
+        version = np.lib.format.read_magic(file)
+        if version not in ((1, 0), (2, 0)):
+            raise ValueError(f"{member.filename} has the array format {version}")
+        read_header = np.lib.format.read_array_header_1_0 if version[0] == 1 else np.lib.format.read_array_header_2_0
+        shape, fortran, dtype = read_header(file)
+        if dtype.kind not in "fiubUS":
+            return np.zeros(0, dtype=object)
+        expected = dtype.itemsize * math.prod(shape)
+        if any(length < 0 for length in shape) or expected > MAX_BYTES:
+            raise ValueError(f"{member.filename} claims the shape {shape}")
+        data = file.read(expected + 1)
+    if len(data) != expected:
+        raise ValueError(f"{member.filename} holds {len(data)} bytes of data where its shape needs {expected}")
+    return np.frombuffer(data, dtype=dtype).reshape(shape, order="F" if fortran else "C").copy()
 
 
 class NpzFields:

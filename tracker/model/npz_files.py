@@ -91,7 +91,13 @@ def load_npz_model(path: Path) -> ArticulatedModel:
 
 
 def write_npz_arrays(path: Path, arrays: dict[str, np.ndarray]) -> None:
-    """Write float64, int64 and text arrays; the file appears whole or not at all. Equal arrays give equal bytes."""
+    """Write arrays as float64, int64 and text; the file appears whole or not at all. Equal arrays give equal bytes."""
+    kinds = {"f": "<f8", "i": "<i8"}
+    write_plain_npz(path, {name: a.astype(kinds.get(a.dtype.kind, a.dtype)) for name, a in arrays.items()})
+
+
+def write_plain_npz(path: Path, arrays: dict[str, np.ndarray]) -> None:
+    """Write arrays as they are; the file appears whole or not at all. Equal arrays give equal bytes."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
         _write(temporary, arrays)
@@ -104,10 +110,8 @@ def _write(path: Path, arrays: dict[str, np.ndarray]) -> None:
     with path.open("wb") as file:
         with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
             for name, array in arrays.items():
-                kind = array.dtype.kind
-                typed = array if kind == "U" else array.astype("<f8" if kind == "f" else "<i8")
                 buffer = io.BytesIO()
-                np.lib.format.write_array(buffer, np.ascontiguousarray(typed), version=(1, 0), allow_pickle=False)
+                np.lib.format.write_array(buffer, np.asarray(array, order="C"), version=(1, 0), allow_pickle=False)
                 info = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
                 info.compress_type = zipfile.ZIP_DEFLATED
                 archive.writestr(info, buffer.getvalue())

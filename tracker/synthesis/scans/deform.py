@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.synthesis.scans.bones import dual_quaternions, pose_bones, skin
+from tracker.synthesis.scans.contact import give_way
 from tracker.synthesis.scans.subject import BONES, PARENTS, Subject, load_subject, load_surface
 from tracker.synthesis.scans.tissue import load_tissue
 
@@ -59,7 +60,8 @@ def place_bones(subject: Subject, angles: Array) -> Array:
 def deform(subject: Subject, angles: Array, strength: float = 1.0) -> PosedHand:
     """The hand for angles (31,) rad from the rest pose; strength of all that is not skinning.
 
-    Its volume is that at rest: what folds take away, the pads under the bent joints get, as far as they may.
+    Its volume is that at rest, as far as it may: what bending takes away, the pads under the bent joints get. Where
+    skin meets skin, both give way.
     """
     surface = load_surface()
     Ts = place_bones(subject, angles)
@@ -69,14 +71,14 @@ def deform(subject: Subject, angles: Array, strength: float = 1.0) -> PosedHand:
     thin, full = np.empty_like(lean), np.empty_like(lean)
     skin(thin, lean, motions, surface.bone_ids, surface.weights)
     if strength == 0.0:
-        return PosedHand(thin, Ts)
+        return PosedHand(give_way(thin, subject.vertices), Ts)
     skin(full, lean + pads, motions, surface.bone_ids, surface.weights)
     wanted = closed_volume(subject.vertices, surface.faces, surface.border)
     volumes = [closed_volume(v, surface.faces, surface.border) for v in (thin, full)]
     amount = np.clip((wanted - volumes[0]) / max(volumes[1] - volumes[0], 1e-12), 0.3, MOST_SWELLING)
     if volumes[1] - volumes[0] < 1e-10:
         amount = 1.0
-    return PosedHand(thin + amount * (full - thin), Ts)
+    return PosedHand(give_way(thin + amount * (full - thin), subject.vertices), Ts)
 
 
 def closed_volume(vertices: Array, faces: Ints, border: Ints) -> float:

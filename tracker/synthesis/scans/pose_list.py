@@ -22,7 +22,7 @@ SPREAD = (15.0, -3.0, -18.0, -32.0)
 
 @dataclass(frozen=True)
 class HeldObject:
-    """What a grasp holds: kind is "ball", "rod" or "disk"; radius is at most this, m."""
+    """What a grasp holds: kind is "ball" or "rod"; radius is at most this, m."""
 
     kind: str
     radius: float
@@ -107,11 +107,11 @@ GRASPS = (
     HandPose("palmar_pinch", (14, 20, 8, 18, 10), (52, 36, 14), (28, 30, 14), (26, 30, 14), (26, 28, 14), NATURAL, 4.0,
              _touch("index")),
     HandPose("power_disk", (0, 14, 6, 12, 20), (18, 42, 34), (20, 44, 36), (20, 44, 36), (20, 42, 34), SPREAD, 2.0,
-             held=HeldObject("disk", 0.045)),
+             held=HeldObject("ball", 0.045)),
     HandPose("power_sphere", (2, 20, 8, 14, 18), (30, 42, 28), (32, 42, 28), (34, 42, 28), (36, 42, 26), SPREAD, 4.0,
              held=HeldObject("ball", 0.04)),
     HandPose("precision_disk", (2, 18, 8, 16, 18), (38, 34, 26), (40, 34, 26), (42, 34, 26), (44, 34, 26), SPREAD, 4.0,
-             held=HeldObject("disk", 0.035)),
+             held=HeldObject("ball", 0.035)),
     HandPose("precision_sphere", (8, 22, 10, 18, 16), (44, 36, 24), (46, 38, 24), (48, 38, 24), (50, 38, 24), SPREAD,
              6.0, held=HeldObject("ball", 0.026)),
     HandPose("tripod", (14, 22, 10, 22, 18), (52, 44, 22), (56, 44, 22), (52, 62, 34), (54, 64, 34), NATURAL, 6.0,
@@ -122,15 +122,13 @@ GRASPS = (
              (("thumb_distal", "index_middle"),)),
     HandPose("index_finger_extension", (20, 12, 6, 24, 24), (16, 14, 8), (66, 84, 44), (70, 86, 44), (74, 84, 42),
              NATURAL, 9.0, held=HeldObject("rod", 0.012)),
-    HandPose("extension_type", (12, 14, 8, 10, 4), (50, 14, 6), (54, 12, 6), (54, 12, 6), (54, 12, 6), TOGETHER, 4.0,
-             held=HeldObject("disk", 0.01)),
+    HandPose("extension_type", (12, 14, 8, 10, 4), (50, 14, 6), (54, 12, 6), (54, 12, 6), (54, 12, 6), TOGETHER, 4.0),
     HandPose("distal_type", (4, 8, 4, 26, 32), (30, 62, 40), (34, 66, 42), (48, 76, 40), (56, 76, 40), NATURAL, 4.0),
     HandPose("writing_tripod", (14, 16, 8, 26, 28), (48, 52, 18), (60, 60, 26), (70, 74, 36), (74, 76, 36), CLOSED,
              8.0, (("thumb_distal", "index_distal"),), HeldObject("rod", 0.004)),
     HandPose("tripod_variation", (16, 14, 8, 26, 28), (44, 50, 20), (48, 54, 22), (66, 80, 40), (70, 80, 38), CLOSED,
              8.0, held=HeldObject("rod", 0.005)),
-    HandPose("parallel_extension", (14, 16, 8, 12, 2), (44, 8, 4), (46, 8, 4), (46, 8, 4), (46, 8, 4), TOGETHER, 4.0,
-             held=HeldObject("disk", 0.012)),
+    HandPose("parallel_extension", (14, 16, 8, 12, 2), (44, 8, 4), (46, 8, 4), (46, 8, 4), (46, 8, 4), TOGETHER, 4.0),
     HandPose("adduction_grip", (0, -2, 0, 6, 6), (12, 16, 8), (10, 14, 8), (24, 34, 18), (28, 36, 18),
              (-3.0, 4.0, -6.0, -10.0), 2.0),
     HandPose("tip_pinch", (14, 18, 8, 32, 46), (52, 58, 42), (36, 40, 22), (36, 40, 22), (36, 38, 20), NATURAL, 4.0,
@@ -145,8 +143,7 @@ GRASPS = (
              6.0, held=HeldObject("ball", 0.024)),
     HandPose("stick", (12, 0, 2, 20, 20), (60, 78, 40), (70, 88, 46), (74, 90, 46), (76, 88, 46), CLOSED, 9.0,
              (("thumb_distal", "index_middle"),), HeldObject("rod", 0.007)),
-    HandPose("palmar", (6, -6, 0, 12, 10), (26, 20, 8), (26, 20, 8), (26, 20, 8), (26, 20, 8), TOGETHER, 4.0,
-             held=HeldObject("disk", 0.012)),
+    HandPose("palmar", (6, -6, 0, 12, 10), (26, 20, 8), (26, 20, 8), (26, 20, 8), (26, 20, 8), TOGETHER, 4.0),
     HandPose("ring", (12, 16, 8, 24, 28), (48, 62, 34), (34, 40, 22), (32, 38, 20), (30, 36, 18), NATURAL, 4.0,
              _touch("index"), HeldObject("rod", 0.016)),
 )  # fmt: skip

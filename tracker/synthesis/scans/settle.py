@@ -118,7 +118,7 @@ def _are_neighbours(bones: Ints) -> npt.NDArray[np.bool_]:
     segments = np.array([len(BONES) if name == "wrist" else SEGMENTS.index(name.split("_")[1]) for name in BONES])
     a, b = bones.T
     side_by_side = (np.abs(fingers[a] - fingers[b]) == 1) & (np.minimum(fingers[a], fingers[b]) > 0)
-    return side_by_side & (segments[a] == segments[b])
+    return np.asarray(side_by_side & (segments[a] == segments[b]), dtype=np.bool_)
 
 
 def settle(subject: Subject, angles: Array, touches: tuple[tuple[str, str], ...]) -> Array:
@@ -129,14 +129,14 @@ def settle(subject: Subject, angles: Array, touches: tuple[tuple[str, str], ...]
     """
     balls = load_balls(subject.number)
     is_thumb = np.array([dof.finger == "thumb" for dof in subject.dofs])
-    has_thumb = np.isin(balls.bones[balls.pairs], THUMB).any(axis=1)
+    has_thumb = np.asarray(np.isin(balls.bones[balls.pairs], THUMB).any(axis=1))
     meeting = {bone.split("_")[0] for pair in touches for bone in pair if bone.endswith("_distal")}
     stiff = np.array([0.35 if dof.finger != "thumb" and dof.finger not in meeting else 1.0 for dof in subject.dofs])
     deviations = np.array([DEVIATIONS[dof.motion] for dof in subject.dofs])
     deviations[[dof.finger != "thumb" and dof.segment == "metacarpal" for dof in subject.dofs]] = np.radians(1.5)
     deviations[is_thumb] = THUMB_DEVIATION
     touching = np.array([(balls.pads[a], balls.pads[b]) for a, b in touches], dtype=np.int64).reshape(-1, 2)
-    fingers = _solve(subject, angles, deviations, balls, ~has_thumb, touching[:0])
+    fingers = _solve(subject, angles, deviations, balls, np.logical_not(has_thumb), touching[:0])
     return _solve(subject, fingers, deviations * stiff, balls, np.ones_like(has_thumb), touching)
 
 

@@ -142,20 +142,20 @@ class _Builder:
             facing = -(self.normals @ back)
             own = self._own(finger) * (np.linalg.norm(offset - 0.5 * length * along, axis=1) < 0.8 * length)
             swell = own * np.exp(-0.5 * (x / 0.26) ** 2) * np.clip(0.25 + 0.75 * facing, 0.0, 1.0)
-            height = (1.3e-3, 1.0e-3, 0.5e-3)[order] if finger != "thumb" else (2.4e-3, 1.0e-3, 0.5e-3)[order]
+            height = (1.9e-3, 1.2e-3, 0.6e-3)[order] if finger != "thumb" else (3.2e-3, 1.2e-3, 0.6e-3)[order]
             self._pad(height * self.size * swell[:, None] * self.normals, (first, second))
         if finger not in ("thumb", "index"):
             return
-        # The ball of the thumb and the little finger's side of the palm, and the heads of the metacarpals.
+        # The cushions over the heads of the metacarpals.
         for other in FINGERS[1:] if finger == "index" else ():
             bone = BONES.index(f"{other}_metacarpal")
             end, start = self.subject.ends[bone], self.subject.joints[bone]
             along = (end - start) / np.linalg.norm(end - start)
             x = (self.subject.vertices - end) @ along
             palmar = np.clip(-self.normals[:, 2], 0.0, 1.0)
-            cushion = self._own(other) * palmar * np.exp(-0.5 * ((x + 4e-3) / (8e-3 * self.size)) ** 2)
+            cushion = self._own(other) * palmar * np.exp(-0.5 * ((x + 6e-3) / (11e-3 * self.size)) ** 2)
             driver = self._driver(BONES.index(f"{other}_proximal"))
-            self._pad(1.6e-3 * self.size * cushion[:, None] * self.normals, (driver, -1))
+            self._pad(2.2e-3 * self.size * cushion[:, None] * self.normals, (driver, -1))
 
     def _field(self, displacement: Array, drivers: tuple[int, int], power: float) -> None:
         self.fields.append(_trim(displacement))

@@ -7,10 +7,14 @@ from scipy.spatial import KDTree
 from tracker.errors import TrackerError
 from tracker.model.mirroring import MIRROR
 from tracker.model.untrained_hand import untrained_hand
+from tracker.synthesis.scans.angles import pose_angles
+from tracker.synthesis.scans.contact import find_depths
+from tracker.synthesis.scans.deform import closed_volume, deform
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan, generate_truth
-from tracker.synthesis.scans.pose_list import POSE_NAMES
+from tracker.synthesis.scans.pose_list import FISTS, POSE_NAMES, POSES
 from tracker.synthesis.scans.scanner import Scanner
-from tracker.synthesis.scans.subject import TEST_SUBJECTS, TRAIN_SUBJECTS, load_subject
+from tracker.synthesis.scans.settle import settle
+from tracker.synthesis.scans.subject import TEST_SUBJECTS, TRAIN_SUBJECTS, load_subject, load_surface
 from tracker.synthesis.scans.tissue import vertex_normals
 
 STILL = ScanOptions(is_moved=False)
@@ -87,3 +91,56 @@ def test_there_are_51_poses_with_names_of_their_own():
 def test_what_there_is_not_is_refused(arguments):
     with pytest.raises(TrackerError):
         generate_truth(*arguments)
+
+
+def test_a_held_object_is_green_and_is_no_hand():
+    scan = generate_scan(2, "power_sphere", options=ScanOptions(holds_object=True))
+    assert scan.scan.colors is not None
+    red, green, _ = scan.scan.colors.T.astype(int)
+    is_object = green > np.maximum(red, 20)
+    assert 0.1 < is_object.mean() < 0.7
+    assert not (is_object & scan.is_hand).any()
+    bare = generate_scan(2, "power_sphere")
+    assert bare.scan.colors is not None
+    assert not (bare.scan.colors[:, 1].astype(int) > np.maximum(bare.scan.colors[:, 0], 20)).any()
+
+
+def test_without_forearm_nearly_all_points_are_hand():
+    with_arm, without = (generate_scan(9, "fist", options=ScanOptions(has_forearm=has)) for has in (True, False))
+    assert with_arm.is_hand.mean() < 0.93
+    assert without.is_hand.mean() > 0.96
+    for scan in (with_arm, without):
+        # Truth reaches to the untrained hand's border: what is hand is near it.
+        far = KDTree(scan.true_vertices).query(scan.scan.points[scan.is_hand])[0]
+        assert np.percentile(far, 99.9) < 9e-3
+
+
+def test_bending_a_finger_keeps_the_volume_and_a_fist_nearly():
+    surface = load_surface()
+    subject = load_subject(4)
+
+    def volume(angles, strength=1.0):
+        return closed_volume(deform(subject, angles, strength).vertices, surface.faces, surface.border)
+
+    rest = volume(np.zeros(31))
+    bent = pose_angles(subject, POSES[POSE_NAMES.index("index_bent")])
+    fist = pose_angles(subject, POSES[POSE_NAMES.index("straight_fist")])
+    assert abs(volume(bent) / rest - 1.0) < 0.02
+    assert abs(volume(fist) / rest - 1.0) < 0.10
+    assert abs(volume(fist) - rest) < 0.8 * abs(volume(fist, strength=0.0) - rest)
+
+
+@pytest.mark.parametrize("pose", ["fist", "tip_pinch", "fist_thumb_inside", "flat_together"])
+def test_no_part_of_a_hand_is_deep_inside_another(pose):
+    surface, subject = load_surface(), load_subject(8)
+    angles = settle(subject, pose_angles(subject, POSES[POSE_NAMES.index(pose)]), POSES[POSE_NAMES.index(pose)].touches)
+    vertices = deform(subject, angles).vertices
+    depth = find_depths(vertices, vertex_normals(vertices, surface.faces), subject.vertices)
+    assert np.sum(depth > 1e-3) <= 5
+
+
+@pytest.mark.parametrize("pose", FISTS)
+def test_the_fingers_of_a_fist_are_bent_back_to_their_knuckles(pose):
+    fist, flat = (generate_truth(11, name).joints for name in (pose, "flat_together"))
+    for first, last in ((1, 3), (4, 6), (7, 9), (10, 12)):
+        assert np.linalg.norm(fist[last] - fist[first]) < 0.85 * np.linalg.norm(flat[last] - flat[first])

@@ -3,7 +3,11 @@
 /** Depth residual at which the scale ends, mm. */
 export const ERROR_FULL_MM = 10;
 
-const ANCHORS = [
+/** Distance between a scan and its mesh at which the scale ends, mm. */
+export const SCAN_ERROR_FULL_MM = 3;
+
+/** Red, green and blue, 0..255, evenly spaced over the scale. */
+export const ERROR_ANCHORS = [
   [62, 118, 208],
   [98, 170, 200],
   [226, 205, 120],
@@ -13,13 +17,13 @@ const ANCHORS = [
 
 /** Colour of an error, 0 (none) to 1 (the scale's end). */
 export function errorColor(value: number): string {
-  const at = Math.min(1, Math.max(0, value)) * (ANCHORS.length - 1);
-  const below = Math.min(ANCHORS.length - 2, Math.floor(at));
-  const [from, to] = [ANCHORS[below], ANCHORS[below + 1]];
+  const at = Math.min(1, Math.max(0, value)) * (ERROR_ANCHORS.length - 1);
+  const below = Math.min(ERROR_ANCHORS.length - 2, Math.floor(at));
+  const [from, to] = [ERROR_ANCHORS[below], ERROR_ANCHORS[below + 1]];
   if (!from || !to) return "#888888";
   const [r, g, b] = [0, 1, 2].map((channel) => Math.round((from[channel] ?? 0) + ((to[channel] ?? 0) - (from[channel] ?? 0)) * (at - below)));
   return `rgb(${r} ${g} ${b})`;
 }
 
 /** The scale as a CSS background. */
-export const errorGradient = `linear-gradient(90deg, ${ANCHORS.map((color) => `rgb(${color.join(" ")})`).join(", ")})`;
+export const errorGradient = `linear-gradient(90deg, ${ERROR_ANCHORS.map((color) => `rgb(${color.join(" ")})`).join(", ")})`;

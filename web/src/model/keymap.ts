@@ -1,6 +1,6 @@
 /** Every key of the app: one table drives the handlers, the help overlay and the conflict check. */
 
-export type Scope = "everywhere" | "annotate" | "track";
+export type Scope = "everywhere" | "annotate" | "track" | "curate" | "scan";
 
 export interface KeyBinding {
   readonly id: string;
@@ -13,6 +13,27 @@ export interface KeyBinding {
 
 const table = (scope: Scope, group: string, rows: readonly (readonly [string, string, ...string[]])[]): KeyBinding[] =>
   rows.map(([id, label, ...keys]) => ({ id, scope, group, label, keys }));
+
+/** A hand in 3D answers the same keys on every page that shows one. */
+const handKeys = (scope: "curate" | "scan", group: string): KeyBinding[] =>
+  table(scope, group, [
+    [`${scope}.errors`, "Error colours on or off", "E"],
+    [`${scope}.wireframe`, "Wireframe on or off", "W"],
+    [`${scope}.layers`, "Scan, mesh, or both", "Tab"],
+    [`${scope}.correspondences`, "Lines from the scan to the mesh on or off", "C"],
+    [`${scope}.turntable`, "Turntable on or off", "V"],
+    [`${scope}.palm`, "From the palm's side, the whole hand", "P", "Home"],
+    [`${scope}.back`, "From the back of the hand", "B"],
+    [`${scope}.thumb`, "From the thumb's side", "T"],
+    [`${scope}.little`, "From the little finger's side", "L"],
+    [`${scope}.turnLeft`, "Turn left", "Shift+Left"],
+    [`${scope}.turnRight`, "Turn right", "Shift+Right"],
+    [`${scope}.turnUp`, "Turn up", "Shift+Up"],
+    [`${scope}.turnDown`, "Turn down", "Shift+Down"],
+    [`${scope}.nearer`, "Nearer", "+", "="],
+    [`${scope}.farther`, "Farther", "-"],
+    [`${scope}.leave`, "Leave the picture for the tools", "Esc"],
+  ]);
 
 export const KEYMAP = [
   ...table("everywhere", "Everywhere", [
@@ -112,6 +133,26 @@ export const KEYMAP = [
     ["track.mesh", "Mesh overlay on the image", "M"],
     ["track.skeleton", "Skeleton overlay on the image", "S"],
   ]),
+  ...table("curate", "Curation", [
+    ["curate.accept", "Accept, and go on", "A"],
+    ["curate.reject", "Reject without a reason, and go on", "R"],
+    ["curate.unsure", "Unsure, and go on", "U"],
+    ["curate.undo", "Take the last decision back", "Z", "Backspace"],
+    ["curate.next", "Next registration", "Right", "Space"],
+    ["curate.previous", "Previous registration", "Left", "Shift+Space"],
+    ...Array.from({ length: 9 }, (_, at): [string, string, string] => [`curate.reason${at + 1}`, `Reject for reason ${at + 1} of the list, and go on`, String(at + 1)]),
+    ["curate.save", "Send what waits at once", "Ctrl+S"],
+  ]),
+  ...handKeys("curate", "Hand while curating"),
+  ...table("scan", "Scan", [
+    ["scan.cut", "Knife: the next stroke cuts; again: turn the view instead", "X"],
+    ["scan.flip", "Take the other side of the last line", "F"],
+    ["scan.uncut", "Take the last stroke back", "Z", "Backspace"],
+    ["scan.save", "Save the crop", "Ctrl+S"],
+    ["scan.next", "Next scan", "Right"],
+    ["scan.previous", "Previous scan", "Left"],
+  ]),
+  ...handKeys("scan", "Hand of a scan"),
 ] as const satisfies readonly KeyBinding[];
 
 /** Keys that the browser or the system keeps for itself. */

@@ -20,6 +20,7 @@ export default defineConfig({
         codeSplitting: {
           groups: [
             { name: "canvas", test: /node_modules[\\/](konva|react-konva|its-fine|react-reconciler)/ },
+            { name: "three", test: /node_modules[\\/]three[\\/]/ },
             { name: "mantine", test: /node_modules[\\/]@mantine/ },
             { name: "react", test: /node_modules[\\/](react|react-dom|react-router|scheduler|@tanstack)[\\/]/ },
           ],

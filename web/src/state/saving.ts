@@ -1,6 +1,7 @@
 /** The save queues of this browser's person, one for each recording and blind replica; they outlive the pages and a reload. */
 
 import { sendAnnotation } from "../api/annotations";
+import { flushDecisions } from "./deciding";
 import { createJournal, findWaiting } from "./journal";
 import { accountId } from "./me";
 import { createSaveQueue, type SaveQueue } from "./saveQueue";
@@ -22,10 +23,14 @@ export function queueOf(scope: string): SaveQueue {
 }
 
 /** Try to send everything that waits, now. */
-export const flushSaving = (): void => queues.forEach((queue) => queue.flush());
+export function flushSaving(): void {
+  queues.forEach((queue) => queue.flush());
+  flushDecisions();
+}
 
 /** Send what an earlier visit of this person could not; called once, when it is known who it is. */
 export function resumeSaving(): void {
   findWaiting(window.localStorage, accountId()).forEach((scope) => queueOf(scope).flush());
+  flushDecisions();
   window.addEventListener("online", flushSaving);
 }

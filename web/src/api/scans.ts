@@ -1,0 +1,130 @@
+/** Scans of hands: uploaded files, what is cropped from them, their points for the 3D view. */
+
+import { keepPreviousData, useInfiniteQuery, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import type { HandGeometry } from "../canvas/hand3d/geometry";
+import { uprightByShape } from "../model/upright";
+import { API, fetchBytes, request, requestWithHeaders, upload } from "./client";
+import { dequantise, readGeometry } from "./geometryFile";
+import type { DroppedFile } from "./imports";
+import type { components } from "./schema";
+import type { Page, Side } from "./types";
+
+type Schemas = components["schemas"];
+export type Scan = Schemas["ScanOut"];
+export type ScanCollection = Schemas["CollectionOut"];
+export type ScansAdded = Schemas["ScansAdded"];
+export type ScanCrop = Schemas["ScanCrop"];
+export type ScanCropRevision = Schemas["ScanCropOut"];
+
+/** What a list of scans is narrowed to; what is left out narrows nothing. */
+export interface ScanFilters {
+  collection?: string | undefined;
+  subject?: string | undefined;
+  side?: Side | undefined;
+  state?: Scan["state"] | undefined;
+  search?: string | undefined;
+}
+
+export const scanKeys = {
+  all: ["scans"] as const,
+  one: (id: string) => ["scans", "one", id] as const,
+};
+
+const PAGE = 60;
+/** Points of a scan that are drawn. */
+export const POINTS = 20_000;
+
+export const useScanList = (filters: ScanFilters) =>
+  useInfiniteQuery({
+    queryKey: [...scanKeys.all, "list", filters],
+    queryFn: ({ pageParam }) => request<Page<Scan>>("GET", "/scans", { query: { ...filters, cursor: pageParam, limit: PAGE } }),
+    initialPageParam: null as string | null,
+    getNextPageParam: (page) => page.next_cursor,
+    placeholderData: keepPreviousData,
+  });
+
+export const useScanCollections = () =>
+  useQuery({
+    queryKey: [...scanKeys.all, "collections"],
+    queryFn: async () => (await request<Page<ScanCollection>>("GET", "/scans/collections")).items,
+  });
+
+export const useScan = (id: string) => useQuery({ queryKey: scanKeys.one(id), queryFn: ({ signal }) => request<Scan>("GET", `/scans/${id}`, { signal }) });
+
+export const useScanCrop = (scan: Scan | undefined) =>
+  useQuery({
+    queryKey: [...scanKeys.one(scan?.id ?? ""), "crop", scan?.revision],
+    queryFn: () => request<ScanCropRevision>("GET", `/scans/${scan?.id}/crop`),
+    enabled: scan !== undefined,
+  });
+
+export function useSaveCrop() {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: ({ scan, crop }: { scan: Scan; crop: ScanCrop }) =>
+      requestWithHeaders<Scan>("PUT", `/scans/${scan.id}/crop`, { body: crop, headers: { "If-Match": `"${scan.revision}"` } }),
+    onSuccess: ({ data }) => client.setQueryData(scanKeys.one(data.id), data),
+    onSettled: () => client.invalidateQueries({ queryKey: scanKeys.all }),
+  });
+}
+
+export function useChangeScan() {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: ({ id, ...body }: { id: string } & Schemas["ScanPatch"]) => request<Scan>("PATCH", `/scans/${id}`, { body }),
+    onSettled: () => client.invalidateQueries({ queryKey: scanKeys.all }),
+  });
+}
+
+export function useDeleteScans() {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: ({ ids, isBack }: { ids: readonly string[]; isBack: boolean }) =>
+      Promise.all(ids.map((id) => request(isBack ? "POST" : "DELETE", `/scans/${id}${isBack ? "/restore" : ""}`))),
+    onSettled: () => client.invalidateQueries({ queryKey: scanKeys.all }),
+  });
+}
+
+/** What scan files do not say of themselves. */
+export interface ScanUploadOptions {
+  collection?: string;
+  subject?: string;
+  pose?: string;
+  side?: Side | null;
+  metres_per_unit?: number | null;
+}
+
+export function sendScans(files: readonly DroppedFile[], options: ScanUploadOptions, onProgress: (part: number) => void, signal: AbortSignal): Promise<ScansAdded> {
+  const form = new FormData();
+  form.append("options", JSON.stringify(options));
+  for (const { path, file } of files) form.append("files", file, path);
+  return upload<ScansAdded>("/scans", form, onProgress, signal);
+}
+
+export const scanFileUrl = (scan: { id: string }): string => `${API}/scans/${scan.id}/file`;
+
+/** Bits of `flags`. */
+const LEFT_OUT = 3;
+
+type ScanPlace = Pick<Scan, "id" | "geometry_key">;
+
+/** The points of a scan, with nothing fitted to them. */
+export async function fetchScanGeometry(scan: ScanPlace, side: Side | null, signal?: AbortSignal): Promise<HandGeometry> {
+  const { data } = await fetchBytes(`${API}/scans/${scan.id}/geometry/${scan.geometry_key}?size=${POINTS}`, signal);
+  const { arrays, facts } = readGeometry(data);
+  const positions = dequantise(arrays["positions"] ?? [], facts["origin_m"] as number[], facts["step_m"] as number[]);
+  const flags = arrays["flags"] as Uint8Array | undefined;
+  return {
+    scan: {
+      positions,
+      normals: (arrays["normals"] as Int8Array | undefined) ?? null,
+      colors: (arrays["colors"] as Uint8Array | undefined) ?? null,
+      index: null,
+      errorMm: null,
+      taken: flags ? flags.map((bits) => (bits & LEFT_OUT ? 1 : 0)) : null,
+    },
+    mesh: null,
+    side,
+    upright: uprightByShape(positions),
+  };
+}

@@ -20,6 +20,9 @@ const ROOMS = [
   { to: "/annotate", label: "Annotate" },
   { to: "/projects", label: "Projects" },
   { to: "/tracks", label: "Tracks" },
+  { to: "/scans", label: "Scans" },
+  { to: "/curate", label: "Curate" },
+  { to: "/models", label: "Models" },
   { to: "/evaluations", label: "Evaluations" },
   { to: "/jobs", label: "Jobs" },
 ] as const;

@@ -15,6 +15,12 @@ import { TracksPage } from "./TracksPage";
 
 const AnnotatePage = lazy(() => import("./AnnotatePage"));
 const AnnotateChooser = lazy(() => import("./AnnotateChooser"));
+const CuratePage = lazy(() => import("./curate/CuratePage"));
+const ReviewAgreementPage = lazy(() => import("./curate/ReviewAgreementPage"));
+const ScansPage = lazy(() => import("./scans/ScansPage"));
+const ScanPage = lazy(() => import("./scans/ScanPage"));
+const ModelsPage = lazy(() => import("./models/ModelsPage"));
+const ModelPage = lazy(() => import("./models/ModelPage"));
 const EvaluationsPage = lazy(() => import("./evaluations/EvaluationsPage"));
 const AccountPage = lazy(() => import("./account/AccountPage"));
 const PeoplePage = lazy(() => import("./account/PeoplePage"));
@@ -48,6 +54,12 @@ export const router = createBrowserRouter([
           { path: "projects/:projectId/agreement/:setId", element: <AgreementPage /> },
           { path: "tracks", element: <TracksPage /> },
           { path: "tracks/:trackId", element: <TrackPage /> },
+          { path: "scans", element: <ScansPage /> },
+          { path: "scans/:scanId", element: <ScanPage /> },
+          { path: "curate", element: <CuratePage /> },
+          { path: "curate/agreement", element: <ReviewAgreementPage /> },
+          { path: "models", element: <ModelsPage /> },
+          { path: "models/:modelId", element: <ModelPage /> },
           { path: "evaluations", element: <EvaluationsPage /> },
           { path: "jobs", element: <JobsPage /> },
           { path: "jobs/compare", element: <ComparePage /> },

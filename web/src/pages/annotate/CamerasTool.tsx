@@ -3,7 +3,7 @@ import { IconLayoutGrid, IconTopologyStar3, IconVectorSpline, IconZoomInArea } f
 import { MAX_SHOWN } from "../../state/shownCameras";
 import { useAnnotating } from "./annotating";
 import { useCameras } from "./cameras";
-import { Tool } from "./Tool";
+import { Tool } from "../parts/Tool";
 
 /** Which cameras are shown side by side. */
 export function CamerasTool() {

@@ -29,7 +29,7 @@ import { BrightnessTool } from "./BrightnessTool";
 import { DepthTool } from "./DepthTool";
 import { TOOLS } from "./mounts";
 import { PropagateTool } from "./PropagateTool";
-import { Tool } from "./Tool";
+import { Tool } from "../parts/Tool";
 import classes from "./ToolRail.module.css";
 import { useKeyFrames } from "./useSession";
 

@@ -1,0 +1,158 @@
+import { Button, Group, Kbd, Text } from "@mantine/core";
+import { IconChecks, IconScan } from "@tabler/icons-react";
+import { useQueryClient } from "@tanstack/react-query";
+import { useEffect, useRef } from "react";
+import { Link } from "react-router";
+import { useKeymap } from "../../actions/useKeymap";
+import { registrationKeys, useQueueCounts, useReasons } from "../../api/registrations";
+import { formatCount } from "../../model/format";
+import { decisionOf, shownIn } from "../../state/curation";
+import { decisionLog } from "../../state/deciding";
+import type { Standing } from "../../state/decisionLog";
+import { useKeyOf } from "../../state/keys";
+import { HandRail } from "../hand3d/HandRail";
+import { HandView } from "../hand3d/HandView";
+import { handHandlers, useLook } from "../hand3d/useLook";
+import { useStage } from "../../canvas/hand3d/useStage";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { SaveState } from "../parts/SaveState";
+import { useTitle } from "../parts/useTitle";
+import classes from "./CuratePage.module.css";
+import { DecisionPanel } from "./DecisionPanel";
+import { DecisionRefusals } from "./DecisionRefusals";
+import { QueueBar } from "./QueueBar";
+import { useCuration, useDecisionStatus } from "./useCuration";
+import { useQueueAddress } from "./useQueueAddress";
+import { useShownHand } from "./useShownHand";
+
+const HINTS = [
+  ["curate.accept", "accept"],
+  ["curate.reject", "reject"],
+  ["curate.unsure", "unsure"],
+  ["curate.reason1", "… with a reason"],
+  ["curate.undo", "take back"],
+  ["curate.next", "next"],
+  ["curate.errors", "errors"],
+  ["curate.layers", "scan or mesh"],
+  ["curate.turntable", "turn"],
+] as const;
+
+/** One registration after the other, huge: accept, reject or unsure by single keys. `?queue=`, `?order=`, `?collection=` hold which. */
+export default function CuratePage() {
+  useTitle("Curate");
+  const [choice, setChoice, first] = useQueueAddress();
+  const { curation, state, isLoading, failure, retry } = useCuration(choice, first);
+  const item = shownIn(state);
+  const counts = useQueueCounts(choice).data;
+  const reasons = useReasons().data ?? [];
+  const status = useDecisionStatus();
+  const keyOf = useKeyOf();
+  const client = useQueryClient();
+
+  const drawn = useRef("");
+  const holder = useRef<HTMLElement | null>(null);
+  const parts = useStage(() => {
+    if (holder.current) holder.current.dataset["drawn"] = drawn.current;
+  });
+  const { stage } = parts;
+  const control = useLook(stage);
+  const hand = useShownHand(stage, curation, drawn);
+
+  // Other pages show what was decided here.
+  useEffect(() => () => void client.invalidateQueries({ queryKey: registrationKeys.all }), [client]);
+
+  const focusPicture = (): void => holder.current?.focus({ preventScroll: true });
+  const decide = (decision: Standing, why: readonly string[] = []): void => {
+    if (!item || !hand.isDrawn) return;
+    curation.decide(decision, why);
+    focusPicture();
+  };
+  useKeymap("curate", {
+    ...handHandlers("curate", stage, control),
+    undo: curation.undo,
+    "curate.accept": () => decide("accept"),
+    "curate.reject": () => decide("reject"),
+    "curate.unsure": () => decide("unsure"),
+    "curate.undo": curation.undo,
+    "curate.next": () => curation.go(1),
+    "curate.previous": () => curation.go(-1),
+    "curate.save": () => decisionLog().flush(),
+    ...Object.fromEntries(reasons.map((reason, at) => [`curate.reason${at + 1}`, () => decide("reject", [reason.name])])),
+  });
+
+  const mine = item ? decisionOf(state, item) : null;
+  const isEnd = !isLoading && !item && !state.hasMore;
+  const isEmptyStudio = isEnd && state.items.length === 0 && counts?.all === 0;
+  return (
+    <div className={classes.page}>
+      <h1 className="visually-hidden">Curate</h1>
+      <QueueBar choice={choice} onChange={setChoice} state={state} />
+      <div className={classes.middle}>
+        <HandRail scope="curate" control={control} hasMesh />
+        <HandView
+          scope="curate"
+          label={item ? `Scan and registered mesh of ${item.scan.name}` : "Scan and registered mesh"}
+          parts={{
+            ...parts,
+            holder: (element) => {
+              holder.current = element;
+              parts.holder(element);
+            },
+          }}
+          isBusy={!hand.isDrawn && !isEnd}
+          hasLegend={control.look.hasErrors && hand.isDrawn}
+          failure={
+            failure && !item ? (
+              <Failure what="The queue could not be loaded" error={failure} safe="Decisions made so far are kept." onRetry={retry} />
+            ) : hand.failure && item ? (
+              <Failure what={`${item.scan.name} could not be drawn`} error={hand.failure} safe="Go on with the next one; this one stays in the queue." onRetry={hand.retry}>
+                <Button onClick={() => curation.go(1)}>Next</Button>
+              </Failure>
+            ) : isEmptyStudio ? (
+              <EmptyState icon={<IconScan size={56} stroke={1.25} />} title="Nothing to curate yet" action={<Button component={Link} to="/scans">To the scans</Button>}>
+                Upload scans of hands and register them: each registration comes here to be accepted or rejected, the likely failures first.
+              </EmptyState>
+            ) : isEnd ? (
+              <EmptyState
+                icon={<IconChecks size={56} stroke={1.25} />}
+                title={state.items.length > 0 ? "The queue is done" : "Nothing in this queue"}
+                action={
+                  <Group gap="sm">
+                    {state.items.length > 0 && (
+                      <Button variant="default" onClick={() => curation.go(-1)}>
+                        Back to the last one
+                      </Button>
+                    )}
+                    <Button component={Link} to="/models">
+                      Train a model
+                    </Button>
+                  </Group>
+                }
+              >
+                {state.times.length > 0
+                  ? `${formatCount(state.times.length, "decision")} in this visit. What is accepted can train a hand model.`
+                  : "Choose another queue above, or train a model from what is accepted."}
+              </EmptyState>
+            ) : undefined
+          }
+        >
+          {item && <div className={classes.place}>{`${state.place + 1}${state.hasMore ? "" : ` of ${state.items.length}`} · ${item.scan.name}`}</div>}
+          <DecisionRefusals status={status} onGo={curation.goTo} />
+        </HandView>
+        {item ? <DecisionPanel item={item} mine={mine} reasons={reasons} onDecide={decide} /> : <aside className={classes.panel} aria-label="The registration and the decision" />}
+      </div>
+      <div className={classes.line}>
+        <SaveState status={{ ...status, refusals: status.refusals.size }} what="Every decision is kept in this browser until the server has it" action="curate.save" onFlush={() => decisionLog().flush()} />
+        {HINTS.map(([id, label]) => (
+          <span key={id} className={classes.hint}>
+            <Kbd size="xs">{id === "curate.reason1" && keyOf(id) === "1" ? "1–9" : keyOf(id) || "–"}</Kbd>
+            <Text size="xs" span>
+              {label}
+            </Text>
+          </span>
+        ))}
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,72 @@
+import { Button, Group, Modal, NumberInput, Radio, Select, Stack, TagsInput, Text, TextInput, Title } from "@mantine/core";
+import { useState } from "react";
+import { useNavigate } from "react-router";
+import { useStartLoop, type HandModel } from "../../api/handModels";
+import { useScanCollections } from "../../api/scans";
+
+const EVERY = "";
+
+/** The loop of the paper as one button: register, choose, train, register again. */
+export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClose: () => void; model?: HandModel | undefined }) {
+  const collections = useScanCollections().data ?? [];
+  const start = useStartLoop();
+  const navigate = useNavigate();
+  const [name, setName] = useState(model?.name ?? "");
+  const [by, setBy] = useState<"verdict" | "decisions">("verdict");
+  const [rounds, setRounds] = useState(1);
+  const [collection, setCollection] = useState(EVERY);
+  const [leaveOut, setLeaveOut] = useState<string[]>([]);
+  const submit = (): void =>
+    start.mutate(
+      {
+        name: name.trim() || "Hand model",
+        by,
+        rounds: by === "decisions" ? 1 : rounds,
+        leave_out_subjects: leaveOut,
+        ...(collection ? { collection } : {}),
+        ...(model ? { model_id: model.id } : {}),
+      },
+      { onSuccess: (job) => void navigate(`/jobs/${job.id}`) },
+    );
+  return (
+    <Modal opened={isOpen} onClose={onClose} size={600} title={<Title order={2}>Register, train, register again</Title>}>
+      <form
+        onSubmit={(event) => {
+          event.preventDefault();
+          submit();
+        }}
+      >
+        <Stack gap="md">
+          <Text size="sm" className="quiet">
+            {model ? `Scans are registered with ${model.name}` : "Scans are registered with the first model"}, a better one is trained from what is chosen, and all scans are registered again with that. It goes on when the browser is closed.
+          </Text>
+          <TextInput label="Name of the models" description="The round is added" placeholder="Hand model" maxLength={200} value={name} onChange={(event) => setName(event.currentTarget.value)} data-autofocus />
+          <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value as typeof by)}>
+            <Stack gap="sm" mt="sm">
+              <Radio value="verdict" label="What the program calls good, and nobody has rejected" />
+              <Radio value="decisions" label="What people have accepted by now: one round, then its registrations wait for people" />
+            </Stack>
+          </Radio.Group>
+          <Group grow gap="md" align="flex-start">
+            <NumberInput label="Rounds" min={1} max={10} allowDecimal={false} value={by === "decisions" ? 1 : rounds} disabled={by === "decisions"} onChange={(value) => setRounds(Number(value) || 1)} />
+            <Select label="Collection" allowDeselect={false} value={collection} data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]} onChange={(value) => setCollection(value ?? EVERY)} />
+          </Group>
+          <TagsInput label="Subjects to leave out" description="Kept for testing" placeholder={leaveOut.length === 0 ? "None" : ""} value={leaveOut} onChange={setLeaveOut} />
+          {start.error && (
+            <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
+              {start.error.message} No job was started.
+            </Text>
+          )}
+          <Group justify="flex-end" gap="sm">
+            <Button variant="default" onClick={onClose}>
+              Cancel
+            </Button>
+            <Button type="submit" loading={start.isPending}>
+              Start
+            </Button>
+          </Group>
+        </Stack>
+      </form>
+    </Modal>
+  );
+}

@@ -1,0 +1,148 @@
+import { Badge, Button, Group, Skeleton, Stack, Table, Text, Title } from "@mantine/core";
+import { useDisclosure } from "@mantine/hooks";
+import { IconCornerDownRight, IconHandStop, IconRefresh } from "@tabler/icons-react";
+import { Link } from "react-router";
+import { useHandModels, type HandModel } from "../../api/handModels";
+import { formatAgo, formatCount } from "../../model/format";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { For } from "../parts/For";
+import { HandBadge } from "../parts/HandBadge";
+import { useTitle } from "../parts/useTitle";
+import { LoopDialog } from "./LoopDialog";
+import classes from "./Models.module.css";
+import { TrainDialog } from "./TrainDialog";
+import { TrainingSets } from "./TrainingSets";
+
+const KINDS: Record<HandModel["kind"], string> = { default: "comes with Handloom", untrained: "not trained yet", trained: "trained here", uploaded: "uploaded" };
+
+/** Each model followed by those trained from it, the newest branch first. */
+export function asTree(models: readonly HandModel[]): { model: HandModel; depth: number }[] {
+  const known = new Set(models.map((model) => model.id));
+  const below = (parent: string | null, depth: number): { model: HandModel; depth: number }[] =>
+    models
+      .filter((model) => (parent === null ? !model.parent_id || !known.has(model.parent_id) : model.parent_id === parent))
+      .flatMap((model) => [{ model, depth }, ...below(model.id, depth + 1)]);
+  return below(null, 0);
+}
+
+export function ModelKind({ model }: { model: HandModel }) {
+  return (
+    <Badge variant="light" color={model.kind === "trained" ? "teal" : "gray"} tt="none">
+      {model.kind === "trained" ? `round ${model.round}` : KINDS[model.kind]}
+    </Badge>
+  );
+}
+
+/** Hand models as a lineage: which was trained from which, by how many registrations. */
+export default function ModelsPage() {
+  useTitle("Hand models");
+  const { data: models, error, refetch } = useHandModels();
+  const [isTraining, training] = useDisclosure(false);
+  const [isLooping, looping] = useDisclosure(false);
+  if (error && !models) return <Failure what="The hand models could not be loaded" error={error} safe="They are untouched on the server's disk." onRetry={() => void refetch()} />;
+  const hasTrained = models?.some((model) => model.kind === "trained");
+  return (
+    <div className="page">
+      <Group mb="lg" justify="space-between" wrap="nowrap">
+        <Group align="baseline" gap="md">
+          <Title order={1}>Hand models</Title>
+          {models && <span className="quiet">{formatCount(models.length, "model")}</span>}
+        </Group>
+        <For role="reviewer">
+          <Group gap="sm" wrap="nowrap">
+            <Button variant="default" leftSection={<IconRefresh size={16} aria-hidden />} onClick={looping.open}>
+              Register, train, again …
+            </Button>
+            <Button onClick={training.open}>Train …</Button>
+          </Group>
+        </For>
+      </Group>
+      <Stack gap="xl">
+        {!models && (
+          <Stack gap="sm" role="status" aria-label="Loading">
+            {Array.from({ length: 4 }, (_, index) => (
+              <Skeleton key={index} height={44} />
+            ))}
+          </Stack>
+        )}
+        {models && (
+          <div className={`card ${classes.frame}`}>
+            <Table highlightOnHover verticalSpacing="xs" horizontalSpacing="md">
+              <Table.Thead>
+                <Table.Tr>
+                  <Table.Th>Name</Table.Th>
+                  <Table.Th w={176}>Kind</Table.Th>
+                  <Table.Th w={80}>Hand</Table.Th>
+                  <Table.Th w={96} ta="right">
+                    Vertices
+                  </Table.Th>
+                  <Table.Th w={80} ta="right">
+                    Shape
+                  </Table.Th>
+                  <Table.Th w={80} ta="right">
+                    Pose
+                  </Table.Th>
+                  <Table.Th w={128} ta="right">
+                    Registrations
+                  </Table.Th>
+                  <Table.Th w={128} ta="right">
+                    Made
+                  </Table.Th>
+                </Table.Tr>
+              </Table.Thead>
+              <Table.Tbody>
+                {asTree(models).map(({ model, depth }) => (
+                  <Table.Tr key={model.id}>
+                    <Table.Td className={classes.cell} title={model.name}>
+                      <span style={{ paddingLeft: 20 * Math.max(0, depth - 1) }}>
+                        {depth > 0 && <IconCornerDownRight size={14} aria-label="trained from the one above" style={{ marginRight: 6, verticalAlign: -2 }} />}
+                        <Link to={`/models/${model.id}`} className={classes.link}>
+                          {model.name}
+                        </Link>
+                      </span>
+                    </Table.Td>
+                    <Table.Td>
+                      <ModelKind model={model} />
+                    </Table.Td>
+                    <Table.Td>
+                      <HandBadge hand={model.side} />
+                    </Table.Td>
+                    <Table.Td ta="right">{model.vertices.toLocaleString("en")}</Table.Td>
+                    <Table.Td ta="right">{model.shape_parameters.length}</Table.Td>
+                    <Table.Td ta="right">{model.pose_components || <span className="quiet">–</span>}</Table.Td>
+                    <Table.Td ta="right">{model.registration_count > 0 ? model.registration_count.toLocaleString("en") : <span className="quiet">–</span>}</Table.Td>
+                    <Table.Td ta="right" className="quiet">
+                      {model.created_at ? formatAgo(model.created_at) : "–"}
+                    </Table.Td>
+                  </Table.Tr>
+                ))}
+              </Table.Tbody>
+            </Table>
+          </div>
+        )}
+        {models && !hasTrained && (
+          <EmptyState
+            icon={<IconHandStop size={48} stroke={1.25} />}
+            title="No model has been trained here yet"
+            action={
+              <Button component={Link} to="/scans">
+                To the scans
+              </Button>
+            }
+          >
+            Register scans with the first model, accept what is right, then train: the new model fits hands better, also when they are registered again with it.
+          </EmptyState>
+        )}
+        <TrainingSets />
+        {hasTrained && (
+          <Text size="xs" className="quiet">
+            Shape and pose: how many components each space has.
+          </Text>
+        )}
+      </Stack>
+      <TrainDialog isOpen={isTraining} onClose={training.close} />
+      <LoopDialog isOpen={isLooping} onClose={looping.close} />
+    </div>
+  );
+}

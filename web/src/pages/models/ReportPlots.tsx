@@ -1,0 +1,119 @@
+import { Text, Title } from "@mantine/core";
+import { useMemo, useState } from "react";
+import { Plot, type Curve } from "../../canvas/Plot";
+import { formatDuration, formatName, formatNumber } from "../../model/format";
+import { trackStyle } from "../../model/trackStyle";
+import type { ComponentCurve, NamedValue, TrainingReport } from "../../model/trainingReport";
+import classes from "./Models.module.css";
+
+interface Line {
+  readonly label: string;
+  readonly curve: ComponentCurve;
+  readonly scale?: number;
+}
+
+/** Curves over the number of components, or of passes; a click reads the values there. */
+function Curves({ title, note, unit, digits, lines }: { title: string; note: string; unit: string; digits: number; lines: readonly Line[] }) {
+  const [at, setAt] = useState<number | null>(null);
+  const shown = useMemo(() => lines.filter(({ curve }) => curve.values.length > 0), [lines]);
+  const places = useMemo(() => [...new Set(shown.flatMap(({ curve }) => curve.components))].sort((a, b) => a - b), [shown]);
+  const curves = useMemo(
+    () =>
+      shown.map(({ label, curve, scale = 1 }, place): Curve => {
+        const { color, dash } = trackStyle(place);
+        const values = places.map((component) => {
+          const found = curve.values[curve.components.indexOf(component)];
+          return found === undefined ? null : scale * found;
+        });
+        return { label, unit, values, color, ...(dash ? { dash } : {}), axis: "left", digits };
+      }),
+    [shown, places, unit, digits],
+  );
+  if (shown.length === 0) return null;
+  return (
+    <section className={`card ${classes.plot}`} aria-label={title}>
+      <div className={classes.plotTitle}>
+        <Title order={3}>{title}</Title>
+        <Text size="xs" className="quiet">
+          {note}
+        </Text>
+      </div>
+      <Plot label={title} frames={places} curves={curves} lost={NONE} frame={at ?? places.at(-1) ?? null} onSeek={setAt} />
+    </section>
+  );
+}
+
+const NONE: readonly number[] = [];
+
+function Bars({ title, note, rows, show }: { title: string; note: string; rows: readonly NamedValue[]; show: (value: number) => string }) {
+  if (rows.length === 0) return null;
+  const most = Math.max(...rows.map((row) => row.value), 1e-9);
+  return (
+    <section className="card" aria-label={title} style={{ padding: "12px 16px" }}>
+      <Title order={3}>{title}</Title>
+      <Text size="xs" className="quiet" mb="sm">
+        {note}
+      </Text>
+      <table className={classes.bars}>
+        <thead className="visually-hidden">
+          <tr>
+            <th scope="col">Name</th>
+            <td />
+            <th scope="col">Value</th>
+          </tr>
+        </thead>
+        <tbody>
+          {rows.slice(0, 12).map((row) => (
+            <tr key={row.name}>
+              <th scope="row">
+                {formatName(row.name)}
+                {row.count !== null && <span className="quiet"> ({row.count})</span>}
+              </th>
+              <td aria-hidden>
+                <div className={classes.bar} style={{ width: `${(100 * row.value) / most}%` }} />
+              </td>
+              <td>{show(row.value)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {rows.length > 12 && (
+        <Text size="xs" className="quiet" mt={4}>
+          The 12 largest of {rows.length}.
+        </Text>
+      )}
+    </section>
+  );
+}
+
+const mm = (value: number): string => `${formatNumber(value, 2)} mm`;
+
+/** How good a trained model is, as plots: [R17] Fig. 12 to 14 and what is beside them in a report. */
+export function ReportPlots({ report }: { report: TrainingReport }) {
+  const compactness = useMemo(
+    () => [
+      { label: "Shape space", curve: report.shapeCompactness, scale: 100 },
+      { label: "Pose space", curve: report.poseCompactness, scale: 100 },
+    ],
+    [report],
+  );
+  const generalisation = useMemo(
+    () => [
+      { label: "Shape space", curve: report.shapeGeneralisation },
+      { label: "Pose space", curve: report.poseGeneralisation },
+    ],
+    [report],
+  );
+  const passes = useMemo(() => [{ label: "To its registrations", curve: { components: report.roundsMm.map((_, at) => at + 1), values: report.roundsMm } }], [report]);
+  return (
+    <div className={classes.plots}>
+      <Curves title="Compactness" note="Variance that so many components hold, %" unit="%" digits={1} lines={compactness} />
+      <Curves title="Generalisation" note="Mean error on hands kept out, by number of components, mm" unit="mm" digits={2} lines={generalisation} />
+      <Curves title="Passes" note="Distance of the model to what it learns from after each pass, mm" unit="mm" digits={3} lines={passes} />
+      <Bars title="Compared" note="Mean error on hands kept out: less is better" rows={report.comparison} show={mm} />
+      <Bars title="By hand" note="Distance to the registrations, and how many" rows={report.byHand} show={mm} />
+      <Bars title="By pose" note="Distance to the registrations, and how many" rows={report.byPose} show={mm} />
+      <Bars title="Time" note="What training spent where" rows={report.seconds} show={formatDuration} />
+    </div>
+  );
+}

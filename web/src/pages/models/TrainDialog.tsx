@@ -1,0 +1,108 @@
+import { Button, Checkbox, Group, Modal, Radio, Select, Stack, TagsInput, Text, TextInput, Title } from "@mantine/core";
+import { useDebouncedValue } from "@mantine/hooks";
+import { useState } from "react";
+import { useNavigate } from "react-router";
+import { useHandModels, useMakeTrainingSet, useStartTraining, useTrainingPreview, type TrainingRule } from "../../api/handModels";
+import { useScanCollections } from "../../api/scans";
+import { formatCount } from "../../model/format";
+
+const EVERY = "";
+
+interface TrainDialogProps {
+  isOpen: boolean;
+  onClose: () => void;
+  /** Begin from this model's registrations only. */
+  modelId?: string | undefined;
+}
+
+/** Which registrations to learn from, under which name; what they are is kept for good before training begins. */
+export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
+  const collections = useScanCollections().data ?? [];
+  const models = useHandModels().data ?? [];
+  const makeSet = useMakeTrainingSet();
+  const train = useStartTraining();
+  const navigate = useNavigate();
+  const [name, setName] = useState("");
+  const [by, setBy] = useState<"decisions" | "verdict">("decisions");
+  const [needsTwo, setNeedsTwo] = useState(false);
+  const [collection, setCollection] = useState(EVERY);
+  const [leaveOut, setLeaveOut] = useState<string[]>([]);
+  const rule: TrainingRule = {
+    by,
+    collections: collection ? [collection] : [],
+    needs_two: needsTwo && by === "decisions",
+    verdicts: [],
+    leave_out_subjects: leaveOut,
+    ...(modelId ? { model_id: modelId } : {}),
+  };
+  const [settled] = useDebouncedValue(rule, 200);
+  const preview = useTrainingPreview(settled, isOpen);
+  const model = models.find((one) => one.id === modelId);
+  const failure = makeSet.error ?? train.error;
+  const submit = async (): Promise<void> => {
+    try {
+      const title = name.trim() || "Hand model";
+      const set = await makeSet.mutateAsync({ name: title, rule });
+      const job = await train.mutateAsync({ training_set_id: set.id, name: title });
+      void navigate(`/jobs/${job.id}`);
+    } catch {
+      // Both say what failed below.
+    }
+  };
+  return (
+    <Modal opened={isOpen} onClose={onClose} size={600} title={<Title order={2}>Train a hand model</Title>}>
+      <form
+        onSubmit={(event) => {
+          event.preventDefault();
+          void submit();
+        }}
+      >
+        <Stack gap="md">
+          <TextInput label="Name of the model" placeholder="Hand model" maxLength={200} value={name} onChange={(event) => setName(event.currentTarget.value)} data-autofocus />
+          <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value as typeof by)}>
+            <Stack gap="sm" mt="sm">
+              <Radio value="decisions" label="What people have accepted" />
+              <Radio value="verdict" label="What the program itself calls good, and nobody has rejected" />
+            </Stack>
+          </Radio.Group>
+          {by === "decisions" && <Checkbox label="Only what two people have accepted" checked={needsTwo} onChange={(event) => setNeedsTwo(event.currentTarget.checked)} />}
+          <Group grow gap="md" align="flex-start">
+            <Select
+              label="Collection"
+              allowDeselect={false}
+              value={collection}
+              data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]}
+              onChange={(value) => setCollection(value ?? EVERY)}
+            />
+            <TagsInput label="Subjects to leave out" description="Kept for testing" placeholder={leaveOut.length === 0 ? "None" : ""} value={leaveOut} onChange={setLeaveOut} />
+          </Group>
+          {model && (
+            <Text size="sm" className="quiet">
+              Only registrations by {model.name}.
+            </Text>
+          )}
+          <Text size="sm" role="status" fw={600}>
+            {preview.data
+              ? `${formatCount(preview.data.registrations, "registration")} of ${formatCount(preview.data.subjects, "subject")}, ${preview.data.mirrored} of left hands; ${preview.data.undecided} are still undecided.`
+              : preview.error
+                ? preview.error.message
+                : "Counting …"}
+          </Text>
+          {failure && (
+            <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
+              {failure.message} No job was started.
+            </Text>
+          )}
+          <Group justify="flex-end" gap="sm">
+            <Button variant="default" onClick={onClose}>
+              Cancel
+            </Button>
+            <Button type="submit" loading={makeSet.isPending || train.isPending} disabled={!preview.data || preview.data.registrations === 0}>
+              Train
+            </Button>
+          </Group>
+        </Stack>
+      </form>
+    </Modal>
+  );
+}

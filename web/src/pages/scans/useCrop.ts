@@ -1,0 +1,99 @@
+import { useSessionStorage } from "@mantine/hooks";
+import { useMemo, useState } from "react";
+import { ApiError } from "../../api/client";
+import { useSaveCrop, useScanCrop, type Scan, type ScanCrop } from "../../api/scans";
+import type { HandGeometry } from "../../canvas/hand3d/geometry";
+import { countTaken, cutOf, readStroke, smallerSide, takenByAny, type Cut, type Point, type Projection, type Stroke } from "../../model/crop";
+
+/** What is not saved yet: the strokes as they should be, and those taken back. */
+interface Draft {
+  readonly cuts: readonly Cut[];
+  readonly undone: readonly Cut[];
+  readonly dropsObjects: boolean;
+}
+
+interface LastStroke {
+  readonly stroke: Stroke;
+  readonly side: number;
+  readonly projection: Projection;
+  /** How many cuts there were with it. */
+  readonly count: number;
+}
+
+/** Green things in the hand, as the server leaves them out: G > max(R, 20) [R17, 3.1]. */
+const isOfObject = (colors: Uint8Array, point: number): boolean => (colors[3 * point + 1] as number) > Math.max(colors[3 * point] as number, 20);
+
+/** The crop of a scan: strokes with undo, kept over a reload until they are saved. */
+export function useCrop(scan: Scan, geometry: HandGeometry | null) {
+  const saved = useScanCrop(scan).data;
+  const [kept, setDraft, dropDraft] = useSessionStorage<Draft | null>({ key: `handloom/crop/${scan.id}/${scan.revision}`, defaultValue: null, getInitialValueInEffect: false });
+  const [last, setLast] = useState<LastStroke | null>(null);
+  const save = useSaveCrop();
+
+  const draft = useMemo<Draft>(() => kept ?? { cuts: (saved?.strokes as readonly Cut[] | undefined) ?? [], undone: [], dropsObjects: saved?.drops_objects ?? false }, [kept, saved]);
+  const taken = useMemo(() => {
+    if (!geometry) return null;
+    const { positions, colors } = geometry.scan;
+    const all = takenByAny(draft.cuts, positions);
+    if (draft.dropsObjects && colors) for (let point = 0; point < all.length; point += 1) if (isOfObject(colors, point)) all[point] = 1;
+    return all;
+  }, [geometry, draft]);
+
+  const set = (next: Partial<Draft>): void => setDraft({ ...draft, ...next });
+  const canFlip = last?.stroke.kind === "line" && last.count === draft.cuts.length;
+  return {
+    draft,
+    taken,
+    share: taken && taken.length > 0 ? countTaken(taken) / taken.length : 0,
+    isChanged: kept !== null,
+    /** Nothing can be drawn before it is known what is cropped already. */
+    isReady: saved !== undefined && geometry !== null,
+    save,
+    canFlip,
+    cut(points: readonly Point[], projection: Projection): void {
+      const stroke = readStroke(points);
+      if (!stroke || !geometry || !saved) return;
+      const side = smallerSide(stroke, projection, geometry.scan.positions);
+      const corners = stroke.polygons[side];
+      if (!corners) return;
+      setLast({ stroke, side, projection, count: draft.cuts.length + 1 });
+      set({ cuts: [...draft.cuts, cutOf(corners, projection)], undone: [] });
+    },
+    flip(): void {
+      if (!last || !canFlip) return;
+      const side = 1 - last.side;
+      const corners = last.stroke.polygons[side];
+      if (!corners) return;
+      setLast({ ...last, side });
+      set({ cuts: [...draft.cuts.slice(0, -1), cutOf(corners, last.projection)] });
+    },
+    undo(): void {
+      const gone = draft.cuts.at(-1);
+      if (gone) set({ cuts: draft.cuts.slice(0, -1), undone: [...draft.undone, gone] });
+    },
+    redo(): void {
+      const back = draft.undone.at(-1);
+      if (back) set({ cuts: [...draft.cuts, back], undone: draft.undone.slice(0, -1) });
+    },
+    clear(): void {
+      if (draft.cuts.length > 0) set({ cuts: [], undone: [] });
+    },
+    setDropsObjects: (dropsObjects: boolean): void => set({ dropsObjects }),
+    /** As the server has it. */
+    drop(): void {
+      dropDraft();
+      save.reset();
+    },
+    store(over: Scan = scan): void {
+      save.mutate(
+        { scan: over, crop: { strokes: draft.cuts as unknown as ScanCrop["strokes"], drops_objects: draft.dropsObjects } },
+        { onSuccess: dropDraft },
+      );
+    },
+  };
+}
+
+export type Crop = ReturnType<typeof useCrop>;
+
+/** The scan as somebody else has cropped it meanwhile; null when that is not why the saving failed. */
+export const theirsOf = (error: unknown): Scan | null => (error instanceof ApiError && error.status === 409 ? ((error.body["theirs"] as Scan | undefined) ?? null) : null);

@@ -17,8 +17,9 @@ from server.database.migrate import upgrade
 from server.jobs import workers
 from server.jobs.dispatcher import Dispatcher
 from server.jobs.models import JobRow
+from server.jobs.run import WorkerContext
 from server.jobs.slot import WorkerSlot
-from server.jobs.workflow import APPLICATION, APPLICATION_VERSION, QUEUE, WorkerContext, register_workflow
+from server.jobs.workflow import APPLICATION, APPLICATION_VERSION, QUEUE, register_workflows
 from server.settings import Settings
 from server.storage import Storage, open_storage
 
@@ -44,7 +45,7 @@ def run_worker(settings: Settings) -> None:
         signal.signal(number, lambda *_: stopping.set())
     with database.writing() as session:
         worker_id = workers.register_worker(session, slot.name, slot.host).id
-    workflow = register_workflow(WorkerContext(database, storage, worker_id))
+    workflows = register_workflows(WorkerContext(database, storage, worker_id))
     config: DBOSConfig = {
         "name": APPLICATION,
         "system_database_url": find_system_database(settings),
@@ -59,7 +60,7 @@ def run_worker(settings: Settings) -> None:
     threading.Thread(target=_beat_forever, args=(database, worker_id), name="heartbeat", daemon=True).start()
     threading.Thread(target=_warm_up, name="warm-up", daemon=True).start()
     log.info("worker %s ready, pid %d", slot.name, os.getpid())
-    _dispatch_until(stopping, Dispatcher(database, workflow))
+    _dispatch_until(stopping, Dispatcher(database, workflows))
     with database.writing() as session:
         workers.stop_worker(session, worker_id)
     log.info("worker %s stops; unfinished jobs wait for the next one", slot.name)

@@ -62,6 +62,7 @@ if TYPE_CHECKING:
         save_registration,
         summarize_registration,
     )
+    from tracker.registration.scan_points import find_hand_points
     from tracker.tracking.chunk import TrackChunk
     from tracker.tracking.follow import track_frames
     from tracker.tracking.frame_result import FrameResult
@@ -101,6 +102,7 @@ _HOMES = {
     "export_track": "tracker.export.export",
     "ExportedLabels": "tracker.label_formats.label_set",
     "extract_archive": "tracker.capture.archive",
+    "find_hand_points": "tracker.registration.scan_points",
     "find_path_fault": "tracker.capture.relative_path",
     "fit_marked": "tracker.tracking.quick_fit",
     "Frame": "tracker.capture.frame",
@@ -251,6 +253,7 @@ __all__ = [
     "export_labels",
     "export_track",
     "extract_archive",
+    "find_hand_points",
     "find_path_fault",
     "fit_marked",
     "import_labels",

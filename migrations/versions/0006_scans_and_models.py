@@ -121,7 +121,6 @@ def upgrade() -> None:
         sa.Column("reasons", DOCUMENT, nullable=False),
         sa.Column("scan_to_mesh_mm", DOCUMENT, nullable=False),
         sa.Column("seconds", sa.Double(), nullable=False),
-        sa.Column("likely_failure", sa.Double(), nullable=False),
         sa.Column("is_current", sa.Boolean(), nullable=False),
         sa.Column("decision", sa.String(10), nullable=True),
         sa.Column("standing", DOCUMENT, nullable=False),
@@ -140,8 +139,8 @@ def upgrade() -> None:
     op.create_index("ix_registrations_created_at_id", "registrations", ["created_at", "id"])
     for column in ("scan_id", "model_id", "job_id"):
         op.create_index(f"ix_registrations_{column}", "registrations", [column])
-    queue = ["is_current", "decision", "likely_failure"]
-    op.create_index("ix_registrations_is_current_decision_likely_failure", "registrations", queue)
+    queue = ["is_current", "decision", "score"]
+    op.create_index("ix_registrations_is_current_decision_score", "registrations", queue)
     op.create_table(
         "decisions",
         sa.Column("id", sa.Uuid(), nullable=False),

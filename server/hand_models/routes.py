@@ -11,7 +11,7 @@ from server.accounts.service import LeadAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import NotFoundError, error_responses
-from server.hand_models import service
+from server.hand_models import service, storing
 from server.hand_models.schemas import HandModelOut, HandModelReport, HandSkeleton
 from tracker import HAND_EDGES, HAND_JOINTS
 
@@ -29,14 +29,14 @@ def get_hand_skeleton() -> HandSkeleton:
 def list_hand_models(session: SessionDep, cursor: Cursor = None, limit: Limit = 100) -> Page[HandModelOut]:
     """Hand models: first those that come with Handloom, then those that were trained or uploaded, the newest first."""
     rows, next_cursor = service.list_hand_models(session, cursor, limit)
-    built_in = service.list_built_in(session) if cursor is None else []
+    built_in = storing.list_built_in(session) if cursor is None else []
     return Page(items=[*built_in, *service.describe_hand_models(session, rows)], next_cursor=next_cursor)
 
 
 @router.get("/hand-models/{model_id}", responses=error_responses(404))
 def get_hand_model(model_id: uuid.UUID, session: SessionDep) -> HandModelOut:
     """One hand model."""
-    for model in service.list_built_in(session):
+    for model in storing.list_built_in(session):
         if model.id == model_id:
             return model
     return service.describe_hand_models(session, [service.get_hand_model(session, model_id)])[0]

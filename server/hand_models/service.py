@@ -50,11 +50,6 @@ def _describe_default(model: ArticulatedModel) -> HandModelOut:
     )
 
 
-def list_built_in(session: Session) -> list[HandModelOut]:
-    """Those that come with Handloom."""
-    return list(list_default_models())
-
-
 def list_hand_models(session: Session, cursor: str | None, limit: int) -> tuple[Sequence[HandModelRow], str | None]:
     """Those that were trained or uploaded, the newest first."""
     query = select(HandModelRow).where(HandModelRow.deleted_at.is_(None))

@@ -7,6 +7,7 @@ job that was answered with 201 is done even if the studio dies the next moment, 
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
 
 from dbos import DBOS, SetWorkflowID
 from sqlalchemy import or_, select, update
@@ -22,8 +23,8 @@ log = logging.getLogger(__name__)
 class Dispatcher:
     """Runs in every worker; what two of them do twice is done once, since a workflow is enqueued under its id."""
 
-    def __init__(self, database: Database, workflow: Workflow) -> None:
-        self._database, self._workflow = database, workflow
+    def __init__(self, database: Database, workflows: Mapping[str, Workflow]) -> None:
+        self._database, self._workflows = database, workflows
 
     def dispatch(self) -> None:
         """Look at the rows once."""
@@ -34,7 +35,7 @@ class Dispatcher:
         for job in jobs:
             if job.state == "queued":
                 with SetWorkflowID(workflow_id(job.id, job.attempt)):
-                    DBOS.enqueue_workflow(QUEUE, self._workflow, str(job.id), job.attempt)
+                    DBOS.enqueue_workflow(QUEUE, self._workflows[job.kind], str(job.id), job.attempt)
                 self._note(job, job.attempt)
             else:
                 DBOS.cancel_workflow(workflow_id(job.id, job.dispatched_attempt))

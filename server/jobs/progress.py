@@ -61,6 +61,23 @@ class JobProgress:
         self.log("info", message)
         self._publish_frames(done, total, at_once=True, crashes=0)
 
+    def part(self, span: tuple[float, float], name: str, share: float) -> None:
+        """Name what is being done in one part of the bar, and how much of it is done, 0 to 1."""
+        first, last = span
+        self._publish_stage(name, first + (last - first) * min(max(share, 0.0), 1.0))
+
+    def scans(self, done: int, total: int, span: tuple[float, float], name: str, share: float) -> None:
+        """Say that `done` of `total` scans are registered, and a share of the next; also how a job learns to stop."""
+        self._publish(False, **self._describe_scans(done + share, total, span), stage=name, frames_done=done)
+
+    def scans_done(self, done: int, total: int, span: tuple[float, float]) -> None:
+        """Say that another scan is safe on disk."""
+        self._publish(True, **self._describe_scans(done, total, span), frames_done=done, crashes=0)
+
+    def _describe_scans(self, done: float, total: int, span: tuple[float, float]) -> dict[str, float | int]:
+        first, last = span
+        return {"progress": first + (last - first) * done / max(total, 1), "frames_total": total}
+
     def log(self, level: str, text: str) -> None:
         """Add a line to the job's log."""
         with self._database.writing() as session:

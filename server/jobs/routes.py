@@ -15,7 +15,7 @@ from server.accounts.service import ReviewerAccount
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import StudioError, error_responses
-from server.jobs import batches, events, service, workers
+from server.jobs import batches, events, making, service, workers
 from server.jobs.describe import describe_job, describe_jobs
 from server.jobs.form import track_form
 from server.jobs.models import JobRow, WorkerRow
@@ -28,11 +28,16 @@ from server.jobs.schemas import (
     BulkRefusal,
     JobCreate,
     JobForm,
+    JobKind,
     JobLog,
     JobOut,
     JobState,
+    LoopCreate,
+    RegisterCreate,
+    TrainCreate,
     WorkerOut,
 )
+from server.storage import StorageDep
 
 router = APIRouter(tags=["jobs"], responses=error_responses())
 
@@ -46,6 +51,32 @@ def create_job(body: JobCreate, session: SessionDep, account: ReviewerAccount) -
     """Queue a job."""
     params = service.check_track_params(session, body.sequence_id, body.params)
     job = service.create_job(session, body.kind, body.sequence_id, params, created_by=account.id)
+    record_act(session, account.id, "job.start", "job", job.id)
+    return describe_job(session, job)
+
+
+@router.post("/jobs/register", status_code=201, responses=error_responses(404))
+def create_register_job(
+    body: RegisterCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
+) -> JobOut:
+    """Register scans, one after the other; each is there to be curated as soon as it is done."""
+    job = making.make_register_job(session, storage, body, account.id)
+    record_act(session, account.id, "job.start", "job", job.id)
+    return describe_job(session, job)
+
+
+@router.post("/jobs/train", status_code=201, responses=error_responses(404))
+def create_train_job(body: TrainCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
+    """Train a hand model from a training set."""
+    job = making.make_train_job(session, storage, body, account.id)
+    record_act(session, account.id, "job.start", "job", job.id)
+    return describe_job(session, job)
+
+
+@router.post("/jobs/loop", status_code=201, responses=error_responses(404))
+def create_loop_job(body: LoopCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
+    """Register all, choose, train, register all again with the new model; several rounds of it when asked."""
+    job = making.make_loop_job(session, storage, body, account.id)
     record_act(session, account.id, "job.start", "job", job.id)
     return describe_job(session, job)
 
@@ -74,15 +105,16 @@ def act_on_jobs(body: BulkAct, session: SessionDep, account: ReviewerAccount) ->
 def list_jobs(
     session: SessionDep,
     sequence_id: uuid.UUID | None = None,
+    kind: JobKind | None = None,
     state: Annotated[list[JobState], Query(description="One or several.")] = [],  # noqa: B006 (FastAPI copies it)
     created_by: uuid.UUID | None = None,
     batch_id: uuid.UUID | None = None,
-    search: Annotated[str | None, Query(max_length=200, description="Words of the recording's name.")] = None,
+    search: Annotated[str | None, Query(max_length=200, description="Words of its title.")] = None,
     cursor: Cursor = None,
     limit: Limit = 100,
 ) -> Page[JobOut]:
     """Jobs, the newest first."""
-    wanted = service.JobFilter(sequence_id, state, created_by, batch_id, search)
+    wanted = service.JobFilter(sequence_id, kind, state, created_by, batch_id, search)
     rows, next_cursor = service.list_jobs(session, wanted, cursor, limit)
     return Page(items=describe_jobs(session, rows), next_cursor=next_cursor)
 
@@ -143,6 +175,7 @@ def _act(session: Session, act: str, job_id: uuid.UUID, account_id: uuid.UUID) -
     service.get_job(session, job_id)
     if act == "retry":
         job = service.retry_job(session, job_id, account_id)
+        making.copy_job_scans(session, job_id, job.id)
     else:
         job = service.cancel_job(session, job_id) if act == "cancel" else service.resume_job(session, job_id)
     record_act(session, account_id, f"job.{act}", "job", job_id)

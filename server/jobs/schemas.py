@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from server.scans.schemas import Label, Name
 
+JobKind = Literal["track", "register", "train", "loop"]
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
@@ -39,6 +40,17 @@ class RegisterCreate(BaseModel):
     model_id: uuid.UUID | None = Field(default=None, description="Null: the model that nobody has trained yet.")
 
 
+class TrainingParams(BaseModel):
+    """How a model is trained."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    rounds: int = Field(default=3, ge=1, le=20, description="Times that all parts of the model are improved in turn.")
+    num_shapes: int = Field(default=10, ge=1, le=200, description="Shape directions kept, at most.")
+    with_pose_shapes: bool = Field(default=True, description="Without: plain linear blend skinning.")
+    with_mirrored: bool = Field(default=True, description="Learn from left hands too, mirrored.")
+
+
 class TrainCreate(BaseModel):
     """A hand model to train."""
 
@@ -47,7 +59,7 @@ class TrainCreate(BaseModel):
     training_set_id: uuid.UUID
     name: Name
     model_id: uuid.UUID | None = Field(default=None, description="To begin with; null: the one not trained yet.")
-    params: dict[str, Any] = Field(default_factory=dict, description="Options of training.")
+    options: TrainingParams = Field(default_factory=TrainingParams)
 
 
 class LoopCreate(BaseModel):
@@ -65,7 +77,7 @@ class LoopCreate(BaseModel):
     )
     rounds: int = Field(default=1, ge=1, le=10, description="By decisions: 1.")
     leave_out_subjects: list[Label] = Field(default_factory=list, max_length=1000, description="Kept for testing.")
-    params: dict[str, Any] = Field(default_factory=dict, description="Options of training.")
+    options: TrainingParams = Field(default_factory=TrainingParams)
 
 
 class BatchCreate(BaseModel):

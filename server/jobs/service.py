@@ -17,7 +17,7 @@ from server.jobs.models import ENDED_STATES, JobLogRow, JobRow, WorkerRow
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
 
-KINDS = ("track",)
+KINDS = ("track", "register", "train", "loop")
 
 LOG_PAGE = 1000
 
@@ -43,13 +43,15 @@ class JobFilter:
 
     Attributes:
         sequence_id: Of one recording.
+        kind: Of this kind.
         states: In one of these states.
         created_by: Started by this account.
         batch_id: Of one batch.
-        search: Words that the name of the recording holds, upper and lower case alike.
+        search: Words that the name of the recording, or the title, holds, upper and lower case alike.
     """
 
     sequence_id: UUID | None = None
+    kind: str | None = None
     states: Sequence[str] = ()
     created_by: UUID | None = None
     batch_id: UUID | None = None
@@ -58,6 +60,7 @@ class JobFilter:
     def apply(self, query: Select[Any]) -> Select[Any]:
         for column, wanted in (
             (JobRow.sequence_id, self.sequence_id),
+            (JobRow.kind, self.kind),
             (JobRow.created_by, self.created_by),
             (JobRow.batch_id, self.batch_id),
         ):
@@ -67,9 +70,10 @@ class JobFilter:
             query = query.where(JobRow.state.in_(self.states))
         words = (self.search or "").split()
         if words:
-            query = query.join(SequenceRow, SequenceRow.id == JobRow.sequence_id)
+            query = query.outerjoin(SequenceRow, SequenceRow.id == JobRow.sequence_id)
         for word in words:
-            query = query.where(SequenceRow.name.icontains(word, autoescape=True))
+            named = SequenceRow.name.icontains(word, autoescape=True)
+            query = query.where(named | JobRow.title.icontains(word, autoescape=True))
         return query
 
 
@@ -95,12 +99,19 @@ def create_job(
     created_by: UUID | None = None,
     batch_id: UUID | None = None,
     retry_of: UUID | None = None,
+    title: str = "",
 ) -> JobRow:
     """Queue a job. A worker finds it as soon as the transaction is committed."""
     if kind not in KINDS:
         raise InvalidError(f"There is no kind of job {kind!r}; there are: {', '.join(KINDS)}.")
     job = JobRow(
-        kind=kind, sequence_id=sequence_id, params=params, created_by=created_by, batch_id=batch_id, retry_of=retry_of
+        kind=kind,
+        sequence_id=sequence_id,
+        params=params,
+        title=title,
+        created_by=created_by,
+        batch_id=batch_id,
+        retry_of=retry_of,
     )
     session.add(job)
     session.flush()
@@ -148,6 +159,7 @@ def retry_job(session: Session, job_id: UUID, created_by: UUID | None = None) ->
         created_by=created_by,
         batch_id=job.batch_id,
         retry_of=job.id,
+        title=job.title,
     )
 
 

@@ -21,7 +21,7 @@ class RegistrationRow(Base):
         Index(None, "scan_id"),
         Index(None, "model_id"),
         Index(None, "job_id"),
-        Index(None, "is_current", "decision", "likely_failure"),
+        Index(None, "is_current", "decision", "score"),
         CheckConstraint("verdict IN ('good', 'doubtful', 'bad')", name="verdict"),
         CheckConstraint("decision IN ('accept', 'reject', 'unsure')", name="decision"),
         CheckConstraint("side IN ('right', 'left')", name="side"),
@@ -40,13 +40,11 @@ class RegistrationRow(Base):
     """As found."""
     verdict: Mapped[str] = mapped_column(String(10))
     score: Mapped[float]
-    """As the registration judges itself; less is better."""
+    """Chance that it is wrong, as the registration judges itself, 0 to 1."""
     reasons: Mapped[list[Any]]
     scan_to_mesh_mm: Mapped[dict[str, Any]]
     """mean, median, p95."""
     seconds: Mapped[float]
-    likely_failure: Mapped[float]
-    """Orders the queue: the more, the likelier it is wrong."""
     is_current: Mapped[bool] = mapped_column(default=True)
     """Whether it is the newest one of its scan."""
     decision: Mapped[str | None] = mapped_column(String(10))

@@ -18,9 +18,9 @@ Standing = Literal["accept", "reject", "unsure"]
 class ScanToMesh(BaseModel):
     """Distances from the points of a scan to the registered mesh, mm."""
 
-    mean: float
-    median: float
-    p95: float
+    mean: float | None = Field(description="Null when no point was found to be of a hand.")
+    median: float | None
+    p95: float | None
 
 
 class RegistrationScan(BaseModel):
@@ -49,11 +49,10 @@ class RegistrationOut(BaseModel):
     round: int = Field(description="1: by an untrained model; 2: by a model trained from round 1; and so on.")
     side: Side = Field(description="As found.")
     verdict: Verdict = Field(description="The program's own.")
-    score: float = Field(description="The program's own; less is better.")
+    score: float = Field(description="Chance that it is wrong, as the program sees it, 0 to 1; orders the queue.")
     reasons: list[str]
     scan_to_mesh_mm: ScanToMesh
     seconds: float
-    likely_failure: float = Field(description="The more, the likelier it is wrong; orders the queue.")
     is_current: bool = Field(description="Whether it is the newest one of its scan.")
     decision: Standing | None = Field(
         description="The last one that stands; null when none does, or when it is hidden."

@@ -32,8 +32,6 @@ AREA = "registrations"
 FILE, ERRORS = "registration.npz", "errors.npz"
 """What the registration writes, and the errors by vertex and by point that go with it."""
 
-VERDICT_RANK = {"good": 0, "doubtful": 1, "bad": 2}
-
 
 @dataclass(frozen=True)
 class RegistrationFilter:
@@ -105,7 +103,7 @@ def list_registrations(
 ) -> tuple[Sequence[RegistrationRow], str | None]:
     """A page of a queue. Who decides about what they see finds the rest by the cursor all the same."""
     query = wanted.apply(select(RegistrationRow), account_id).where(in_queue(queue, account_id))
-    column = RegistrationRow.likely_failure if order == "likely_failures" else RegistrationRow.created_at
+    column = RegistrationRow.score if order == "likely_failures" else RegistrationRow.created_at
     if cursor is not None:
         query = query.where(tuple_(column, RegistrationRow.id) < _read_place(cursor, order))
     query = query.order_by(column.desc(), RegistrationRow.id.desc())
@@ -113,7 +111,7 @@ def list_registrations(
     if len(rows) <= limit:
         return rows, None
     last = rows[limit - 1]
-    place = last.likely_failure if order == "likely_failures" else last.created_at.isoformat()
+    place = last.score if order == "likely_failures" else last.created_at.isoformat()
     return rows[:limit], write_cursor(place, str(last.id))  # pyright: ignore[reportArgumentType]
 
 
@@ -150,11 +148,6 @@ def get_registration(session: Session, registration_id: uuid.UUID, *, hold: bool
     if row is None:
         raise NotFoundError(f"There is no registration {registration_id}.")
     return row
-
-
-def rate_failure(verdict: str, score: float) -> float:
-    """Orders registrations by how likely they are wrong: by the verdict first, by the score among equals."""
-    return VERDICT_RANK[verdict] + max(score, 0.0) / (1.0 + max(score, 0.0))
 
 
 def add_registration(session: Session, row: RegistrationRow) -> RegistrationRow:
@@ -194,7 +187,7 @@ def describe_registrations(
 def _describe(row: RegistrationRow, scan: ScanRow, model_name: str, account_id: uuid.UUID) -> RegistrationOut:
     mine = row.standing.get(str(account_id))
     hidden = is_hidden(row, account_id)
-    own = ("id", "model_id", "job_id", "round", "side", "verdict", "score", "reasons", "seconds", "likely_failure")
+    own = ("id", "model_id", "job_id", "round", "side", "verdict", "score", "reasons", "seconds")
     more = ("is_current", "reviewer_count", "needs_second", "created_at")
     return RegistrationOut.model_validate(
         {name: getattr(row, name) for name in own + more}

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -21,8 +22,9 @@ from sqlalchemy.orm import Session
 from server.accounts.audit import record_act
 from server.database import Database
 from server.errors import InvalidError, StudioError
+from server.scans.cropping import find_flags
 from server.scans.models import ScanRow
-from server.scans.schemas import Label, Name, ScanRefusal, Side, UnitScale
+from server.scans.schemas import Label, Name, ScanCrop, ScanRefusal, Side, UnitScale
 from server.scans.service import AREA
 from server.storage import Storage
 from server.storage.digest import compute_digest
@@ -196,6 +198,7 @@ def _add_one(
             has_colors=scan.colors is not None,
             extent_m=[float(value) for value in scan.points.max(axis=0) - scan.points.min(axis=0)],
             notes=[],
+            removed_count=int(np.count_nonzero(find_flags(scan, ScanCrop(strokes=[])))),
             created_by=account_id,
             **columns,
         )

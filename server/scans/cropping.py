@@ -1,4 +1,4 @@
-"""What is left out of a scan: points inside a line that somebody drew, beyond a plane, or of a green object."""
+"""What is left out of a scan: points inside a line that somebody drew, beyond a plane, of a green object."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from server.errors import InvalidError
-from server.scans.geometry import CROPPED, OBJECT
+from server.scans.geometry import CROPPED, LEFT_OUT
 from server.scans.schemas import PlaneStroke, PolygonStroke, ScanCrop
 
 if TYPE_CHECKING:
@@ -33,22 +33,25 @@ def check_crop(crop: ScanCrop) -> None:
             raise InvalidError("The plane's normal is zero; needed a direction.")
 
 
-def find_flags(scan: Scan, crop: ScanCrop | None) -> np.ndarray:
-    """(N,) uint8: which points are cropped and which are of an object; see `geometry.CROPPED` and `OBJECT`."""
-    flags = np.zeros(len(scan.points), np.uint8)
-    if crop is None:
-        return flags
+def find_cropped(scan: Scan, crop: ScanCrop) -> np.ndarray:
+    """(N,) points that its strokes take away."""
+    cropped = np.zeros(len(scan.points), bool)
     for stroke in crop.strokes:
-        hit = find_beyond(scan.points, stroke) if isinstance(stroke, PlaneStroke) else find_drawn(scan.points, stroke)
-        flags[hit] |= CROPPED
-    if crop.drops_objects and scan.colors is not None:
-        flags[find_green(scan.colors)] |= OBJECT
+        is_plane = isinstance(stroke, PlaneStroke)
+        cropped |= find_beyond(scan.points, stroke) if is_plane else find_drawn(scan.points, stroke)
+    return cropped
+
+
+def find_flags(scan: Scan, crop: ScanCrop) -> np.ndarray:
+    """(N,) uint8: which points are cropped, and which of the others are not registered: of an object, or loose bits."""
+    from tracker import find_hand_points
+
+    cropped = find_cropped(scan, crop)
+    flags = np.where(cropped, CROPPED, 0).astype(np.uint8)
+    if not cropped.all():
+        of_hand, _ = find_hand_points(scan.select(~cropped), crop.drops_objects)
+        flags[np.flatnonzero(~cropped)[~of_hand]] = LEFT_OUT
     return flags
-
-
-def find_green(colors: np.ndarray) -> np.ndarray:
-    """(N,) points of an object painted green: G > max(R, 20), [R17] 3.1. `colors` (N, 3) uint8 RGB."""
-    return colors[:, 1] > np.maximum(colors[:, 0], 20)
 
 
 def find_beyond(points: np.ndarray, plane: PlaneStroke) -> np.ndarray:

@@ -18,8 +18,8 @@ import numpy as np
 MAGIC = b"HLG1"
 ALIGNMENT = 8
 MEDIA_TYPE = "application/vnd.handloom.geometry"
-CROPPED, OBJECT = 1, 2
-"""Bits of `flags`."""
+CROPPED, LEFT_OUT = 1, 2
+"""Of `flags`."""
 
 
 def pack_arrays(arrays: dict[str, np.ndarray], facts: dict[str, Any]) -> bytes:

@@ -198,7 +198,7 @@ def get_scan_geometry(
     shelf: ShelfDep,
     size: Annotated[int, Query(ge=1, le=200_000, description="Most points.")] = 20_000,
 ) -> Response:
-    """Points for the browser: positions, normals, colours, and flags (1 cropped, 2 of an object). It never changes."""
+    """Points for the browser: positions, normals, colours, flags (1 cropped, 2 object or loose). It never changes."""
     row = service.get_scan(session, scan_id, deleted_too=True)
     revision = service.find_geometry_revision(row, key)
     crop = service.read_crop(service.get_crop(session, scan_id, revision))
@@ -247,7 +247,7 @@ def list_scan_crops(scan_id: uuid.UUID, session: SessionDep) -> Page[ScanCropOut
 
 def _describe_crops(session: Any, rows: list[ScanCropRow | None]) -> list[ScanCropOut]:
     people = find_names(session, (row.author_id for row in rows if row is not None))
-    whole = ScanCropOut(revision=1, strokes=[], drops_objects=False, removed_count=0, author_name=None, created_at=None)
+    whole = ScanCropOut(revision=1, strokes=[], drops_objects=True, removed_count=0, author_name=None, created_at=None)
     return [
         whole
         if row is None

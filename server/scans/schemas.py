@@ -68,7 +68,7 @@ class ScanOut(BaseModel):
     metres_per_unit: float | None
     notes: list[str] = Field(description="What was noticed when it was read.")
     revision: int = Field(description="Of what is cropped; 1 is the whole scan.")
-    removed_count: int = Field(description="Points that are cropped or belong to an object.")
+    removed_count: int = Field(description="Points that are cropped, of an object, or loose.")
     geometry_key: str = Field(description="Part of the address of its geometry; changes with every crop.")
     registration: ScanRegistration | None = None
     created_at: datetime
@@ -153,7 +153,7 @@ class ScanCrop(BaseModel):
         max_length=MOST_STROKES, description="All of them; an empty list takes the crop back."
     )
     drops_objects: bool = Field(
-        default=False, description="Leave out points of an object painted green too: G > max(R, 20), [R17] 3.1."
+        default=True, description="Leave out points of an object painted green too: G > max(R, 20), [R17] 3.1."
     )
 
 

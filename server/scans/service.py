@@ -116,9 +116,9 @@ def list_crops(session: Session, scan_id: uuid.UUID) -> Sequence[ScanCropRow]:
     return session.scalars(query.order_by(ScanCropRow.revision.desc())).all()
 
 
-def read_crop(row: ScanCropRow | None) -> ScanCrop | None:
-    """A row's crop."""
-    return None if row is None else ScanCrop(strokes=row.strokes, drops_objects=row.drops_objects)
+def read_crop(row: ScanCropRow | None) -> ScanCrop:
+    """A row's crop; of the whole scan when there is none."""
+    return ScanCrop(strokes=[]) if row is None else ScanCrop(strokes=row.strokes, drops_objects=row.drops_objects)
 
 
 def open_scan(storage: Storage, row: ScanRow) -> Scan:
@@ -216,7 +216,7 @@ class ScanShelf:
                 self._scans.popitem(last=False)
         return scan
 
-    def pack(self, row: ScanRow, crop: ScanCrop | None, size: int) -> bytes:
+    def pack(self, row: ScanRow, crop: ScanCrop, size: int) -> bytes:
         """A scan for the browser."""
         scan = self.get(row)
         flags = find_flags(scan, crop)

@@ -1,0 +1,102 @@
+"""One job in this worker: taken, done, ended. What is done in between is each kind's own."""
+
+from __future__ import annotations
+
+import logging
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy.orm import Session
+
+from server.database import Database, utc_now
+from server.errors import StudioError
+from server.jobs import service
+from server.jobs.files import JobFiles
+from server.jobs.progress import JobProgress, JobStoppedError
+from server.storage import Storage
+
+log = logging.getLogger(__name__)
+
+MAX_CRASHES = 3
+"""Workers a job may lose in a row, without finishing a step, before it is taken to be their killer."""
+
+
+@dataclass(frozen=True)
+class WorkerContext:
+    """What workflows need of the process they run in."""
+
+    database: Database
+    storage: Storage
+    worker_id: UUID
+
+
+class JobRun:
+    """One job in this worker."""
+
+    def __init__(self, context: WorkerContext, job_id: UUID) -> None:
+        self.context, self.job_id = context, job_id
+        with context.database.reading() as session:
+            self.row = service.get_job(session, job_id)
+        storage = context.storage
+        self.files = JobFiles(storage.folder("jobs", job_id), storage.remote_folder("jobs", job_id))
+
+    def progress(self, attempt: int) -> JobProgress:
+        return JobProgress(self.context.database, self.job_id, attempt, self.context.worker_id)
+
+    def attempt(self, number: int, work: Callable[[], None]) -> str:
+        """Take the job and do it; whatever happens, say how it ended."""
+        try:
+            if not self._claim(number):
+                if self.row.state == "succeeded":  # whoever ended it may have died before that
+                    self.files.remove()
+                return "not wanted"
+            work()
+        except JobStoppedError:
+            log.info("job %s stopped", self.job_id)
+            return "stopped"
+        except Exception as error:
+            self._fail(number, error)
+            return "failed"
+        self.files.remove()
+        return "succeeded"
+
+    def end(self, session: Session, attempt: int, state: str, **values: Any) -> bool:
+        """End the job in the transaction that stores what it made."""
+        values = {"state": state, "stage": state, "ended_at": utc_now(), "seconds_left": None, **values}
+        ended = service.update_running(session, self.job_id, attempt, self.context.worker_id, **values)
+        if ended and state == "succeeded":
+            service.append_log(session, self.job_id, "info", "done")
+        return ended
+
+    def _claim(self, attempt: int) -> bool:
+        """Take the job; fail it when it has cost too many workers."""
+        with self.context.database.writing() as session:
+            claimed = service.claim_job(session, self.job_id, attempt, self.context.worker_id)
+            crashes = 0 if claimed is None else claimed.crashes
+        if crashes > MAX_CRASHES:
+            raise StudioError(
+                f"The worker process ended {crashes} times while it did the same step, by a crash or for want of "
+                "memory. The log of the worker says more; `resume` tries once again."
+            )
+        return claimed is not None
+
+    def _fail(self, attempt: int, error: Exception) -> None:
+        """End the job with what went wrong, in words for people; the traceback goes to its log."""
+        message = describe_error(error)
+        log.error("job %s failed: %s", self.job_id, message, exc_info=error)
+        with self.context.database.writing() as session:
+            if self.end(session, attempt, "failed", error=message):
+                service.append_log(session, self.job_id, "error", message)
+                service.append_log(session, self.job_id, "debug", "".join(traceback.format_exception(error)))
+
+
+def describe_error(error: Exception) -> str:
+    """What went wrong, for people. An error that nobody foresaw is named as such."""
+    from tracker import TrackerError
+
+    if isinstance(error, (StudioError, TrackerError)):
+        return str(error)
+    return f"An unforeseen error, {type(error).__name__}: {error}. The job's log has the details; please report it."

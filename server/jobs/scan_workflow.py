@@ -1,0 +1,104 @@
+"""The workflows of jobs that register scans and train hand models: a step for each scan, and one for each training."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from uuid import UUID
+
+from dbos import DBOS
+
+from server.jobs.modelling import ModelShelf, ScanRun, Span
+from server.jobs.run import WorkerContext
+
+
+def register_scan_workflows(context: WorkerContext) -> dict[str, Callable[[str, int], str]]:
+    """Make the workflows `register`, `train` and `loop` known to DBOS."""
+    shelf = ModelShelf(context)
+
+    def open_run(job_id: str) -> ScanRun:
+        return ScanRun(context, UUID(job_id), shelf)
+
+    @DBOS.step(name="list scans")
+    def list_scans(job_id: str) -> list[str]:
+        return open_run(job_id).list_scans()
+
+    @DBOS.step(name="register one")
+    def register_one(job_id: str, attempt: int, scan_id: str, model_id: str, place: tuple[int, int], span: Span) -> str:
+        return open_run(job_id).register_one(attempt, UUID(scan_id), UUID(model_id), place, span)
+
+    @DBOS.step(name="choose")
+    def choose(job_id: str, attempt: int, model_id: str, number: int) -> str:
+        return open_run(job_id).choose(attempt, UUID(model_id), number)
+
+    @DBOS.step(name="train model")
+    def train_model(
+        job_id: str, attempt: int, training_set_id: str, model_id: str, name: str, number: int, span: Span
+    ) -> str:
+        return open_run(job_id).train(attempt, UUID(training_set_id), UUID(model_id), name, number, span)
+
+    @DBOS.step(name="finish scans")
+    def finish(job_id: str, attempt: int, model_id: str | None, outcomes: list[str]) -> str:
+        open_run(job_id).finish(attempt, None if model_id is None else UUID(model_id), outcomes)
+        return "done"
+
+    def register_all(job_id: str, attempt: int, model_id: str, span: Span) -> list[str]:
+        scans = list_scans(job_id)
+        return [
+            register_one(job_id, attempt, scan_id, model_id, (number, len(scans)), span)
+            for number, scan_id in enumerate(scans)
+        ]
+
+    @DBOS.workflow(name="register", max_recovery_attempts=1000)
+    def register(job_id: str, attempt: int) -> str:
+        run = open_run(job_id)
+
+        def work() -> None:
+            outcomes = register_all(job_id, attempt, run.row.params["model_id"], (0.0, 1.0))
+            finish(job_id, attempt, None, outcomes)
+
+        return run.attempt(attempt, work)
+
+    @DBOS.workflow(name="train", max_recovery_attempts=1000)
+    def train(job_id: str, attempt: int) -> str:
+        run = open_run(job_id)
+
+        def work() -> None:
+            params = run.row.params
+            made = train_model(
+                job_id, attempt, params["training_set_id"], params["model_id"], params["name"], 0, (0.0, 1.0)
+            )
+            finish(job_id, attempt, made, [])
+
+        return run.attempt(attempt, work)
+
+    @DBOS.workflow(name="loop", max_recovery_attempts=1000)
+    def loop(job_id: str, attempt: int) -> str:
+        run = open_run(job_id)
+
+        def work() -> None:
+            params, model_id = run.row.params, run.row.params["model_id"]
+            spans = plan_loop(params["rounds"], params["by"] == "verdict")
+            outcomes: list[str] = []
+            if params["by"] == "verdict":
+                outcomes = register_all(job_id, attempt, model_id, spans.pop(0))
+            for number in range(1, params["rounds"] + 1):
+                chosen = choose(job_id, attempt, model_id, number)
+                name = params["name"] if params["rounds"] == 1 else f"{params['name']}, round {number}"
+                model_id = train_model(job_id, attempt, chosen, model_id, name, number, spans.pop(0))
+                outcomes = register_all(job_id, attempt, model_id, spans.pop(0))
+            finish(job_id, attempt, model_id, outcomes)
+
+        return run.attempt(attempt, work)
+
+    return {"register": register, "train": train, "loop": loop}
+
+
+REGISTERING, TRAINING = 3.0, 1.0
+"""Rough shares of the time of a loop."""
+
+
+def plan_loop(rounds: int, registers_first: bool) -> list[Span]:
+    """Parts of the progress bar, in the order in which a loop uses them."""
+    parts = [REGISTERING] * registers_first + [TRAINING, REGISTERING] * rounds
+    ends = [sum(parts[: number + 1]) / sum(parts) for number in range(len(parts))]
+    return list(zip([0.0, *ends[:-1]], ends, strict=True))

@@ -1,0 +1,90 @@
+"""The workflow of a tracking job: a step for each chunk of frames."""
+
+from __future__ import annotations
+
+import json
+import uuid
+from typing import Any
+from uuid import UUID
+
+from dbos import DBOS
+
+from server.annotations.service import export_annotations
+from server.jobs.run import JobRun, WorkerContext
+from server.jobs.tracking import TrackingJob
+from server.tracks.service import add_track
+
+TRACK_NAMESPACE = UUID("7a1d4c53-3a0f-4f0e-9a52-6f1d0c9b8e21")
+
+
+def register_track_workflow(context: WorkerContext):
+    """Make the workflow `track` known to DBOS."""
+
+    @DBOS.step(name="snapshot")
+    def snapshot(job_id: str) -> dict[str, Any]:
+        return _TrackRun(context, UUID(job_id)).snapshot()
+
+    @DBOS.step(name="start")
+    def start(job_id: str, attempt: int) -> dict[str, Any]:
+        run = _TrackRun(context, UUID(job_id))
+        return run.job.start(run.progress(attempt))
+
+    @DBOS.step(name="chunk")
+    def chunk(job_id: str, attempt: int, begun: dict[str, Any], number: int) -> dict[str, Any]:
+        run = _TrackRun(context, UUID(job_id))
+        return run.job.track_chunk(begun, number, run.progress(attempt))
+
+    @DBOS.step(name="finish")
+    def finish(job_id: str, attempt: int, begun: dict[str, Any]) -> str:
+        return str(_TrackRun(context, UUID(job_id)).finish(attempt, begun))
+
+    @DBOS.workflow(name="track", max_recovery_attempts=1000)
+    def track(job_id: str, attempt: int) -> str:
+        run = _TrackRun(context, UUID(job_id))
+
+        def work() -> None:
+            run.files.check(snapshot(job_id)["files"])
+            begun = start(job_id, attempt)
+            run.files.check(begun["files"])
+            for number in range(len(begun["chunks"])):
+                run.files.check(chunk(job_id, attempt, begun, number)["files"])
+            finish(job_id, attempt, begun)
+
+        return run.attempt(attempt, work)
+
+    return track
+
+
+class _TrackRun(JobRun):
+    """One tracking job in this worker."""
+
+    @property
+    def _sequence_id(self) -> UUID:
+        assert self.row.sequence_id is not None, "a tracking job has a recording"
+        return self.row.sequence_id
+
+    @property
+    def job(self) -> TrackingJob:
+        recording = self.context.storage.refresh("sequences", self._sequence_id)
+        return TrackingJob(recording, self.row.params, self.files)
+
+    def snapshot(self) -> dict[str, Any]:
+        """Keep the annotations as they are now: doing a step again must not see later ones."""
+        kept = self.files.read_manifest("snapshot")
+        if kept is not None:
+            return kept
+        with self.context.database.reading() as session:
+            document = export_annotations(session, self._sequence_id)
+        self.files.write(self.files.annotations, lambda path: path.write_text(json.dumps(document)))
+        return self.files.write_manifest("snapshot", [self.files.annotations], {})
+
+    def finish(self, attempt: int, begun: dict[str, Any]) -> UUID:
+        """Store the track and its row, and end the job, in one transaction."""
+        track_id = uuid.uuid5(TRACK_NAMESPACE, str(self.job_id))
+        folder = self.context.storage.folder("tracks", track_id)
+        self.job.finish(begun, folder, self.progress(attempt))
+        self.context.storage.publish("tracks", track_id)
+        with self.context.database.writing() as session:
+            add_track(session, folder, track_id, self._sequence_id, self.job_id)
+            self.end(session, attempt, "succeeded", track_id=track_id, progress=1.0, frames_done=begun["frames"])
+        return track_id

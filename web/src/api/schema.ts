@@ -956,6 +956,66 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/jobs/loop": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Create Loop Job
+         * @description Register all, choose, train, register all again with the new model; several rounds of it when asked.
+         */
+        post: operations["create_loop_job"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/jobs/register": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Create Register Job
+         * @description Register scans, one after the other; each is there to be curated as soon as it is done.
+         */
+        post: operations["create_register_job"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/jobs/train": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Create Train Job
+         * @description Train a hand model from a training set.
+         */
+        post: operations["create_train_job"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/jobs/{job_id}": {
         parameters: {
             query?: never;
@@ -1831,7 +1891,7 @@ export interface paths {
         };
         /**
          * Get Scan Geometry
-         * @description Points for the browser: positions, normals, colours, and flags (1 cropped, 2 of an object). It never changes.
+         * @description Points for the browser: positions, normals, colours, flags (1 cropped, 2 object or loose). It never changes.
          */
         get: operations["get_scan_geometry"];
         put?: never;
@@ -4976,6 +5036,46 @@ export interface components {
             user_agent: string;
         };
         /**
+         * LoopCreate
+         * @description Register, choose, train, register again.
+         */
+        LoopCreate: {
+            /**
+             * By
+             * @description What is trained from. `verdict`: what the program calls good and nobody rejected; `decisions`: what people have accepted by now. Then one round is done, and its registrations wait for people.
+             * @default verdict
+             * @enum {string}
+             */
+            by: "verdict" | "decisions";
+            /**
+             * Collection
+             * @description Null: all scans.
+             */
+            collection?: string | null;
+            /**
+             * Leave Out Subjects
+             * @description Kept for testing.
+             */
+            leave_out_subjects?: string[];
+            /**
+             * Model Id
+             * @description To begin with; null: the one not trained yet.
+             */
+            model_id?: string | null;
+            /**
+             * Name
+             * @description Of the models; the round is added.
+             */
+            name: string;
+            options?: components["schemas"]["TrainingParams"];
+            /**
+             * Rounds
+             * @description By decisions: 1.
+             * @default 1
+             */
+            rounds: number;
+        };
+        /**
          * MethodOut
          * @description Tracks with the same parameters, one for each recording, pooled.
          */
@@ -5746,6 +5846,36 @@ export interface components {
             sequence_id: string;
         };
         /**
+         * RegisterCreate
+         * @description Scans to register.
+         */
+        RegisterCreate: {
+            /**
+             * Collection
+             * @description Null: of all collections.
+             */
+            collection?: string | null;
+            /**
+             * Model Id
+             * @description Null: the model that nobody has trained yet.
+             */
+            model_id?: string | null;
+            /**
+             * Only
+             * @description `new`: those that this model has not registered as they are cropped now; `not_accepted`: those whose newest registration nobody accepted.
+             * @default new
+             * @enum {string}
+             */
+            only: "new" | "not_accepted" | "all";
+            /**
+             * Scan Ids
+             * @description Empty: as the rest says.
+             */
+            scan_ids?: string[];
+            /** Subject */
+            subject?: string | null;
+        };
+        /**
          * RegistrationCounts
          * @description How much there is in each queue, of the newest registration of each scan unless asked otherwise.
          */
@@ -5798,11 +5928,6 @@ export interface components {
             /** Job Id */
             job_id: string | null;
             /**
-             * Likely Failure
-             * @description The more, the likelier it is wrong; orders the queue.
-             */
-            likely_failure: number;
-            /**
              * Model Id
              * Format: uuid
              */
@@ -5837,7 +5962,7 @@ export interface components {
             scan_to_mesh_mm: components["schemas"]["ScanToMesh"];
             /**
              * Score
-             * @description The program's own; less is better.
+             * @description Chance that it is wrong, as the program sees it, 0 to 1; orders the queue.
              */
             score: number;
             /** Seconds */
@@ -6039,7 +6164,7 @@ export interface components {
             /**
              * Drops Objects
              * @description Leave out points of an object painted green too: G > max(R, 20), [R17] 3.1.
-             * @default false
+             * @default true
              */
             drops_objects: boolean;
             /**
@@ -6133,7 +6258,7 @@ export interface components {
             registration?: components["schemas"]["ScanRegistration"] | null;
             /**
              * Removed Count
-             * @description Points that are cropped or belong to an object.
+             * @description Points that are cropped, of an object, or loose.
              */
             removed_count: number;
             /**
@@ -6212,12 +6337,15 @@ export interface components {
          * @description Distances from the points of a scan to the registered mesh, mm.
          */
         ScanToMesh: {
-            /** Mean */
-            mean: number;
+            /**
+             * Mean
+             * @description Null when no point was found to be of a hand.
+             */
+            mean: number | null;
             /** Median */
-            median: number;
+            median: number | null;
             /** P95 */
-            p95: number;
+            p95: number | null;
         };
         /**
          * ScansAdded
@@ -6786,6 +6914,25 @@ export interface components {
             };
         };
         /**
+         * TrainCreate
+         * @description A hand model to train.
+         */
+        TrainCreate: {
+            /**
+             * Model Id
+             * @description To begin with; null: the one not trained yet.
+             */
+            model_id?: string | null;
+            /** Name */
+            name: string;
+            options?: components["schemas"]["TrainingParams"];
+            /**
+             * Training Set Id
+             * Format: uuid
+             */
+            training_set_id: string;
+        };
+        /**
          * TrainingMember
          * @description A registration in a training set.
          */
@@ -6815,6 +6962,36 @@ export interface components {
             side: "right" | "left";
             /** Subject */
             subject: string;
+        };
+        /**
+         * TrainingParams
+         * @description How a model is trained.
+         */
+        TrainingParams: {
+            /**
+             * Num Shapes
+             * @description Shape directions kept, at most.
+             * @default 10
+             */
+            num_shapes: number;
+            /**
+             * Rounds
+             * @description Times that all parts of the model are improved in turn.
+             * @default 3
+             */
+            rounds: number;
+            /**
+             * With Mirrored
+             * @description Learn from left hands too, mirrored.
+             * @default true
+             */
+            with_mirrored: boolean;
+            /**
+             * With Pose Shapes
+             * @description Without: plain linear blend skinning.
+             * @default true
+             */
+            with_pose_shapes: boolean;
         };
         /**
          * TrainingPreview
@@ -10437,11 +10614,12 @@ export interface operations {
         parameters: {
             query?: {
                 sequence_id?: string | null;
+                kind?: ("track" | "register" | "train" | "loop") | null;
                 /** @description One or several. */
                 state?: ("queued" | "running" | "succeeded" | "failed" | "cancelled")[];
                 created_by?: string | null;
                 batch_id?: string | null;
-                /** @description Words of the recording's name. */
+                /** @description Words of its title. */
                 search?: string | null;
                 /** @description `next_cursor` of the page before. */
                 cursor?: string | null;
@@ -10905,6 +11083,213 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    create_loop_job: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LoopCreate"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["JobOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    create_register_job: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RegisterCreate"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["JobOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    create_train_job: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TrainCreate"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["JobOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -114,7 +114,7 @@ def list_jobs(
     limit: Limit = 100,
 ) -> Page[JobOut]:
     """Jobs, the newest first."""
-    wanted = service.JobFilter(sequence_id, kind, state, created_by, batch_id, search)
+    wanted = service.JobFilter(sequence_id, state, created_by, batch_id, search, kind)
     rows, next_cursor = service.list_jobs(session, wanted, cursor, limit)
     return Page(items=describe_jobs(session, rows), next_cursor=next_cursor)
 

@@ -43,19 +43,19 @@ class JobFilter:
 
     Attributes:
         sequence_id: Of one recording.
-        kind: Of this kind.
         states: In one of these states.
         created_by: Started by this account.
         batch_id: Of one batch.
         search: Words that the name of the recording, or the title, holds, upper and lower case alike.
+        kind: Of this kind.
     """
 
     sequence_id: UUID | None = None
-    kind: str | None = None
     states: Sequence[str] = ()
     created_by: UUID | None = None
     batch_id: UUID | None = None
     search: str | None = None
+    kind: str | None = None
 
     def apply(self, query: Select[Any]) -> Select[Any]:
         for column, wanted in (

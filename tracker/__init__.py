@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from tracker.model.blend_model import BlendModel
     from tracker.model.default_hand import default_hand
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
+    from tracker.model.mano_files import load_mano, save_mano
     from tracker.model.untrained_hand import untrained_hand
     from tracker.registration.anatomy import make_anatomical_prior
     from tracker.registration.options import RegistrationOptions
@@ -126,6 +127,7 @@ _HOMES = {
     "LabelSet": "tracker.label_formats.label_set",
     "list_image_names": "tracker.label_formats.image_names",
     "load_annotations": "tracker.capture.annotations",
+    "load_mano": "tracker.model.mano_files",
     "load_blend_model": "tracker.model.blend_files",
     "load_registration": "tracker.registration.registration_files",
     "load_scan": "tracker.capture.scan",
@@ -148,6 +150,7 @@ _HOMES = {
     "render_overlay": "tracker.tracking.frame_view",
     "run_import": "tracker.capture.import_run",
     "save_annotations": "tracker.capture.annotations",
+    "save_mano": "tracker.model.mano_files",
     "save_blend_model": "tracker.model.blend_files",
     "save_label_files": "tracker.label_formats.label_files",
     "save_registration": "tracker.registration.registration_files",
@@ -261,6 +264,7 @@ __all__ = [
     "list_image_names",
     "load_annotations",
     "load_blend_model",
+    "load_mano",
     "load_registration",
     "load_scan",
     "load_sequence",
@@ -277,6 +281,7 @@ __all__ = [
     "save_annotations",
     "save_blend_model",
     "save_label_files",
+    "save_mano",
     "save_registration",
     "save_scan",
     "save_sequence_json",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from tracker.model.pose_blend import PoseBlend
 from tracker.model.skeleton import Array, Skeleton
 
 
@@ -67,6 +68,7 @@ class ArticulatedModel:
         hand: Hand landmarks, or None for an object.
         shape: Shape basis, or None where the shape is fixed.
         provenance: Where the model came from, licence, what was done to it.
+        pose_blend: How its surface changes with the pose, or None where it is only skinned.
     """
 
     name: str
@@ -77,12 +79,14 @@ class ArticulatedModel:
     hand: HandParts | None = None
     shape: ShapeBasis | None = None
     provenance: dict[str, str] = field(default_factory=dict)
+    pose_blend: PoseBlend | None = None
 
     def __post_init__(self) -> None:
         num_vertices = len(self.vertices)
         assert self.vertices.shape == (num_vertices, 3)
         assert self.faces.ndim == 2 and self.faces.shape[1] == 3
         assert self.skinning_weights.shape == (num_vertices, self.skeleton.num_bones)
+        assert self.pose_blend is None or len(self.pose_blend.directions) == num_vertices
 
     @property
     def num_dofs(self) -> int:

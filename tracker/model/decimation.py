@@ -12,6 +12,7 @@ from scipy.spatial import KDTree
 
 from tracker.errors import ModelFileError, TrackerError
 from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
+from tracker.model.pose_blend import PoseBlend
 from tracker.model.skeleton import Array
 
 Faces = npt.NDArray[np.int64]
@@ -75,6 +76,7 @@ def decimate(model: ArticulatedModel, max_faces: int, posed: Array | None = None
         skinning_weights=limit_weights(points.interpolate(model.skinning_weights)),
         hand=None if model.hand is None else _transfer_hand(model.hand, points, landmarks, len(surface)),
         shape=None if model.shape is None else _transfer_shape(model.shape, points),
+        pose_blend=None if model.pose_blend is None else _transfer_blend(model.pose_blend, points),
     )
 
 
@@ -221,6 +223,11 @@ def _transfer_hand(
         fingertips=tuple(carry(ids) for ids in hand.fingertips),
         finger_parts={name: carry(ids) for name, ids in hand.finger_parts.items()},
     )
+
+
+def _transfer_blend(blend: PoseBlend, points: SurfacePoints) -> PoseBlend:
+    flat = points.interpolate(blend.directions.reshape(len(blend.directions), -1))
+    return replace(blend, directions=flat.reshape(len(flat), 3, -1))
 
 
 def _transfer_shape(shape: ShapeBasis, points: SurfacePoints) -> ShapeBasis:

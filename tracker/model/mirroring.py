@@ -8,6 +8,7 @@ import numpy as np
 
 from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
+from tracker.model.pose_blend import PoseBlend
 from tracker.model.skeleton import Array
 
 MIRROR = np.array([1.0, -1.0, 1.0])
@@ -36,8 +37,14 @@ def mirror(model: ArticulatedModel) -> ArticulatedModel:
         if hand is None
         else replace(hand, side=OTHER_SIDE[hand.side], joint_offsets=hand.joint_offsets * MIRROR + 0.0),
         shape=None if shape is None else replace(shape, vertices=shape.vertices * MIRROR, joints=shape.joints * MIRROR),
+        pose_blend=None if model.pose_blend is None else _mirror_blend(model.pose_blend),
         provenance={**model.provenance, "mirrored": "no" if model.provenance.get("mirrored") == "yes" else "yes"},
     )
+
+
+def _mirror_blend(blend: PoseBlend) -> PoseBlend:
+    elements = np.tile(np.outer(MIRROR, MIRROR).ravel(), len(blend.bones))
+    return replace(blend, directions=blend.directions * MIRROR[:, None] * elements)
 
 
 def mirror_pose(pose: Array) -> Array:

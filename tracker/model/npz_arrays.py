@@ -29,6 +29,15 @@ def read_npz_arrays(path: Path) -> dict[str, npt.NDArray]:
     return _read_archive(path, _read_member)
 
 
+def list_npz_arrays(path: Path) -> set[str]:
+    """Names of the arrays of an .npz file; none where it is no archive."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return {member.filename.removesuffix(".npy") for member in archive.infolist()[:MAX_MEMBERS]}
+    except (zipfile.BadZipFile, OSError, EOFError, struct.error, NotImplementedError, ValueError):
+        return set()
+
+
 def read_foreign_npz(path: Path) -> dict[str, npt.NDArray]:
     """All arrays of numbers and texts of another program's .npz file; pickled objects in it are left out, unread.
 

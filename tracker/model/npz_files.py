@@ -14,6 +14,7 @@ from tracker.errors import ModelFileError
 from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.model.npz_arrays import NpzFields, read_npz_arrays
+from tracker.model.pose_blend import PoseBlend
 from tracker.model.skeleton import Array, Skeleton
 
 FORMAT = "handloom-model"
@@ -62,6 +63,8 @@ def save_npz_model(model: ArticulatedModel, path: Path) -> None:
             "shape_lower": model.shape.lower,
             "shape_upper": model.shape.upper,
         }
+    if model.pose_blend is not None:
+        arrays |= {"blend_bones": model.pose_blend.bones, "blend_directions": model.pose_blend.directions}
     write_npz_arrays(path, arrays)
 
 
@@ -72,7 +75,12 @@ def load_npz_model(path: Path) -> ArticulatedModel:
         ModelFileError: With what was found and what is needed.
     """
     path = Path(path)
-    fields = NpzFields(path, read_npz_arrays(path))
+    return read_npz_model(NpzFields(path, read_npz_arrays(path)))
+
+
+def read_npz_model(fields: NpzFields) -> ArticulatedModel:
+    """A model from the arrays of its file."""
+    path = fields.path
     form = fields.texts("format", 2)
     if form != (FORMAT, VERSION):
         raise ModelFileError(path, f"format {' '.join(form)[:60]}", f"{FORMAT} {VERSION}")
@@ -87,6 +95,7 @@ def load_npz_model(path: Path) -> ArticulatedModel:
         hand=_read_hand(fields, len(vertices), len(bone_names)) if "hand_side" in fields else None,
         shape=_read_shape(fields, len(vertices), len(bone_names)) if "shape_names" in fields else None,
         provenance=read_provenance(fields),
+        pose_blend=_read_blend(fields, len(vertices), len(bone_names)) if "blend_bones" in fields else None,
     )
 
 
@@ -183,6 +192,15 @@ def _read_shape(fields: NpzFields, num_vertices: int, num_bones: int) -> ShapeBa
     vertices = fields.floats("shape_vertices", (count, num_vertices, 3), MAX_COORDINATE)
     joints = fields.floats("shape_joints", (count, num_bones, 3), MAX_COORDINATE)
     return ShapeBasis(names, vertices, joints, lower, upper)
+
+
+def _read_blend(fields: NpzFields, num_vertices: int, num_bones: int) -> PoseBlend:
+    bones = fields.integers("blend_bones", (-1,), 1, num_bones)
+    directions = fields.floats("blend_directions", (num_vertices, 3, 9 * len(bones)), MAX_COORDINATE)
+    if "hand_side" not in fields or len(set(bones.tolist())) != len(bones):
+        found = "pose blend shapes of no hand, or of one bone twice"
+        raise ModelFileError(fields.path, found, "those of a hand's bones")
+    return PoseBlend(bones, directions)
 
 
 def read_provenance(fields: NpzFields) -> dict[str, str]:

@@ -12,6 +12,7 @@ from tracker.geometry import se3
 from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel
 from tracker.model.decimation import is_watertight
 from tracker.model.kinematics import SceneArrays, move_bones_into, normals_into, skin_into
+from tracker.model.pose_blend import PoseBlendArrays, add_pose_blend, join_pose_blends, stack_pose_blend
 
 Array = npt.NDArray[np.float64]
 
@@ -119,6 +120,32 @@ class Scene:
     def arrays(self) -> SceneArrays:
         return _stack(self)
 
+    @cached_property
+    def pose_blends(self) -> PoseBlendArrays | None:
+        """How surfaces at rest change with the pose; None where they do not."""
+        parts = []
+        for model, vs, bs, ls in zip(
+            self.models, self.vertex_slices, self.bone_slices, self.landmark_slices, strict=True
+        ):
+            if model.pose_blend is None:
+                continue
+            assert model.hand is not None, "only hands have pose blend shapes"
+            sources, places = np.arange(vs.stop - vs.start), np.arange(vs.start, vs.stop)
+            marks = np.flatnonzero(model.hand.joint_vertices >= 0)
+            sources = np.concatenate([sources, model.hand.joint_vertices[marks]])
+            places = np.concatenate([places, ls.start + marks])
+            parts.append(stack_pose_blend(model.pose_blend, sources, places, model.skeleton.parents, bs.start))
+        return join_pose_blends(parts) if parts else None
+
+    def arrays_at(self, Ms: Array) -> SceneArrays:
+        """The scene's arrays with the surfaces at rest as they are at a pose, given by the bones' motions (B, 3, 4)."""
+        blends = self.pose_blends
+        if blends is None:
+            return self.arrays
+        rest = self.arrays.vertices.copy()
+        add_pose_blend(rest, Ms, np.empty((len(Ms), 9)), blends)
+        return self.arrays._replace(vertices=rest)
+
     def rest_pose(self) -> Array:
         """(D,) every model as in its file."""
         return np.zeros(self.num_dofs)
@@ -134,7 +161,7 @@ class Scene:
         normals = np.zeros_like(vertices)
         pose = np.ascontiguousarray(pose, dtype=np.float64)
         move_bones_into(Ms, twists, arrays, pose)
-        skin_into(vertices, bone_vertices, arrays, Ms)
+        skin_into(vertices, bone_vertices, self.arrays_at(Ms), Ms)
         normals_into(normals, vertices, arrays.faces)
         return PosedScene(self, pose, Ms, twists, vertices, bone_vertices, normals)
 

@@ -26,7 +26,10 @@ Array = npt.NDArray[np.float64]
 FEW = 4
 """With fewer frames than this the prior grows: pose and shape of one frame explain each other away."""
 
-COARSE = ("size", "finger_length", "finger_thickness", "palm_thickness", "palm_width", "thumb_length", "forearm_length")
+COARSE = (
+    *("size", "finger_length", "finger_thickness", "palm_thickness", "palm_width", "thumb_length", "forearm_length"),
+    *("shape_1", "shape_2", "shape_3", "shape_4", "shape_5"),
+)
 """What is fitted first; the rest says too little in depth while these are wrong."""
 
 MARK_ALONG = {"wrist": 0.012, "thumb_cmc": 0.006, "tip": 0.0015, "": 0.003}

@@ -4,9 +4,20 @@ from __future__ import annotations
 
 import argparse
 
-from tracker.cli import bench, calibrate, evaluate, register, synthesize, track, train_detector, train_model, warm_up
+from tracker.cli import (
+    bench,
+    calibrate,
+    evaluate,
+    register,
+    synthesize,
+    synthesize_scans,
+    track,
+    train_detector,
+    train_model,
+    warm_up,
+)
 
-COMMANDS = (track, register, calibrate, evaluate, synthesize, train_detector, train_model, warm_up)
+COMMANDS = (track, register, calibrate, evaluate, synthesize, synthesize_scans, train_detector, train_model, warm_up)
 
 
 def add_commands(subparsers: argparse._SubParsersAction) -> argparse._SubParsersAction:

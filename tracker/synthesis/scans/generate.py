@@ -118,7 +118,7 @@ def generate_scan(
     seen = scan_surface(vertices, faces, is_kept, options.scanner, rng)
     R, t = (_random_rotation(rng), rng.uniform(-0.1, 0.1, 3)) if options.is_moved else (np.eye(3), np.zeros(3))
     colors = paint(seen.faces >= len(truth.surface_faces), subject, rng)
-    name = f"subject{subject:02d}_{pose_name}_{side}_{seed}"
+    name = scan_name(subject, pose_name, side, seed)
     return GeneratedScan(
         Scan(seen.points @ R.T + t, seen.normals @ R.T, colors=colors, name=name),
         truth.vertices @ R.T + t,
@@ -129,6 +129,10 @@ def generate_scan(
         pose_name,
         side,
     )
+
+
+def scan_name(subject: int, pose_name: str, side: str, seed: int) -> str:
+    return f"subject{subject:02d}_{pose_name}_{side}_{seed}"
 
 
 def _arrange(

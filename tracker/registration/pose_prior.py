@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tracker.model.blend_limits import turn_jacobian
+
 Array = npt.NDArray[np.float64]
 
 
@@ -41,7 +43,7 @@ class PosePrior:
         is_beyond = beyond != 0.0
         limits = self.axes[is_beyond] / self.limit_deviation
         excess = beyond[is_beyond] / self.limit_deviation
-        turn = find_left_inverses(theta)
+        turn = turn_jacobian(theta)
         rows = np.concatenate([self.root, limits])
         J = np.einsum("rka,kab->rkb", rows.reshape(len(rows), -1, 3), turn).reshape(len(rows), -1)
         r = np.concatenate([residual, excess])
@@ -54,17 +56,6 @@ class PosePrior:
         angles = self.axes @ flat
         beyond = (np.maximum(angles - self.high, 0.0) + np.maximum(self.low - angles, 0.0)) / self.limit_deviation
         return float(residual @ residual + beyond @ beyond)
-
-
-def find_left_inverses(theta: Array) -> Array:
-    """(K, 3, 3) d θ / d δ for exp(δ) exp(θ): inverse left Jacobians of SO(3)."""
-    angles = np.linalg.norm(theta, axis=1)
-    K = np.zeros((len(theta), 3, 3))
-    K[:, 0, 1], K[:, 0, 2], K[:, 1, 2] = -theta[:, 2], theta[:, 1], -theta[:, 0]
-    K -= K.transpose(0, 2, 1)
-    half = np.maximum(0.5 * angles, 1e-6)
-    scale = np.where(angles < 1e-4, 1.0 / 12.0, (1.0 - half / np.tan(half)) / np.maximum(angles, 1e-6) ** 2)
-    return np.eye(3) - 0.5 * K + scale[:, None, None] * (K @ K)
 
 
 def make_gaussian_prior(base: PosePrior, mean: Array, covariance: Array, strength: float = 1.0) -> PosePrior:

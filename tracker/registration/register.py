@@ -12,9 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.scan import MAX_POINTS, Scan
+from tracker.model.blend_limits import blend_limits
 from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.blend_model import BlendModel
-from tracker.registration.anatomy import find_joint_axes, make_anatomical_prior
+from tracker.registration.anatomy import make_anatomical_prior
 from tracker.registration.free_fit import FreeFit, FreeSurface
 from tracker.registration.hand_state import HandState
 from tracker.registration.model_fit import Evaluation, ModelFit
@@ -55,7 +56,7 @@ def prepare_tools(model: BlendModel, prior: PosePrior | None = None) -> Tools:
     if key not in _tools or _tools[key][0] is not model or _tools[key][1] is not prior:
         right = model if model.side == "right" else mirror_blend(model)
         fit = ModelFit(right, prior or make_anatomical_prior(right))
-        tools = Tools(right, digest_model(right), fit, FreeFit(fit), find_joint_axes(right)[0][:, 0])
+        tools = Tools(right, digest_model(right), fit, FreeFit(fit), blend_limits(right).axes[:, 0])
         _tools[key] = (model, prior, tools)
         while len(_tools) > 4:
             _tools.popitem(last=False)

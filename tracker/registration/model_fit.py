@@ -33,8 +33,8 @@ class FitSettings:
         to_scan: Weight of distances from the model's vertices to the scan, against those from the scan to the model.
         pose_weight: λ_θ of [R17] Eq. 5.
         shape_weight: λ_β.
-        is_rigid: Only root and shape move.
         tolerance: Ends when a step brings less than this share of the cost.
+        back: So many vertices at most, evenly spread, look for the scan.
     """
 
     sigma_mm: float
@@ -42,8 +42,8 @@ class FitSettings:
     to_scan: float = 0.0
     pose_weight: float = 1.0
     shape_weight: float = 1.0
-    is_rigid: bool = False
     tolerance: float = 1e-3
+    back: int = 100_000
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,8 @@ class ModelFit:
         self.model = model
         self.prior = prior
         self.search = SurfaceSearch(model.template, model.faces)
-        self.inner = np.flatnonzero(~self.search.is_rim_vertex).astype(np.int64)
-        """Vertices off the rim, which look for the scan."""
+        self.inner = _spread(model.template, ~self.search.is_rim_vertex)
+        """Vertices off the rim, which look for the scan; any first of them lie evenly spread."""
         K = len(model.parents) - 1
         self.scales = np.concatenate([np.full(3, 0.3), np.full(3, 0.02), np.full(3 * K, 0.3), np.ones(model.num_shape)])
 
@@ -131,14 +131,15 @@ class ModelFit:
         back_weights = back_offsets = np.zeros(0)
         back_normals = np.zeros((0, 3))
         if settings.to_scan > 0.0:
-            mine = vertices[self.inner]
+            inner = self.inner[: settings.back]
+            mine = vertices[inner]
             surface = scan.surface
             distances, ids = surface.tree.query(mine, distance_upper_bound=reach)
             is_near = np.asarray(ids < len(surface.points))
             ids = np.where(is_near, ids, 0)
             towards = mine - surface.points[ids]
             normals = surface.normals[ids]
-            mine_normals = find_unit_normals(vertices, self.search.faces)[self.inner]
+            mine_normals = find_unit_normals(vertices, self.search.faces)[inner]
             looks = np.asarray(np.einsum("nd,nd->n", normals, mine_normals) > MIN_COSINE)
             has_normal = np.asarray(normals.any(axis=1))
             along = np.where(has_normal, np.einsum("nd,nd->n", towards, normals), distances)
@@ -149,8 +150,9 @@ class ModelFit:
             square = sigma * sigma
             share = np.where(is_used, square / (square + np.where(is_near, distances, 0.0) ** 2), 0.0)
             rho = np.where(is_used, np.where(is_near, distances, 0.0) ** 2 * share, saturated(reach, sigma))
-            data += settings.to_scan * MM * MM * float(rho.sum())
-            back_weights = settings.to_scan * share * share
+            strength = settings.to_scan * len(self.inner) / len(inner)
+            data += strength * MM * MM * float(rho.sum())
+            back_weights = strength * share * share
         cost = data + settings.pose_weight * self.prior.cost(state.pose[1:])
         cost += settings.shape_weight * float(state.shape @ state.shape)
         return Evaluation(state, posed, matches, weights, back_weights, back_offsets, back_normals, cost, data)
@@ -166,7 +168,7 @@ class ModelFit:
             JtJ, Jtr, J, corners, matches.weights, matches.directions, -matches.offsets, MM * MM * here.weights
         )
         if len(here.back_weights):
-            ids = np.repeat(self.inner[:, None], 3, axis=1).astype(np.int32)
+            ids = np.repeat(self.inner[: len(here.back_weights), None], 3, axis=1).astype(np.int32)
             shares = np.zeros((len(ids), 3))
             shares[:, 0] = 1.0
             add_model_rows(JtJ, Jtr, J, ids, shares, here.back_normals, here.back_offsets, MM * MM * here.back_weights)
@@ -178,11 +180,6 @@ class ModelFit:
         shape_ids = np.arange(last, size)
         JtJ[shape_ids, shape_ids] += settings.shape_weight
         Jtr[shape_ids] += settings.shape_weight * here.state.shape
-        if settings.is_rigid:
-            JtJ[first:last] = 0.0
-            JtJ[:, first:last] = 0.0
-            Jtr[first:last] = 0.0
-            JtJ[np.arange(first, last), np.arange(first, last)] = 1.0
         JtJ[np.arange(6), np.arange(6)] += 1e-6 * max(float(JtJ.diagonal()[:6].max()), 1e-9)
         return JtJ, Jtr
 
@@ -190,3 +187,15 @@ class ModelFit:
 def saturated(reach: float, sigma: float) -> float:
     """Cost of a point that nothing lies within `reach` of."""
     return reach * reach * sigma * sigma / (reach * reach + sigma * sigma)
+
+
+def _spread(vertices: Array, wanted: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
+    """Ids of the wanted vertices, each next one the farthest from all before it."""
+    ids = np.flatnonzero(wanted)
+    points = vertices[ids]
+    order = [0]
+    distances = np.linalg.norm(points - points[0], axis=1)
+    for _ in range(len(ids) - 1):
+        order.append(int(np.argmax(distances)))
+        distances = np.minimum(distances, np.linalg.norm(points - points[order[-1]], axis=1))
+    return ids[order].astype(np.int64)

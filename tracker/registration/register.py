@@ -23,7 +23,7 @@ from tracker.registration.options import RegistrationOptions
 from tracker.registration.pose_prior import PosePrior
 from tracker.registration.registration import Registration, RegistrationStart, digest_model, digest_scan
 from tracker.registration.scan_points import ScanPoints, arrange_points, find_hand_points
-from tracker.registration.start import find_starts
+from tracker.registration.start import StartSearch
 from tracker.registration.verdict import judge, refuse
 from tracker.registration.vertex_fit import fit_to_vertices
 
@@ -44,7 +44,7 @@ class Tools:
     model_digest: str
     fit: ModelFit
     free: FreeFit
-    flexion_axes: Array
+    starts: StartSearch
 
 
 _tools: OrderedDict[tuple[int, int], tuple[BlendModel, PosePrior | None, Tools]] = OrderedDict()
@@ -55,8 +55,9 @@ def prepare_tools(model: BlendModel, prior: PosePrior | None = None) -> Tools:
     key = (id(model), id(prior))
     if key not in _tools or _tools[key][0] is not model or _tools[key][1] is not prior:
         right = model if model.side == "right" else mirror_blend(model)
-        fit = ModelFit(right, prior or make_anatomical_prior(right))
-        tools = Tools(right, digest_model(right), fit, FreeFit(fit), blend_limits(right).axes[:, 0])
+        limits = blend_limits(right)
+        fit = ModelFit(right, prior or make_anatomical_prior(right, limits))
+        tools = Tools(right, digest_model(right), fit, FreeFit(fit), StartSearch(fit, limits))
         _tools[key] = (model, prior, tools)
         while len(_tools) > 4:
             _tools.popitem(last=False)
@@ -152,7 +153,7 @@ def _begin(
         return tools.fit.evaluate(state, scans[start.side].first(count), settings), start.side, scans
     sides = (options.side,) if options.side else ("right", "left")
     scans = {side: points if side == "right" else points.mirrored() for side in sides}
-    found = find_starts(tools.fit, scans, tools.flexion_axes, lambda share: tell("start", 0.6 * share))
+    found = tools.starts.find(scans, lambda share: tell("start", 0.6 * share))
     return found[0].evaluation, found[0].side, scans
 
 

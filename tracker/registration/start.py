@@ -10,146 +10,150 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
-from tracker.model.blend_model import BlendModel
+from tracker.model.blend_limits import BlendLimits
 from tracker.registration.hand_state import HandState
 from tracker.registration.model_fit import Evaluation, FitSettings, ModelFit
+from tracker.registration.nearest_grid import NearestGrid, build_nearest_grid
+from tracker.registration.rigid_search import Placing, StiffHand, place_stiffly
 from tracker.registration.scan_points import ScanPoints
+from tracker.registration.start_poses import CURLS, START_POSES, THUMBS, curl_finger, make_start_pose, turn_thumb
+from tracker.registration.vertex_normals import find_unit_normals
 
 Array = npt.NDArray[np.float64]
 
-CURLS = ((8.0, 10.0, 5.0), (40.0, 45.0, 25.0), (78.0, 92.0, 50.0))
-"""Degrees of flexion of the three joints of a finger: straight, half bent, a fist."""
+FEW, SOME, MORE = 200, 500, 1000
+"""Points that are fitted stiffly, coarsely and finely."""
 
-RIGID = FitSettings(40.0, 3, to_scan=0.5, is_rigid=True, tolerance=1e-2)
-RIGID_FINE = FitSettings(25.0, 3, to_scan=0.5, is_rigid=True, tolerance=1e-2)
-COARSE = FitSettings(20.0, 8, to_scan=0.7, tolerance=3e-3)
-MIDDLE = FitSettings(8.0, 6, to_scan=0.7, tolerance=3e-3)
-FINE = FitSettings(10.0, 6, to_scan=0.7, tolerance=2e-3)
-FINEST = FitSettings(4.0, 8, to_scan=0.7, tolerance=1e-3)
+KEPT_STIFF, KEPT_COARSE = 10, 3
+"""Candidates that go on."""
+
+COARSE = (FitSettings(20.0, 6, 0.7, tolerance=5e-3, back=250), FitSettings(8.0, 6, 0.7, tolerance=5e-3, back=250))
+FINE = (FitSettings(10.0, 6, 0.7, tolerance=3e-3, back=250), FitSettings(4.0, 8, 0.7, tolerance=2e-3, back=250))
 JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=0.3)
-
-RIGID_POINTS, COARSE_POINTS, FINE_POINTS = 250, 500, 1000
-KEPT_RIGID, KEPT_COARSE = 10, 3
 
 
 @dataclass(frozen=True)
 class Start:
-    """A state that may be right: its cost a vertex, mm², the side and all of its evaluation."""
+    """A state that may be right: its cost a vertex, mm², the side, and all of its evaluation."""
 
     cost: float
     side: str
     evaluation: Evaluation
 
 
-def find_starts(
-    fit: ModelFit,
-    scans: dict[str, ScanPoints],
-    flexion_axes: Array,
-    tell: Callable[[float], None] = lambda share: None,
-) -> list[Start]:
-    """States of the hand, best first.
+class StartSearch:
+    """Looks for a hand; what depends on the model alone is worked out once.
 
     Args:
         fit: The right-handed model.
-        scans: The points for each side to try, mirrored for "left".
-        flexion_axes: (K, 3) of the joints behind the root.
-        tell: Is told the share that is done.
+        limits: Its joints.
     """
-    found: list[Start] = []
-    sides = tuple(scans)
-    candidates = []
-    for number, side in enumerate(sides):
-        few = scans[side].first(RIGID_POINTS)
-        for state in _list_candidates(fit.model, few, flexion_axes):
-            first = fit.fit(state, few, RIGID)
-            candidates.append((fit.fit(first.state, few, RIGID_FINE, first.matches.faces), side))
-        tell(0.4 * (number + 1) / len(sides))
-    candidates.sort(key=lambda candidate: candidate[0].data_cost)
-    fitted = []
-    for side in sides:
-        few = scans[side].first(COARSE_POINTS)
-        for candidate, of in [c for c in candidates if c[1] == side][:KEPT_RIGID]:
-            first = fit.fit(candidate.state, few, COARSE)
-            second = fit.fit(first.state, few, MIDDLE, first.matches.faces)
-            fitted.append((second, of))
-    tell(0.6)
-    fitted.sort(key=lambda candidate: candidate[0].data_cost)
-    for side in sides:
-        some = scans[side].first(FINE_POINTS)
-        for candidate, _ in [c for c in fitted if c[1] == side][:KEPT_COARSE]:
-            found.append(refine(fit, some, candidate.state, side))
-    tell(0.8)
-    found.sort(key=lambda item: item.cost)
-    best = found[0]
-    found.append(bend_fingers(fit, scans[best.side].first(FINE_POINTS), best, flexion_axes))
-    found.sort(key=lambda item: item.cost)
-    tell(1.0)
-    return found
 
+    def __init__(self, fit: ModelFit, limits: BlendLimits) -> None:
+        self.fit, self.limits = fit, limits
+        self.poses = [make_start_pose(limits, number) for number in range(len(START_POSES))]
+        self.stiff: list[StiffHand] = []
+        self.roots: list[Array] = []
+        for pose in self.poses:
+            posed = fit.model.pose_at(pose)
+            grid = build_nearest_grid(posed.vertices.copy(), find_unit_normals(posed.vertices, fit.search.faces))
+            self.stiff.append(StiffHand(grid, fit.search.is_rim_vertex, fit.inner[:FEW]))
+            self.roots.append(posed.joints[0].copy())
+        template = fit.model.template
+        growth = (template - self.roots[0]).ravel()
+        directions = fit.model.shape_directions.reshape(-1, fit.model.num_shape)
+        self.growth = np.linalg.solve(
+            directions.T @ directions + 1e-4 * len(template) * np.eye(fit.model.num_shape) * 1e-2, directions.T @ growth
+        )
+        """(S,) shape by which the hand grows by its own size."""
 
-def refine(fit: ModelFit, scan: ScanPoints, state: HandState, side: str) -> Start:
-    """A state fitted closely, with its cost."""
-    first = fit.fit(state, scan, FINE)
-    second = fit.fit(first.state, scan, FINEST, first.matches.faces)
-    judged = fit.evaluate(second.state, scan, JUDGE, second.matches.faces)
-    return Start(judged.cost / len(fit.model.template), side, judged)
+    def find(self, scans: dict[str, ScanPoints], tell: Callable[[float], None] = lambda share: None) -> list[Start]:
+        """States of the hand, best first.
 
+        Args:
+            scans: The points for each side to try, mirrored for "left".
+            tell: Is told the share that is done.
+        """
+        fitted: list[Start] = []
+        grid: NearestGrid | None = None
+        for number, (side, scan) in enumerate(scans.items()):
+            if grid is None:
+                grid = build_nearest_grid(scan.surface.points, scan.surface.normals)
+            else:
+                grid = grid.mirrored()
+            for state in self._place(scan, grid):
+                fitted.append(self._fit(state, scan.first(SOME), side, COARSE))
+            tell(0.5 * (number + 1) / len(scans))
+        found = []
+        for side, scan in scans.items():
+            best = sorted((start for start in fitted if start.side == side), key=lambda start: start.cost)
+            for start in best[:KEPT_COARSE]:
+                found.append(self._fit(start.evaluation.state, scan.first(MORE), side, FINE))
+        tell(0.7)
+        found.sort(key=lambda start: start.cost)
+        best = self._try_fingers(scans[found[0].side].first(MORE), found[0])
+        tell(1.0)
+        return [best, *found]
 
-def bend_fingers(fit: ModelFit, scan: ScanPoints, best: Start, flexion_axes: Array) -> Start:
-    """The best state after each finger was started anew, straight, half bent and folded."""
-    chains = find_chains(fit.model)
-    for chain in chains:
-        for curl in CURLS:
+    def _place(self, scan: ScanPoints, grid: NearestGrid) -> list[HandState]:
+        """The best stiff hands, no two nearly alike."""
+        few = scan.first(FEW)
+        middle = scan.points.mean(axis=0)
+        axes = _find_axes(scan.points)
+        placed: list[tuple[Placing, int]] = []
+        for number, stiff in enumerate(self.stiff):
+            vertices = stiff.grid.points
+            own_middle, own_axes = vertices.mean(axis=0), _find_axes(vertices)
+            Rs = np.stack([axes @ turn @ own_axes.T for turn in ROTATIONS])
+            ts = middle - Rs @ own_middle
+            # with a forearm, the hand's middle lies from the points' middle towards the fingers
+            forward = Rs @ np.array([1.0, 0.0, 0.0])
+            Rs, ts = np.concatenate([Rs, Rs]), np.concatenate([ts, ts + 0.025 * forward])
+            placed += [(placing, number) for placing in place_stiffly(stiff, grid, few.points, few.normals, Rs, ts)]
+        placed.sort(key=lambda item: item[0].cost)
+        chosen: list[tuple[Placing, int]] = []
+        for placing, number in placed:
+            if all(_differ(placing, other) or number != of for other, of in chosen):
+                chosen.append((placing, number))
+                if len(chosen) == KEPT_STIFF:
+                    break
+        return [self._to_state(placing, number) for placing, number in chosen]
+
+    def _to_state(self, placing: Placing, number: int) -> HandState:
+        pose = self.poses[number].copy()
+        pose[0] = Rotation.from_matrix(placing.R).as_rotvec()
+        root = self.roots[number]
+        shape = np.clip((placing.size - 1.0) * self.growth, -2.0, 2.0)
+        return HandState(pose, shape, placing.size * placing.R @ root + placing.t - root)
+
+    def _fit(self, state: HandState, scan: ScanPoints, side: str, stages: tuple[FitSettings, ...]) -> Start:
+        seeds = None
+        for settings in stages:
+            evaluation = self.fit.fit(state, scan, settings, seeds)
+            state, seeds = evaluation.state, evaluation.matches.faces
+        judged = self.fit.evaluate(state, scan, JUDGE, seeds)
+        return Start(judged.cost / len(self.fit.model.template), side, judged)
+
+    def _try_fingers(self, scan: ScanPoints, best: Start) -> Start:
+        """The best state after each finger was started anew in several curls, and the thumb in several turns."""
+        for finger in ("little", "ring", "middle", "index", "thumb"):
             state = best.evaluation.state
-            pose = state.pose.copy()
-            for bone, degrees in zip(chain, curl, strict=False):
-                pose[bone] = np.radians(degrees) * flexion_axes[bone - 1]
-            if np.abs(pose - state.pose).max() < 0.2:
-                continue
-            tried = refine(fit, scan, HandState(pose, state.shape, state.translation), best.side)
-            if tried.cost < best.cost - 1e-3:
-                best = tried
-    return best
+            if finger == "thumb":
+                poses = [turn_thumb(self.limits, state.pose, turn) for turn in THUMBS]
+            else:
+                poses = [curl_finger(self.limits, state.pose, finger, curl) for curl in CURLS]
+            for pose in poses:
+                if np.abs(pose - state.pose).max() < 0.25:
+                    continue
+                tried = self._fit(HandState(pose, state.shape, state.translation), scan, best.side, FINE)
+                if tried.cost < best.cost - 1e-3:
+                    best = tried
+        return best
 
 
-def find_chains(model: BlendModel) -> list[list[int]]:
-    """Bones of each finger, from the palm out."""
-    chains = []
-    for bone in np.flatnonzero(np.asarray(model.parents) == 0):
-        chain = [int(bone)]
-        while len(below := np.flatnonzero(np.asarray(model.parents) == chain[-1])):
-            chain.append(int(below[0]))
-        chains.append(chain)
-    return chains
-
-
-def _list_candidates(model: BlendModel, scan: ScanPoints, flexion_axes: Array) -> list[HandState]:
-    """Three poses in all 24 ways to lay axes on axes, in the middle and pulled back from the forearm."""
-    states = []
-    middle = scan.points.mean(axis=0)
-    axes = _find_axes(scan.points)
-    rotations = _list_rotations()
-    for curl in CURLS:
-        pose = np.zeros((len(model.parents), 3))
-        for chain in find_chains(model):
-            for bone, degrees in zip(chain, curl, strict=False):
-                share = 0.4 if chain[0] >= 13 else 1.0
-                pose[bone] = np.radians(share * degrees) * flexion_axes[bone - 1]
-        posed = model.pose_at(pose)
-        own_axes = _find_axes(posed.vertices)
-        own_middle = posed.vertices.mean(axis=0)
-        root = posed.joints[0]
-        for turn in rotations:
-            R = axes @ turn @ own_axes.T
-            turned = pose.copy()
-            turned[0] = _log(R)
-            placed = R @ (own_middle - root) + root
-            states.append(HandState(turned, np.zeros(model.num_shape), middle - placed))
-    return states
-
-
-def _log(R: Array) -> Array:
-    return Rotation.from_matrix(R).as_rotvec()
+def _differ(one: Placing, other: Placing) -> bool:
+    cosine = 0.5 * (float(np.einsum("ij,ij->", one.R, other.R)) - 1.0)
+    return cosine < np.cos(0.3) or float(np.linalg.norm(one.t - other.t)) > 0.02
 
 
 def _find_axes(points: Array) -> Array:
@@ -163,12 +167,16 @@ def _find_axes(points: Array) -> Array:
 
 
 def _list_rotations() -> list[Array]:
-    """The 24 rotations that take axes to axes."""
+    """The 24 rotations that take axes to axes, and those turned by 45 degrees about a diagonal."""
     found = []
+    half = Rotation.from_rotvec(np.radians(45.0) / np.sqrt(3.0) * np.ones(3)).as_matrix()
     for order in permutations(range(3)):
         for signs in product((1.0, -1.0), repeat=3):
             R = np.zeros((3, 3))
             R[np.arange(3), order] = signs
             if np.linalg.det(R) > 0.0:
-                found.append(R)
+                found += [R, R @ half]
     return found
+
+
+ROTATIONS = _list_rotations()

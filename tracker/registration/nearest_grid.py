@@ -35,7 +35,7 @@ class NearestGrid(NamedTuple):
 
 
 def build_nearest_grid(points: Array, normals: Array) -> NearestGrid:
-    """A grid around points (N, 3) m with normals (N, 3); cells grow where the points lie further apart than a hand is."""
+    """A grid around points (N, 3) m with normals (N, 3)."""
     low, high = points.min(axis=0) - MARGIN, points.max(axis=0) + MARGIN
     counts = np.clip(np.ceil((high - low) / CELL).astype(np.int64), 1, 120)
     axes = [low[k] + CELL * (np.arange(counts[k]) + 0.5) for k in range(3)]

@@ -16,8 +16,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "synthesize-scans",
         help="make scans of hands with known truth",
-        description="Make scans of hands of 37 people in 51 poses, whose true surface no blend model makes. OUT/scans gets a PLY and OUT/truth an npz for each, OUT/scans.json lists them. Scans that "
-        "are there already are kept: an interrupted run goes on where it stopped.",
+        description="Make scans of hands of 37 people in 51 poses, whose true surface no blend model makes. OUT/scans "
+        "gets a PLY and OUT/truth an npz for each, OUT/scans.json lists them. Scans that are there already are kept: "
+        "an interrupted run goes on where it stopped.",
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
     parser.add_argument(

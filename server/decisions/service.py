@@ -175,7 +175,7 @@ def describe_decisions(session: Session, rows: Sequence[DecisionRow]) -> list[De
         return []
     people = find_names(session, (row.account_id for row in rows))
     query = select(HandModelRow.id, HandModelRow.name).where(HandModelRow.id.in_({row.model_id for row in rows}))
-    models = dict(session.execute(query).tuples().all())
+    models = {model.id: model.name for model in session.execute(query)}
     about = {row.registration_id for row in rows}
     standing = {
         entry["id"]

@@ -158,11 +158,10 @@ class _Names:
         scans = {row.scan_id for row in rows if isinstance(row, RegistrationRow)}
         models = {row.model_id for row in rows if isinstance(row, RegistrationRow | DecisionRow)}
         self._people = find_names(session, (row.account_id for row in rows if isinstance(row, DecisionRow)))
-        self._scans = dict(
-            session.execute(select(ScanRow.id, ScanRow.name).where(ScanRow.id.in_(scans))).tuples().all()
-        )
+        query = select(ScanRow.id, ScanRow.name).where(ScanRow.id.in_(scans))
+        self._scans = {scan.id: scan.name for scan in session.execute(query)}
         query = select(HandModelRow.id, HandModelRow.name).where(HandModelRow.id.in_(models))
-        self._models = dict(session.execute(query).tuples().all())
+        self._models = {model.id: model.name for model in session.execute(query)}
 
     def describe(self, kind: Kind, row: object) -> LineageItem:
         if isinstance(row, ScanRow):

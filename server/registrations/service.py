@@ -180,7 +180,7 @@ def describe_registrations(
         return []
     scans = {row.id: row for row in session.scalars(select(ScanRow).where(ScanRow.id.in_({r.scan_id for r in rows})))}
     query = select(HandModelRow.id, HandModelRow.name).where(HandModelRow.id.in_({row.model_id for row in rows}))
-    models = dict(session.execute(query).tuples().all())
+    models = {model.id: model.name for model in session.execute(query)}
     return [_describe(row, scans[row.scan_id], models[row.model_id], account_id) for row in rows]
 
 

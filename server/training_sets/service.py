@@ -119,7 +119,7 @@ def create_training_set(
             "The rule chooses no registration. Accept some on the page Curate first, or widen the rule: "
             f"{rule.model_dump_json()}."
         )
-    models = dict(session.execute(select(HandModelRow.id, HandModelRow.digest)).tuples().all())
+    models = {model.id: model.digest for model in session.execute(select(HandModelRow.id, HandModelRow.digest))}
     data = write_canonical(chosen, models)
     digest = hashlib.sha256(data).hexdigest()
     same = select(TrainingSetRow).where(TrainingSetRow.digest == digest).order_by(TrainingSetRow.created_at)
@@ -190,10 +190,9 @@ def get_training_set(session: Session, set_id: uuid.UUID) -> TrainingSetRow:
 def describe_training_sets(session: Session, rows: Sequence[TrainingSetRow]) -> list[TrainingSetOut]:
     """Training sets as the API gives them."""
     people = find_names(session, (row.created_by for row in rows))
-    query = select(HandModelRow.training_set_id, func.count()).group_by(HandModelRow.training_set_id)
-    models = dict(
-        session.execute(query.where(HandModelRow.training_set_id.in_([row.id for row in rows]))).tuples().all()
-    )
+    query = select(HandModelRow.training_set_id, func.count().label("models")).group_by(HandModelRow.training_set_id)
+    query = query.where(HandModelRow.training_set_id.in_([row.id for row in rows]))
+    models = {found.training_set_id: found.models for found in session.execute(query)}
     own = TrainingSetOut.model_fields.keys() - {"model_count", "created_by_name"}
     return [
         TrainingSetOut.model_validate(

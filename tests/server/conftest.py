@@ -30,13 +30,20 @@ from server.storage import Storage
 from server.tracks.service import add_track
 from tests.postgres import NoPostgresError, run_postgres
 from tracker import (
+    Registration,
+    Scan,
     TrackOptions,
     add_commands,
     join_chunks,
     load_annotations,
+    load_scan,
     load_sequence,
+    register_scan,
+    save_registration,
+    save_scan,
     start_tracking,
     track_frames,
+    untrained_hand,
 )
 
 MakeRecording = Callable[..., Path]
@@ -266,6 +273,30 @@ def rendered(tmp_path_factory: pytest.TempPathFactory) -> Path:
     args = parser.parse_args(command)
     assert args.run(args) == 0
     return folder
+
+
+@dataclass(frozen=True)
+class GeneratedHand:
+    """A scan with its registration, on disk."""
+
+    scan: Scan
+    found: Registration
+    folder: Path
+
+
+@pytest.fixture(scope="session")
+def generated_hand(tmp_path_factory: pytest.TempPathFactory) -> GeneratedHand:
+    """A scan of few points, `hand.ply`, registered once for all tests."""
+    from tracker.synthesis.scans.generate import ScanOptions, generate_scan
+    from tracker.synthesis.scans.scanner import Scanner
+
+    options = ScanOptions(scanner=Scanner(num_points=3000), has_forearm=False)
+    folder = tmp_path_factory.mktemp("hand")
+    save_scan(generate_scan(3, 0, "right", 5, options).scan, folder / "hand.ply")
+    scan = load_scan(folder / "hand.ply")
+    found = register_scan(scan, untrained_hand("right"))
+    save_registration(found, folder)
+    return GeneratedHand(scan, found, folder)
 
 
 @pytest.fixture(scope="session")

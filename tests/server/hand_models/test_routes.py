@@ -7,6 +7,8 @@ from fastapi.testclient import TestClient
 
 def test_the_default_hands_are_offered_with_ids_that_stay(client: TestClient) -> None:
     right, left, untrained = client.get("/api/v1/hand-models").json()["items"]
+    assert (untrained["kind"], untrained["registers"], untrained["has_pose_shapes"]) == ("untrained", True, False)
+    assert client.get(f"/api/v1/hand-models/{untrained['id']}").json() == untrained
     assert (right["side"], left["side"]) == ("right", "left")
     assert right["id"] == client.get("/api/v1/hand-models").json()["items"][0]["id"] != left["id"]
     for model in (right, left):

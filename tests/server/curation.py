@@ -1,0 +1,127 @@
+"""Scans and registrations to be curated: one hand that was registered for real, laid into the studio many times."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+from server.hand_models.storing import UNTRAINED_ID, resolve_model
+from server.jobs.modelling import measure_errors
+from server.registrations import service as registrations
+from server.registrations.models import RegistrationRow
+from server.scans.models import ScanRow
+from server.storage.digest import compute_digest
+from tests.server.conftest import GeneratedHand, Studio
+from tests.server.teams.conftest import Person, join
+from tracker import Scan
+
+__all__ = ["Curation", "curation", "join", "make_ball", "send_scans"]
+
+API = "/api/v1"
+
+
+def make_ball(seed: int = 0, count: int = 2000, radius: float = 0.08, colors: np.ndarray | None = None) -> Scan:
+    """Points on a ball, of a size that a hand may have; each seed gives another file."""
+    directions = np.random.default_rng(seed).normal(size=(count, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    return Scan(radius * directions, directions, None, colors, "ball")
+
+
+def send_scans(studio: Studio, files: dict[str, bytes], headers: dict[str, str] | None = None, **options: Any) -> Any:
+    """Upload files as scans; the answer as it comes."""
+    parts = [("files", (name, data)) for name, data in files.items()]
+    return studio.client.post(f"{API}/scans", files=parts, data={"options": json.dumps(options)}, headers=headers)
+
+
+@dataclass
+class Curation:
+    """A studio with registered scans, and people who decide about them."""
+
+    studio: Studio
+    hand: GeneratedHand
+    rob: Person
+    eve: Person
+    lead: Person
+
+    def register(self, name: str, score: float = 0.1, verdict: str = "good", **columns: Any) -> uuid.UUID:
+        """Lay the registered hand into the studio under a name; gives the id of the registration."""
+        storage, id_ = self.studio.app.state.storage, uuid.uuid4()
+        folder = storage.folder(registrations.AREA, id_)
+        shutil.copytree(self.hand.folder, folder)
+        kept = np.ones(len(self.hand.scan.points), bool)
+        vertex_error, point_error = measure_errors(self.hand.found, self.hand.scan, kept)
+        np.savez(folder / registrations.ERRORS, vertex_error_mm=vertex_error, point_error_mm=point_error)
+        with self.studio.database.writing() as session:
+            model = resolve_model(session, storage, columns.pop("model_id", None))
+            scan_id = columns.pop("scan_id", None) or self._add_scan(session, name, columns)
+            row = RegistrationRow(
+                id=id_,
+                scan_id=scan_id,
+                model_id=model.id,
+                round=model.round + 1,
+                crop_revision=1,
+                digest=compute_digest(folder / registrations.FILE),
+                side=columns.get("side", "right"),
+                verdict=verdict,
+                score=score,
+                reasons=[],
+                scan_to_mesh_mm=self.hand.found.scan_to_mesh_mm,
+                seconds=1.0,
+                decision=None,
+            )
+            registrations.add_registration(session, row)
+        return id_
+
+    def _add_scan(self, session: Any, name: str, columns: dict[str, Any]) -> uuid.UUID:
+        path = self.hand.folder / "hand.ply"
+        row = ScanRow(
+            name=name,
+            collection=columns.get("collection", "hands"),
+            subject=columns.get("subject", "Ada"),
+            pose=columns.get("pose", "flat"),
+            side=None,
+            file="scan.ply",
+            digest=compute_digest(path),
+            byte_count=path.stat().st_size,
+            point_count=len(self.hand.scan.points),
+            face_count=0,
+            has_colors=False,
+            extent_m=[0.1, 0.1, 0.1],
+            notes=[],
+        )
+        session.add(row)
+        session.flush()
+        folder = self.studio.app.state.storage.folder("scans", row.id)
+        folder.mkdir()
+        shutil.copyfile(path, folder / row.file)
+        return row.id
+
+    def decide(self, person: Person, id_: uuid.UUID | str, decision: str = "accept", **more: Any) -> Any:
+        """The answer as it comes."""
+        body = {"decision": decision, "operation_id": str(uuid.uuid4())} | more
+        return person.send("POST", f"/registrations/{id_}/decisions", body)
+
+    def undo(self, person: Person, decision_id: str, operation_id: str | None = None) -> Any:
+        body = {"operation_id": operation_id or str(uuid.uuid4())}
+        return person.send("POST", f"/decisions/{decision_id}/undo", body)
+
+    def queue(self, person: Person, **params: Any) -> list[str]:
+        """Names of the scans of a queue."""
+        return [item["scan"]["name"] for item in person.get("/registrations", **params)["items"]]
+
+    def look(self, person: Person, id_: uuid.UUID | str) -> Any:
+        return person.get(f"/registrations/{id_}")
+
+
+@pytest.fixture
+def curation(studio: Studio, join: Callable[..., Person], generated_hand: GeneratedHand) -> Curation:
+    people = join("rob", "reviewer"), join("eve", "reviewer"), join("lea", "lead")
+    assert UNTRAINED_ID
+    return Curation(studio, generated_hand, *people)

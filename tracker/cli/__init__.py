@@ -8,6 +8,7 @@ from tracker.cli import (
     bench,
     calibrate,
     evaluate,
+    model_loop,
     register,
     synthesize,
     synthesize_scans,
@@ -17,7 +18,18 @@ from tracker.cli import (
     warm_up,
 )
 
-COMMANDS = (track, register, calibrate, evaluate, synthesize, synthesize_scans, train_detector, train_model, warm_up)
+COMMANDS = (
+    track,
+    register,
+    calibrate,
+    evaluate,
+    synthesize,
+    synthesize_scans,
+    train_detector,
+    train_model,
+    model_loop,
+    warm_up,
+)
 
 
 def add_commands(subparsers: argparse._SubParsersAction) -> argparse._SubParsersAction:

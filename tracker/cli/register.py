@@ -58,7 +58,7 @@ def register(args: argparse.Namespace) -> list[dict[str, Any]]:
         jobs.append((path, args.out / name, args.model, begin, options, args.metres_per_unit))
     line = ProgressLine(f"registering {len(jobs)} scans")
     results: list[dict[str, Any]] = []
-    for result in _run(jobs, args.processes, args.again):
+    for result in run_jobs(jobs, args.processes, args.again):
         results.append(result)
         line.show(len(results) / len(jobs), f"{result['scan']}: {result['verdict']}")
     if all("error" in result for result in results):
@@ -99,7 +99,7 @@ def name_scans(paths: list[Path]) -> Iterator[tuple[Path, str]]:
         yield path, name
 
 
-def _run(jobs: list[Job], processes: int, again: bool) -> Iterator[dict[str, Any]]:
+def run_jobs(jobs: list[Job], processes: int, again: bool) -> Iterator[dict[str, Any]]:
     if processes == 1:
         for job in jobs:
             yield register_one(job, again)

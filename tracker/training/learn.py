@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +15,9 @@ from tracker.training.joints import fit_joints
 from tracker.training.motion import compute_features, fill_skinning, sparsen_skinning
 from tracker.training.options import TrainingOptions
 from tracker.training.pose_fit import Poses, Rig, fit_poses, start_poses
-from tracker.training.pose_shapes import PoseShapes, compute_costs, fit_pose_shapes
+from tracker.training.pose_shapes import compute_costs, fit_pose_shapes
 from tracker.training.regressor import fit_joint_regressor
+from tracker.training.ridge_choice import choose_ridge
 from tracker.training.spaces import align_rigidly
 from tracker.training.templates import fit_templates, unpose, weigh_by_pose
 
@@ -43,7 +44,8 @@ class Learnt:
         poses: Of the registrations.
         rig: Skinning and pose blend shapes.
         regressor: (B, V).
-        shapes: The last blend shapes and how their weight was chosen; None without.
+        ridge: Weight that the blend shapes were learnt with; None without.
+        ridges: Error of each weight that was tried, m.
     """
 
     templates: Array
@@ -51,7 +53,8 @@ class Learnt:
     poses: Poses
     rig: Rig
     regressor: csr_array
-    shapes: PoseShapes | None = None
+    ridge: float | None = None
+    ridges: dict[float, float] = field(default_factory=dict)
 
 
 def begin(
@@ -130,16 +133,18 @@ def improve(
     poses = fit_poses(
         poses, targets, templates, owners, joints, rig, 3, options.threads, lambda share: progress("poses", share)
     )
-    shapes = None
+    ridge, ridges = learnt.ridge, learnt.ridges
     if options.with_pose_shapes:
         progress("pose blend shapes", 0.0)
         costs = compute_costs(measure_from_joints(templates.mean(0), data.faces, regressor))
-        rest = unpose(poses, targets, owners, joints, rig)
-        ridges = options.ridges if learnt.shapes is None or is_last else (learnt.shapes.ridge,)
-        shapes = fit_pose_shapes(find_features(poses), rest, owners, data.people, costs, ridges)
-        rig = replace(rig, directions=shapes.directions)
+        rest, features = unpose(poses, targets, owners, joints, rig), find_features(poses)
+        if ridge is None or is_last:
+            ridge, ridges = choose_ridge(
+                options.ridges, targets, owners, data.people, poses, joints, rig, features, rest, costs, options.threads
+            )
+        rig = replace(rig, directions=fit_pose_shapes(features, rest, owners, costs, ridge))
     templates = fit_templates(poses, targets, owners, even, joints, rig)
-    return Learnt(templates, joints, poses, rig, regressor, shapes)
+    return Learnt(templates, joints, poses, rig, regressor, ridge, ridges)
 
 
 def find_features(poses: Poses) -> Array:

@@ -8,8 +8,6 @@ templates and blend shapes need not wait for one another.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
@@ -22,17 +20,8 @@ REACH = 0.015
 FLOOR = 0.05
 """The part of the cost that does not depend on the distance."""
 
-RIDGES = (1e-7, 3e-7, 1e-6, 3e-6, 1e-5, 3e-5, 1e-4)
+RIDGES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Weights to choose from, per registration."""
-
-
-@dataclass(frozen=True)
-class PoseShapes:
-    """directions (V, 3, 9K) m; ridge: the weight that was chosen; errors: by weight, on people left out, m."""
-
-    directions: Array
-    ridge: float
-    errors: dict[float, float]
 
 
 def compute_costs(distances: Array) -> Array:
@@ -40,48 +29,23 @@ def compute_costs(distances: Array) -> Array:
     return np.repeat(((distances / REACH) ** 2 + FLOOR).T, 9, axis=1)
 
 
-def fit_pose_shapes(
-    features: Array,
-    rest: Array,
-    owners: Integers,
-    people: Integers,
-    costs: Array,
-    ridges: tuple[float, ...] = RIDGES,
-    folds: int = 4,
-) -> PoseShapes:
-    """Blend shapes that explain how unposed registrations of one person differ.
+def fit_pose_shapes(features: Array, rest: Array, owners: Integers, costs: Array, ridge: float) -> Array:
+    """Directions (V, 3, 9K), m, that explain how unposed registrations of one hand differ.
 
     Args:
         features: (N, 9K) of Eq. 4.
         rest: (N, V, 3) registrations unposed, m.
-        owners: (N,) which template they are of.
-        people: (N,) whose they are: a person may have two hands.
+        owners: (N,) which hand they are of.
         costs: (V, 9K).
-        ridges: To choose from by leaving people out; a single one is taken as it is.
-        folds: So many groups of people.
+        ridge: Weight of the costs, per registration.
     """
     phi, d = _centre(features, owners), _centre(rest.reshape(len(rest), -1), owners)
-    names, places = np.unique(people, return_inverse=True)
-    groups = places % min(folds, len(names))
-    errors: dict[float, float] = {}
-    ridge = ridges[0]
-    if len(ridges) > 1 and len(names) > 1:
-        sums = dict.fromkeys(ridges, 0.0)
-        for group in np.unique(groups):
-            train, test = groups != group, groups == group
-            G, S = phi[train].T @ phi[train], phi[train].T @ d[train]
-            for weight in ridges:
-                P = _solve(G, S, weight * train.sum() * costs)
-                sums[weight] += float(((d[test] - phi[test] @ P) ** 2).sum())
-        errors = {weight: float(np.sqrt(total / d.size * 3)) for weight, total in sums.items()}
-        ridge = min(sums, key=lambda weight: sums[weight])
     P = _solve(phi.T @ phi, phi.T @ d, ridge * len(phi) * costs)
-    directions = np.ascontiguousarray(P.T.reshape(rest.shape[1], 3, -1))
-    return PoseShapes(directions, ridge, errors)
+    return np.ascontiguousarray(P.T.reshape(rest.shape[1], 3, -1))
 
 
 def _centre(values: Array, owners: Integers) -> Array:
-    """Each person's mean taken off."""
+    """Each hand's mean taken off."""
     centred = values.copy()
     for person in np.unique(owners):
         centred[owners == person] -= centred[owners == person].mean(0)

@@ -50,10 +50,8 @@ def describe_training(
             {"hand": str(hands[n]), "pose": str(used.pose_names[n]), "residual_mm": round(float(residuals[n]), 4)}
             for n in worst
         ],
-        "ridge": None if learnt.shapes is None else learnt.shapes.ridge,
-        "ridges_mm": {}
-        if learnt.shapes is None
-        else {f"{ridge:g}": round(1e3 * error, 5) for ridge, error in learnt.shapes.errors.items()},
+        "ridge": learnt.ridge,
+        "ridges_mm": {f"{ridge:g}": round(1e3 * error, 5) for ridge, error in learnt.ridges.items()},
         "vertices_per_joint": round(learnt.regressor.nnz / learnt.joints.shape[1], 1),
         "joint_regressor_mm": round(1e3 * float(away.mean()), 4),
         "shape_space": [round(float(share), 5) for share in shape_space.explained],

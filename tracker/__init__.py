@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from tracker.label_formats.orders import JOINT_ORDERS
     from tracker.model.articulated import ArticulatedModel
     from tracker.model.blend_files import load_blend_model, save_blend_model
+    from tracker.model.blend_mirroring import mirror_blend
     from tracker.model.blend_model import BlendModel
     from tracker.model.default_hand import default_hand
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
@@ -173,6 +174,7 @@ _HOMES = {
     "TrackSetup": "tracker.tracking.setup",
     "TrackState": "tracker.tracking.state",
     "make_training_set": "tracker.training.training_set",
+    "mirror_blend": "tracker.model.blend_mirroring",
     "train_model": "tracker.training.train",
     "triangulate": "tracker.capture.triangulation",
     "Training": "tracker.training.train",
@@ -273,6 +275,7 @@ __all__ = [
     "make_anatomical_prior",
     "make_gaussian_prior",
     "make_training_set",
+    "mirror_blend",
     "pack_files",
     "read_label_files",
     "register_scan",

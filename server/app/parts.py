@@ -23,6 +23,7 @@ from server.imports.lifespan import clean_imports
 from server.jobs import routes as jobs
 from server.lineage import routes as lineage
 from server.quality import routes as quality
+from server.registrations import model_routes
 from server.registrations import routes as registrations
 from server.registrations.service import find_newest
 from server.scans import routes as scans
@@ -64,6 +65,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     snapshot_routes.router,
     scans.router,
     registrations.router,
+    model_routes.router,
     decisions.router,
     training_sets.router,
     lineage.router,

@@ -22,7 +22,7 @@ const ACTS = [
   { kind: "unsure", label: "Unsure", icon: IconHelp },
 ] as const;
 
-const mm = (value: number): string => `${formatNumber(value, 2)} mm`;
+const mm = (value: number | null): string => (value === null ? "–" : `${formatNumber(value, 2)} mm`);
 
 /** What is judged, what the program thinks of it, and what one can say. */
 export function DecisionPanel({ item, mine, reasons, onDecide }: DecisionPanelProps) {

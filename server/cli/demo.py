@@ -36,6 +36,8 @@ class Sample:
 
 
 SAMPLE = Sample("Sample: open and close", "open-close", 60)
+SCANS = ("--subjects", "1,2", "--poses", "flat_spread,tip_pinch,fist", "--sides", "right", "--points", "20000")
+SCANS_NAME = "Sample scans"
 CAMERAS_SAMPLE = Sample("Sample: a pinch in three cameras", "pinch", 20, 3)
 
 MARKER = "demo.json"
@@ -45,8 +47,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "demo",
         help="run the studio with a sample project",
-        description="Run the studio with samples: a rendered recording, annotated here and there, with its track, and "
-        "a recording of three cameras. They are made once; what you do with them stays.",
+        description="Run the studio with samples: a rendered recording, annotated here and there, with its track, "
+        "a recording of three cameras, and a few scans to register and judge. They are made once; what you do with "
+        "them stays.",
     )
     add_serve_arguments(parser)
     parser.set_defaults(run=run_guarded(run))
@@ -64,7 +67,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def make_sample(studio: OpenStudio) -> None:
-    """Import the sample recordings and queue a job that tracks the first, unless that was done before."""
+    """Import the samples, and queue jobs that track the first and register the scans, unless that was done before."""
+    from server.accounts.models import LOCAL_ACCOUNT_ID
+    from server.jobs.making import make_register_job
+    from server.jobs.schemas import RegisterCreate
     from server.jobs.service import check_track_params, create_job
 
     marker = studio.storage.root / MARKER
@@ -72,8 +78,10 @@ def make_sample(studio: OpenStudio) -> None:
         return
     row = _import_sample(studio, SAMPLE)
     _import_sample(studio, CAMERAS_SAMPLE)
+    _import_scans(studio)
     with studio.database.writing() as session:
         job = create_job(session, "track", row.id, check_track_params(session, row.id, {}))
+        make_register_job(session, studio.storage, RegisterCreate(collection=SCANS_NAME), LOCAL_ACCOUNT_ID)
     unfinished = marker.with_name(f".{uuid.uuid4().hex}.json")
     unfinished.write_text(json.dumps({"sequence_id": str(row.id), "job_id": str(job.id)}))
     os.replace(unfinished, marker)
@@ -88,18 +96,34 @@ def _import_sample(studio: OpenStudio, sample: Sample) -> SequenceRow:
         return import_recording(studio, recording, {"name": sample.name})
 
 
+def _import_scans(studio: OpenStudio) -> None:
+    from server.accounts.models import LOCAL_ACCOUNT_ID
+    from server.scans.adding import ScanOptions, add_scans
+
+    sys.stderr.write("handloom: making sample scans ...\n")
+    with tempfile.TemporaryDirectory(prefix="handloom-demo-") as folder:
+        made = Path(folder) / "scans"
+        _run_tracker("synthesize-scans", *SCANS, "--out", str(made))
+        options = ScanOptions(collection=SCANS_NAME)
+        add_scans(studio.database, studio.storage, made, options, LOCAL_ACCOUNT_ID, moves=True)
+
+
 def _render(sample: Sample, folder: Path) -> None:
-    """Render it with the tracker's own command."""
+    what = ["--motion", sample.motion, "--frames", f"0:{sample.frames}", "--cameras", str(sample.cameras)]
+    _run_tracker("synthesize", *what, "--out", str(folder))
+
+
+def _run_tracker(*command: str) -> None:
+    """One of the tracker's own commands; what it says goes to stderr."""
     from tracker import add_commands
 
     parser = argparse.ArgumentParser()
     add_commands(parser.add_subparsers(required=True))
-    what = ["--motion", sample.motion, "--frames", f"0:{sample.frames}", "--cameras", str(sample.cameras)]
-    args = parser.parse_args(["synthesize", *what, "--out", str(folder)])
+    args = parser.parse_args(command)
     with contextlib.redirect_stdout(sys.stderr):
         code = args.run(args)
     if code != 0:
-        raise CommandError("The sample recording could not be rendered.", code)
+        raise CommandError(f"The samples could not be made: {command[0]} ended with code {code}.", code)
 
 
 def _thin_annotations(path: Path) -> None:

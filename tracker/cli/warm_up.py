@@ -22,11 +22,18 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 def compile_kernels(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.evaluation.surface_distance import warm_up_distances
+    from tracker.registration.warm_up import warm_up_registration
     from tracker.tracking.warm_up import warm_up
+    from tracker.training.warm_up import warm_up_training
 
     began = time.monotonic()
     line = ProgressLine("compiling kernels")
-    warm_up(lambda stage, share: line.show(0.95 * share, stage))
+    warm_up(lambda stage, share: line.show(0.6 * share, stage))
+    line.show(0.6, "compiling the registration")
+    warm_up_registration()
+    line.show(0.8, "compiling the training")
+    warm_up_training()
+    line.show(0.95, "compiling the distances")
     warm_up_distances()
     line.show(1.0)
     return {"seconds": round(time.monotonic() - began, 2)}

@@ -1,0 +1,16 @@
+"""Compile, or load from the cache, the kernels of registration before somebody waits for them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tracker.capture.scan import Scan
+from tracker.model.untrained_hand import untrained_hand
+from tracker.registration.register import register_scan
+from tracker.registration.vertex_normals import find_unit_normals
+
+
+def warm_up_registration() -> None:
+    """Register the model's own vertices once."""
+    model = untrained_hand()
+    register_scan(Scan(model.template, find_unit_normals(model.template, model.faces)), model)

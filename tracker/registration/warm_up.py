@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from tracker.capture.scan import Scan
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.register import register_scan

@@ -24,7 +24,7 @@ APART = 14e-3
 ASIDE = 2.0e-3
 """Skin is in front of a vertex that is at most so far beside its normal, m."""
 
-ROUNDS = 4
+ROUNDS = 6
 SMOOTHING = 3
 
 

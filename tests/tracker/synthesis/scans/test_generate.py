@@ -136,7 +136,7 @@ def test_no_part_of_a_hand_is_deep_inside_another(pose):
     angles = settle(subject, pose_angles(subject, POSES[POSE_NAMES.index(pose)]), POSES[POSE_NAMES.index(pose)].touches)
     vertices = deform(subject, angles).vertices
     depth = find_depths(vertices, vertex_normals(vertices, surface.faces), subject.vertices)
-    assert np.mean(depth > 1e-3) < 0.003
+    assert np.mean(depth > 1e-3) < 0.005
 
 
 @pytest.mark.parametrize("pose", FISTS)

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from tracker.label_formats.label_set import ExportedLabels, ImportedLabels, ImportHints, LabelSet
     from tracker.label_formats.orders import JOINT_ORDERS
     from tracker.model.articulated import ArticulatedModel
+    from tracker.model.blend_articulated import articulated_of
     from tracker.model.blend_files import load_blend_model, save_blend_model
     from tracker.model.blend_mirroring import mirror_blend
     from tracker.model.blend_model import BlendModel
@@ -91,6 +92,7 @@ _HOMES = {
     "ArticulatedModel": "tracker.model.articulated",
     "BlendModel": "tracker.model.blend_model",
     "Camera": "tracker.capture.camera",
+    "articulated_of": "tracker.model.blend_articulated",
     "check_import": "tracker.capture.import_check",
     "compare_tracks": "tracker.evaluation.comparison",
     "default_hand": "tracker.model.default_hand",
@@ -139,6 +141,7 @@ _HOMES = {
     "make_gaussian_prior": "tracker.registration.pose_prior",
     "MIN_FIT_JOINTS": "tracker.tracking.quick_fit",
     "ModelView": "tracker.tracking.frame_view",
+    "mirror_blend": "tracker.model.blend_mirroring",
     "pack_files": "tracker.label_formats.label_files",
     "PRESETS": "tracker.tracking.presets",
     "QuickFit": "tracker.tracking.quick_fit",
@@ -248,6 +251,7 @@ __all__ = [
     "Triangulation",
     "ViewAids",
     "add_commands",
+    "articulated_of",
     "check_import",
     "compare_tracks",
     "default_hand",

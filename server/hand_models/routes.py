@@ -3,19 +3,44 @@
 from __future__ import annotations
 
 import uuid
+from pathlib import Path
+from typing import Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Depends, Request
+from pydantic import ValidationError
 
 from server.accounts.audit import record_act
-from server.accounts.service import LeadAccount
-from server.database import SessionDep
+from server.accounts.service import AccountIdDep, LeadAccount, require_lead
+from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
-from server.errors import NotFoundError, error_responses
+from server.errors import InvalidError, NotFoundError, error_responses
 from server.hand_models import service, storing
-from server.hand_models.schemas import HandModelOut, HandModelReport, HandSkeleton
+from server.hand_models.schemas import HandModelOptions, HandModelOut, HandModelReport, HandSkeleton
+from server.storage import StorageDep
+from server.storage.upload import Upload, UploadLimits, work_on_upload
 from tracker import HAND_EDGES, HAND_JOINTS
 
 router = APIRouter(tags=["hands"], responses=error_responses())
+
+LIMITS = UploadLimits(files=1, total_bytes=1024**3)
+_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["files"],
+                    "properties": {
+                        "files": {"type": "string", "format": "binary", "description": "One .npz or .pkl."},
+                        "name": {"type": "string", "description": "Of the model; the file's when left out."},
+                        "side": {"type": "string", "enum": ["right", "left"]},
+                    },
+                }
+            }
+        },
+    }
+}
 
 
 @router.get("/hand-skeleton")
@@ -49,6 +74,35 @@ def get_hand_model_report(model_id: uuid.UUID, session: SessionDep) -> HandModel
     if row.report is None:
         raise NotFoundError(f"{row.name} was not trained here, so there is no report of its training.")
     return HandModelReport(report=row.report)
+
+
+@router.post(
+    "/hand-models",
+    status_code=201,
+    responses=error_responses(413, 507),
+    openapi_extra=_BODY,
+    dependencies=[Depends(require_lead)],
+)
+async def upload_hand_model(
+    request: Request, database: DatabaseDep, storage: StorageDep, account_id: AccountIdDep
+) -> HandModelOut:
+    """Upload a hand model: Handloom's own npz, or MANO's npz or pickle. A pickle is read and never run."""
+
+    def work(folder: Path, upload: Upload) -> HandModelOut:
+        if len(upload.names) != 1:
+            raise InvalidError(f"The upload holds {len(upload.names)} files; needed one model.")
+        try:
+            options = HandModelOptions.model_validate(
+                {key: text for key, text in upload.fields.items() if text.strip()}
+            )
+        except ValidationError as fault:
+            raise InvalidError(f"The form's {fault.errors()[0]['loc'][0]}: {fault.errors()[0]['msg']}.") from None
+        model = storing.read_upload(folder / upload.names[0], options.side)
+        with database.writing() as session:
+            row = storing.add_uploaded(session, storage, model, options.name or Path(upload.names[0]).stem, account_id)
+            return service.describe_hand_models(session, [row])[0]
+
+    return await work_on_upload(request, storage, "model_uploads", LIMITS, work)
 
 
 @router.delete("/hand-models/{model_id}", status_code=204, responses=error_responses(404))

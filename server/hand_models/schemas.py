@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import uuid
 from datetime import datetime
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import AfterValidator, BaseModel, Field
+
+
+def _check_name(name: str) -> str:
+    name = name.strip()
+    if not name or not name.isprintable():
+        raise ValueError("a name needs 1 to 200 printable characters")
+    return name
 
 
 class HandSkeleton(BaseModel):
@@ -44,6 +51,13 @@ class HandModelOut(BaseModel):
     registration_count: int = Field(default=0, description="Registrations by it.")
     created_at: datetime | None = Field(default=None, description="Null for those that come with Handloom.")
     created_by_name: str | None = None
+
+
+class HandModelOptions(BaseModel):
+    """What the file of a model does not tell."""
+
+    name: Annotated[str, Field(max_length=200), AfterValidator(_check_name)] | None = None
+    side: Literal["right", "left"] | None = None
 
 
 class HandModelReport(BaseModel):

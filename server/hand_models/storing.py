@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from server.errors import ConflictError
+from server.accounts.audit import record_act
+from server.errors import ConflictError, InvalidError
 from server.hand_models.models import HandModelRow
 from server.hand_models.schemas import HandModelOut
 from server.hand_models.service import AREA, FILE, NAMESPACE, get_hand_model, list_default_models
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 UNTRAINED_ID = uuid.uuid5(NAMESPACE, "untrained/right")
 UNTRAINED_NAME = "Untrained right hand"
+HAND_BONES = 16
 
 
 class DamagedModelError(ConflictError):
@@ -92,6 +94,56 @@ def resolve_model(session: Session, storage: Storage, model_id: uuid.UUID | None
             session.flush()
     except IntegrityError:  # somebody else used it first at this very moment
         return get_hand_model(session, UNTRAINED_ID)
+    return row
+
+
+def read_upload(path: Path, side: str | None) -> BlendModel:
+    """A model in a file that somebody sent: Handloom's own npz, or MANO's npz or pickle, which is read and never run.
+
+    Raises:
+        InvalidError: It is no hand that scans can be registered with.
+    """
+    from tracker import TrackerError, load_blend_model, load_mano
+
+    try:
+        model = load_blend_model(path)
+    except TrackerError as own:
+        try:
+            model = load_mano(path, side)
+        except TrackerError as foreign:
+            raise InvalidError(
+                f"{path.name} is no hand model. Read as Handloom's own: {_say(own, path)} Read as MANO's: "
+                f"{_say(foreign, path)} A model whose side its name does not tell needs the field `side`."
+            ) from None
+    if model.side not in ("right", "left") or model.num_bones != HAND_BONES:
+        raise InvalidError(
+            f"{path.name} holds a {model.side} with {model.num_bones} joints; needed a hand with MANO's {HAND_BONES}."
+        )
+    return model
+
+
+def _say(fault: Exception, path: Path) -> str:
+    return str(fault).replace(f"{path.parent}/", "").replace(str(path.parent), "")
+
+
+def add_uploaded(
+    session: Session, storage: Storage, model: BlendModel, name: str, account_id: uuid.UUID
+) -> HandModelRow:
+    """Store a model that somebody sent."""
+    model_id = uuid.uuid4()
+    row = HandModelRow(
+        id=model_id,
+        name=name,
+        kind="uploaded",
+        side=model.side,
+        digest=write_model(storage, model_id, model),
+        facts=describe_model(model),
+        report=None,
+        created_by=account_id,
+    )
+    session.add(row)
+    session.flush()
+    record_act(session, account_id, "hand_model.upload", "hand_model", model_id, sha256=row.digest)
     return row
 
 

@@ -133,9 +133,9 @@ def get_batch(batch_id: uuid.UUID, session: SessionDep) -> BatchOut:
 
 
 @router.get("/jobs/form")
-def get_job_form() -> JobForm:
+def get_job_form(session: SessionDep) -> JobForm:
     """Options of a tracking job, and presets: options that go together."""
-    return track_form()
+    return track_form(session)
 
 
 @router.get("/jobs/events", response_class=StreamingResponse, responses=EVENT_STREAM)

@@ -13,11 +13,15 @@ from sqlalchemy.orm import Session
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor
 from server.errors import ConflictError, InvalidError, NotFoundError
+from server.hand_models.service import get_hand_model
 from server.jobs.models import ENDED_STATES, JobLogRow, JobRow, WorkerRow
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
 
 KINDS = ("track", "register", "train", "loop")
+
+HAND_MODEL = "hand_model_id"
+"""Among the params of a tracking job: the tracker's options know no models of the studio."""
 
 LOG_PAGE = 1000
 
@@ -124,7 +128,19 @@ def check_track_params(session: Session, sequence_id: UUID, params: dict[str, An
     from tracker import TrackOptions
 
     get_sequence(session, sequence_id)
-    return TrackOptions.from_json(params).to_json()
+    own = {name: value for name, value in params.items() if name != HAND_MODEL}
+    return TrackOptions.from_json(own).to_json() | _check_hand_model(session, params.get(HAND_MODEL))
+
+
+def _check_hand_model(session: Session, value: Any) -> dict[str, str]:
+    """The id of a stored hand model as a param; none for the default hand."""
+    if value in ("", None):
+        return {}
+    try:
+        model_id = UUID(str(value))
+    except ValueError:
+        raise InvalidError(f"{HAND_MODEL} is {str(value)[:80]!r}; needed the id of a hand model, or nothing.") from None
+    return {HAND_MODEL: str(get_hand_model(session, model_id).id)}
 
 
 def cancel_job(session: Session, job_id: UUID) -> JobRow:

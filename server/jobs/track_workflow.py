@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import json
 import uuid
+from pathlib import Path
 from typing import Any
 from uuid import UUID
 
 from dbos import DBOS
 
 from server.annotations.service import export_annotations
+from server.hand_models.service import get_hand_model
+from server.hand_models.storing import find_file
 from server.jobs.run import JobRun, WorkerContext
+from server.jobs.service import HAND_MODEL
 from server.jobs.tracking import TrackingJob
 from server.tracks.service import add_track
 
@@ -66,7 +70,14 @@ class _TrackRun(JobRun):
     @property
     def job(self) -> TrackingJob:
         recording = self.context.storage.refresh("sequences", self._sequence_id)
-        return TrackingJob(recording, self.row.params, self.files)
+        return TrackingJob(recording, self.row.params, self.files, self._find_hand_model())
+
+    def _find_hand_model(self) -> Path | None:
+        model_id = self.row.params.get(HAND_MODEL)
+        if not model_id:
+            return None
+        with self.context.database.reading() as session:
+            return find_file(self.context.storage, get_hand_model(session, UUID(model_id), deleted_too=True))
 
     def snapshot(self) -> dict[str, Any]:
         """Keep the annotations as they are now: doing a step again must not see later ones."""

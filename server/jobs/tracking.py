@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 from server.jobs.files import JobFiles
 from server.jobs.progress import JobProgress
+from server.jobs.service import HAND_MODEL
 
 if TYPE_CHECKING:
-    from tracker import Sequence, TrackOptions
+    from tracker import ArticulatedModel, Sequence, TrackOptions
 
 log = logging.getLogger(__name__)
 
@@ -32,17 +33,28 @@ class TrackingJob:
     recording: Path
     params: dict[str, Any]
     files: JobFiles
+    hand_model: Path | None = None
+    """File of the hand model to track with; None for the default hand."""
 
     @property
     def options(self) -> TrackOptions:
         from tracker import TrackOptions
 
-        return TrackOptions.from_json(self.params)
+        return TrackOptions.from_json({name: value for name, value in self.params.items() if name != HAND_MODEL})
 
     def load_recording(self) -> Sequence:
         from tracker import load_sequence
 
         return load_sequence(self.recording)
+
+    def _load_hands(self) -> dict[str, ArticulatedModel] | None:
+        """Both hands of the chosen model."""
+        from tracker import articulated_of, load_blend_model, mirror_blend
+
+        if self.hand_model is None:
+            return None
+        model = load_blend_model(self.hand_model)
+        return {hand.side: articulated_of(hand) for hand in (model, mirror_blend(model))}
 
     def start(self, progress: JobProgress) -> dict[str, Any]:
         """Find the first pose and the shape; write the setup and the first state."""
@@ -54,7 +66,7 @@ class TrackingJob:
         sequence = self.load_recording()
         options = self.options
         annotations = load_annotations(self.files.annotations) if self.files.annotations.exists() else None
-        setup, state = start_tracking(sequence, options, None, annotations, progress.stage)
+        setup, state = start_tracking(sequence, options, self._load_hands(), annotations, progress.stage)
         self.files.write(self.files.setup, setup.save)
         self.files.write(self.files.state(0), state.save)
         frames = options.frame_range(sequence.frame_count)

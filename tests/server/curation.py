@@ -11,13 +11,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fastapi import FastAPI
+from sqlalchemy.orm import Session
 
+from server.decisions.schemas import DecisionMake
+from server.decisions.service import decide
 from server.hand_models.storing import UNTRAINED_ID, resolve_model
 from server.jobs.modelling import measure_errors
 from server.registrations import service as registrations
 from server.registrations.models import RegistrationRow
 from server.scans.models import ScanRow
+from server.scans.service import write_geometry_key
+from server.storage import Storage
 from server.storage.digest import compute_digest
+from server.training_sets.schemas import TrainingRule
+from server.training_sets.service import create_training_set
 from tests.server.conftest import GeneratedHand, Studio
 from tests.server.teams.conftest import Person, join
 from tracker import Scan
@@ -40,6 +48,80 @@ def send_scans(studio: Studio, files: dict[str, bytes], headers: dict[str, str] 
     return studio.client.post(f"{API}/scans", files=parts, data={"options": json.dumps(options)}, headers=headers)
 
 
+def add_registered(
+    app: FastAPI, hand: GeneratedHand, name: str, score: float = 0.1, verdict: str = "good", **columns: Any
+) -> uuid.UUID:
+    """Lay a registered hand into a studio under a name; gives the id of the registration."""
+    storage, id_ = app.state.storage, uuid.uuid4()
+    folder = storage.folder(registrations.AREA, id_)
+    shutil.copytree(hand.folder, folder)
+    kept = np.ones(len(hand.scan.points), bool)
+    vertex_error, point_error = measure_errors(hand.found, hand.scan, kept)
+    np.savez(folder / registrations.ERRORS, vertex_error_mm=vertex_error, point_error_mm=point_error)
+    with app.state.database.writing() as session:
+        model = resolve_model(session, storage, columns.pop("model_id", None))
+        row = RegistrationRow(
+            id=id_,
+            scan_id=columns.pop("scan_id", None) or _add_scan(session, storage, hand, name, columns),
+            model_id=model.id,
+            round=model.round + 1,
+            crop_revision=1,
+            digest=compute_digest(folder / registrations.FILE),
+            side=columns.get("side", "right"),
+            verdict=verdict,
+            score=score,
+            reasons=[],
+            scan_to_mesh_mm=hand.found.scan_to_mesh_mm,
+            seconds=1.0,
+            decision=None,
+        )
+        registrations.add_registration(session, row)
+    return id_
+
+
+def _add_scan(session: Session, storage: Storage, hand: GeneratedHand, name: str, columns: dict[str, Any]) -> uuid.UUID:
+    path = hand.folder / "hand.ply"
+    row = ScanRow(
+        name=name,
+        collection=columns.get("collection", "hands"),
+        subject=columns.get("subject", "Ada"),
+        pose=columns.get("pose", "flat"),
+        side=None,
+        file="scan.ply",
+        digest=compute_digest(path),
+        byte_count=path.stat().st_size,
+        point_count=len(hand.scan.points),
+        face_count=0,
+        has_colors=False,
+        extent_m=[0.1, 0.1, 0.1],
+        notes=[],
+    )
+    session.add(row)
+    session.flush()
+    folder = storage.folder("scans", row.id)
+    folder.mkdir()
+    shutil.copyfile(path, folder / row.file)
+    return row.id
+
+
+def add_curation(app: FastAPI, hand: GeneratedHand, account_id: uuid.UUID) -> dict[str, Any]:
+    """One of everything from scan to training set; their ids, as addresses name them."""
+    registration_id = add_registered(app, hand, "fed")
+    made = DecisionMake(decision="accept", operation_id=uuid.uuid4())
+    with app.state.database.writing() as session:
+        decision, row, _ = decide(session, registration_id, account_id, made)
+        chosen, _ = create_training_set(session, app.state.storage, "fed", TrainingRule(), account_id)
+        scan = session.get_one(ScanRow, row.scan_id)
+    return {
+        "scan_id": str(scan.id),
+        "key": write_geometry_key(scan.digest, 1),
+        "registration_id": str(registration_id),
+        "decision_id": str(decision.id),
+        "training_set_id": str(chosen.id),
+        "model_id": str(row.model_id),
+    }
+
+
 @dataclass
 class Curation:
     """A studio with registered scans, and people who decide about them."""
@@ -52,56 +134,7 @@ class Curation:
 
     def register(self, name: str, score: float = 0.1, verdict: str = "good", **columns: Any) -> uuid.UUID:
         """Lay the registered hand into the studio under a name; gives the id of the registration."""
-        storage, id_ = self.studio.app.state.storage, uuid.uuid4()
-        folder = storage.folder(registrations.AREA, id_)
-        shutil.copytree(self.hand.folder, folder)
-        kept = np.ones(len(self.hand.scan.points), bool)
-        vertex_error, point_error = measure_errors(self.hand.found, self.hand.scan, kept)
-        np.savez(folder / registrations.ERRORS, vertex_error_mm=vertex_error, point_error_mm=point_error)
-        with self.studio.database.writing() as session:
-            model = resolve_model(session, storage, columns.pop("model_id", None))
-            scan_id = columns.pop("scan_id", None) or self._add_scan(session, name, columns)
-            row = RegistrationRow(
-                id=id_,
-                scan_id=scan_id,
-                model_id=model.id,
-                round=model.round + 1,
-                crop_revision=1,
-                digest=compute_digest(folder / registrations.FILE),
-                side=columns.get("side", "right"),
-                verdict=verdict,
-                score=score,
-                reasons=[],
-                scan_to_mesh_mm=self.hand.found.scan_to_mesh_mm,
-                seconds=1.0,
-                decision=None,
-            )
-            registrations.add_registration(session, row)
-        return id_
-
-    def _add_scan(self, session: Any, name: str, columns: dict[str, Any]) -> uuid.UUID:
-        path = self.hand.folder / "hand.ply"
-        row = ScanRow(
-            name=name,
-            collection=columns.get("collection", "hands"),
-            subject=columns.get("subject", "Ada"),
-            pose=columns.get("pose", "flat"),
-            side=None,
-            file="scan.ply",
-            digest=compute_digest(path),
-            byte_count=path.stat().st_size,
-            point_count=len(self.hand.scan.points),
-            face_count=0,
-            has_colors=False,
-            extent_m=[0.1, 0.1, 0.1],
-            notes=[],
-        )
-        session.add(row)
-        session.flush()
-        folder = self.studio.app.state.storage.folder("scans", row.id)
-        folder.mkdir()
-        shutil.copyfile(path, folder / row.file)
-        return row.id
+        return add_registered(self.studio.app, self.hand, name, score, verdict, **columns)
 
     def decide(self, person: Person, id_: uuid.UUID | str, decision: str = "accept", **more: Any) -> Any:
         """The answer as it comes."""

@@ -28,13 +28,16 @@ from server.accounts.models import LOCAL_ACCOUNT_ID, Account
 from server.accounts.tries import FailedTries
 from server.app import create_app
 from server.app.openapi import write_document
+from server.hand_models.models import HandModelRow
 from server.imports.service import ImportDesk, import_recording
+from server.scans.models import ScanRow
 from server.sequences.models import SequenceRow
 from server.settings import Settings
 from server.storage import Storage
 from server.tracks.models import TrackRow
 from server.tracks.service import add_track
-from tests.server.conftest import BASE_URL
+from tests.server.conftest import BASE_URL, GeneratedHand
+from tests.server.curation import add_curation
 
 EXAMPLES = 8
 """Of each route; all routes together take less than a minute."""
@@ -78,11 +81,18 @@ class Fed:
         with self.app.state.database.writing() as session:
             session.execute(update(SequenceRow).values(deleted_at=None))
             session.execute(update(TrackRow).values(deleted_at=None))
+            session.execute(update(ScanRow).values(deleted_at=None))
+            session.execute(update(HandModelRow).values(deleted_at=None))
         self.app.state.failed_tries = FailedTries()
 
 
 @pytest.fixture(scope="module")
-def fed(rendered: Path, tracked_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Fed]:
+def fed(
+    rendered: Path,
+    tracked_folder: Path,
+    generated_hand: GeneratedHand,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[Fed]:
     app = create_app(Settings(data_dir=tmp_path_factory.mktemp("fed"), max_upload_bytes=200_000))
     with get_client(app) as client:
         storage: Storage = app.state.storage
@@ -109,6 +119,7 @@ def fed(rendered: Path, tracked_folder: Path, tmp_path_factory: pytest.TempPathF
             .json()
             .get("id", str(uuid.uuid4())),
         }
+        known |= add_curation(app, generated_hand, LOCAL_ACCOUNT_ID)
         schema = schemathesis.openapi.from_dict(app.openapi())
         schema.app = app
         yield Fed(app, schema, known)

@@ -40,7 +40,7 @@ def test_a_model_comes_in_as_it_goes_out(studio: Studio, tmp_path: Path, name: s
     right, left = load_mano(tmp_path / "MANO_RIGHT.pkl"), load_mano(tmp_path / "MANO_LEFT.pkl")
     assert (right.side, left.side) == ("right", "left")
     shape = np.ones(model.num_shape)
-    flip = np.array([-1.0, 1.0, 1.0])
+    flip = np.array([1.0, -1.0, 1.0])
     np.testing.assert_allclose(left.shaped(shape), right.shaped(shape) * flip, atol=1e-9)
 
 

@@ -41,8 +41,8 @@ class FreeSettings:
     coupling: float
     sigma_mm: float
     iterations: int
-    pose_weight: float = 0.1
-    shape_weight: float = 0.1
+    pose_weight: float = 1.0
+    shape_weight: float = 3.0
     tolerance: float = 1e-3
 
 
@@ -56,6 +56,11 @@ class FreeSurface:
     matches: Matches
     weights: Array
     cost: float
+
+    @property
+    def offset(self) -> Array:
+        """(3,) m from the middle of the model to that of the surface, which the coupling of edges leaves free."""
+        return (self.vertices - self.model_vertices).mean(axis=0)
 
 
 class FreeFit:
@@ -98,7 +103,7 @@ class FreeFit:
         for _ in range(settings.iterations):
             if system is None:
                 try:
-                    system = self._linearize(here, settings)
+                    system = self.linearize(here, settings)
                 except (SolveError, np.linalg.LinAlgError):
                     break
             longer = float(np.linalg.norm(system.newton)) > radius
@@ -143,7 +148,8 @@ class FreeFit:
         cost += settings.shape_weight * float(state.shape @ state.shape)
         return FreeSurface(vertices, state, model_vertices, matches, weights, cost)
 
-    def _linearize(self, here: FreeSurface, settings: FreeSettings) -> _System:
+    def linearize(self, here: FreeSurface, settings: FreeSettings) -> _System:
+        """The normal equations at a surface, solved."""
         return _System(self, here, settings)
 
 

@@ -41,7 +41,7 @@ class FitSettings:
     iterations: int
     to_scan: float = 0.0
     pose_weight: float = 1.0
-    shape_weight: float = 1.0
+    shape_weight: float = 10.0
     tolerance: float = 1e-3
     back: int = 100_000
 
@@ -91,7 +91,7 @@ class ModelFit:
         scales = self.scales
         for _ in range(settings.iterations):
             if step_parts is None:
-                JtJ, Jtr = self._linearize(here, scan, settings)
+                JtJ, Jtr = self.linearize(here, scan, settings)
                 H, g = JtJ * scales[:, None] * scales, Jtr * scales
                 try:
                     newton = -cho_solve(cho_factor(H, lower=True, check_finite=False), g, check_finite=False)
@@ -157,7 +157,8 @@ class ModelFit:
         cost += settings.shape_weight * float(state.shape @ state.shape)
         return Evaluation(state, posed, matches, weights, back_weights, back_offsets, back_normals, cost, data)
 
-    def _linearize(self, here: Evaluation, scan: ScanPoints, settings: FitSettings) -> tuple[Array, Array]:
+    def linearize(self, here: Evaluation, scan: ScanPoints, settings: FitSettings) -> tuple[Array, Array]:
+        """JtJ (P, P) and Jtr (P,), half the gradient, in the model's order of parameters."""
         model = self.model
         size = model.num_parameters
         J = here.posed.vertex_jacobian()

@@ -40,8 +40,8 @@ def build_nearest_grid(points: Array, normals: Array) -> NearestGrid:
     counts = np.clip(np.ceil((high - low) / CELL).astype(np.int64), 1, 120)
     axes = [low[k] + CELL * (np.arange(counts[k]) + 0.5) for k in range(3)]
     middles = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    _, ids = KDTree(points).query(middles, eps=0.1)
-    return NearestGrid(points, normals, ids.astype(np.int32).reshape(tuple(counts)), low)
+    ids = KDTree(points).query(middles, eps=0.1)[1]
+    return NearestGrid(points, normals, np.asarray(ids, dtype=np.int32).reshape(tuple(counts)), low)
 
 
 @njit(cache=True, nogil=True, inline="always")

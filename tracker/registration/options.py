@@ -20,6 +20,8 @@ class RegistrationOptions:
         prior: Of the pose, in place of the anatomical one: R17's pose-specific Gaussian, say.
         model_stages: Fits of pose and shape, each with the number of points it uses.
         free_stages: Fits of the free surface.
+        last_stage: Fit of the model from where the surface left it. Edges tell nothing of where the model lies, and
+            its shape was held back on the way.
     """
 
     side: str | None = None
@@ -35,7 +37,8 @@ class RegistrationOptions:
     free_stages: tuple[tuple[int, FreeSettings], ...] = field(
         default=(
             (5000, FreeSettings(1.0, 10.0, 3)),
-            (5000, FreeSettings(0.2, 7.0, 3, 0.05, 0.05)),
-            (15000, FreeSettings(0.03, 5.0, 4, 0.03, 0.03)),
+            (5000, FreeSettings(0.2, 7.0, 3)),
+            (15000, FreeSettings(0.03, 5.0, 4)),
         )
     )
+    last_stage: tuple[int, FitSettings] = (5000, FitSettings(4.0, 8, pose_weight=0.3, shape_weight=1.0))

@@ -6,7 +6,7 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -111,6 +111,10 @@ def register_scan(
         for number, (count, settings) in enumerate(options.free_stages):
             surface = tools.free.fit(surface, hand.first(count), settings)
             tell("surface", 0.7 + 0.2 * (number + 1) / len(options.free_stages))
+        count, settings = options.last_stage
+        centred = replace(surface.state, translation=surface.state.translation + surface.offset)
+        last = tools.fit.fit(centred, hand.first(count), settings)
+        surface = replace(surface, state=last.state, model_vertices=last.posed.vertices)
     with clock.measure("judge"):
         flip = np.array([1.0 if side == "right" else -1.0, 1.0, 1.0])
         distances = _measure(tools, surface.vertices, scan, keep, flip)

@@ -24,12 +24,14 @@ Array = npt.NDArray[np.float64]
 FEW, SOME, MORE = 200, 500, 1000
 """Points that are fitted stiffly, coarsely and finely."""
 
+ROUNDS = 2
+
 KEPT_STIFF, KEPT_COARSE = 10, 3
 """Candidates that go on."""
 
 COARSE = (FitSettings(20.0, 6, 0.7, tolerance=5e-3, back=250), FitSettings(8.0, 6, 0.7, tolerance=5e-3, back=250))
 FINE = (FitSettings(10.0, 6, 0.7, tolerance=3e-3, back=250), FitSettings(4.0, 8, 0.7, tolerance=2e-3, back=250))
-JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=0.3)
+JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=3.0)
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,7 @@ class StartSearch:
         pose = self.poses[number].copy()
         pose[0] = Rotation.from_matrix(placing.R).as_rotvec()
         root = self.roots[number]
-        shape = np.clip((placing.size - 1.0) * self.growth, -2.0, 2.0)
+        shape: Array = np.clip((placing.size - 1.0) * self.growth, -2.0, 2.0).astype(np.float64)
         return HandState(pose, shape, placing.size * placing.R @ root + placing.t - root)
 
     def _fit(self, state: HandState, scan: ScanPoints, side: str, stages: tuple[FitSettings, ...]) -> Start:
@@ -135,19 +137,26 @@ class StartSearch:
         return Start(judged.cost / len(self.fit.model.template), side, judged)
 
     def _try_fingers(self, scan: ScanPoints, best: Start) -> Start:
-        """The best state after each finger was started anew in several curls, and the thumb in several turns."""
-        for finger in ("little", "ring", "middle", "index", "thumb"):
-            state = best.evaluation.state
-            if finger == "thumb":
-                poses = [turn_thumb(self.limits, state.pose, turn) for turn in THUMBS]
-            else:
-                poses = [curl_finger(self.limits, state.pose, finger, curl) for curl in CURLS]
-            for pose in poses:
-                if np.abs(pose - state.pose).max() < 0.25:
-                    continue
-                tried = self._fit(HandState(pose, state.shape, state.translation), scan, best.side, FINE)
-                if tried.cost < best.cost - 1e-3:
-                    best = tried
+        """The best state after each finger was started anew in several curls, and the thumb in several turns.
+
+        As long as that helps, up to ROUNDS times: with one finger in its place, another may find its own.
+        """
+        for _ in range(ROUNDS):
+            before = best
+            for finger in ("little", "ring", "middle", "index", "thumb"):
+                state = best.evaluation.state
+                if finger == "thumb":
+                    poses = [turn_thumb(self.limits, state.pose, turn) for turn in THUMBS]
+                else:
+                    poses = [curl_finger(self.limits, state.pose, finger, curl) for curl in CURLS]
+                for pose in poses:
+                    if np.abs(pose - state.pose).max() < 0.25:
+                        continue
+                    tried = self._fit(HandState(pose, state.shape, state.translation), scan, best.side, FINE)
+                    if tried.cost < best.cost - 1e-3:
+                        best = tried
+            if best.cost > 0.97 * before.cost:
+                break
         return best
 
 

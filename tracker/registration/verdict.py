@@ -10,13 +10,15 @@ import numpy.typing as npt
 from tracker.capture.scan import Scan
 from tracker.model.blend_model import BlendModel
 from tracker.registration.free_fit import FreeSurface
-from tracker.registration.model_fit import Evaluation, FitSettings, ModelFit
-from tracker.registration.registration import Registration, digest_scan, summarize_distances
+from tracker.registration.model_fit import MM, Evaluation, FitSettings, ModelFit
+from tracker.registration.registration import Registration, digest_scan
 from tracker.registration.scan_points import ScanPoints
+from tracker.registration.surface_search import Matches
+from tracker.registration.vertex_normals import find_unit_normals
 
 Array = npt.NDArray[np.float64]
 
-JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=0.3)
+JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=3.0)
 JUDGE_POINTS = 4000
 
 GOOD, BAD = 0.35, 0.7
@@ -48,24 +50,73 @@ def judge(
         distances: (N,) of the scan to it, m; NaN where not counted.
         count: Points that may be a hand's.
     """
-    points = scan.first(JUDGE_POINTS)
-    judged = fit.evaluate(evaluation.state, points, JUDGE)
-    covered = float(np.isfinite(distances).sum()) / max(count, 1)
-    measures = {
-        "model_cost": judged.cost / len(fit.model.template),
-        "covered": covered,
-        "moved_mm": float(np.linalg.norm(surface.vertices - surface.model_vertices, axis=1).mean() * 1e3),
-        "scan_to_mesh_mm": summarize_distances(distances)["mean"],
-    }
-    score = float(np.clip(measures["model_cost"] / 10.0, 0.0, 1.0))
+    measures = measure(fit, scan, evaluation, surface, distances, count)
+    score = float(np.clip(measures["model_to_scan"] / 10.0, 0.0, 1.0))
     reasons = []
-    if score >= GOOD:
-        reasons.append(f"model and scan do not explain one another ({measures['model_cost']:.1f} mm² a vertex)")
-    if covered < 0.4:
-        score = max(score, BAD)
-        reasons.append(f"only {100 * covered:.0f} % of the points lie beside the hand")
     name = "good" if score < GOOD else "doubtful" if score < BAD else "bad"
     return Verdict(name, score, tuple(reasons), measures)
+
+
+def measure(
+    fit: ModelFit, scan: ScanPoints, evaluation: Evaluation, surface: FreeSurface, distances: Array, count: int
+) -> dict[str, float]:
+    """What tells right from wrong, see docs/registration.md.
+
+    Returns:
+        scan_to_model: Mean Geman-McClure cost (4 mm) of a scan point beside the model, mm².
+        model_to_scan: The same of a vertex of the model that looks for the scan.
+        hidden: Share of the vertices without scan within 4 mm that looks the same way.
+        hidden_free: The same of the free surface.
+        scan_to_surface: As the first, for the free surface.
+        covered: Share of the points that lie beside the free surface and not behind its rim.
+        moved: Mean distance between model and free surface after the best rigid motion, mm.
+        stretch: Root mean square difference of edges, mm.
+        pose: Cost of the pose prior a joint angle.
+        shape: Root mean square of the shape coefficients.
+    """
+    points = scan.first(JUDGE_POINTS)
+    judged = fit.evaluate(evaluation.state, points, JUDGE)
+    free_matches = fit.search.match(surface.vertices, points.points, points.normals, 4e-3 * 4)
+    hidden, back = _look_back(fit, scan, judged.posed.vertices)
+    hidden_free, _ = _look_back(fit, scan, surface.vertices)
+    edges = fit.search.faces[:, [0, 1]]
+    own = surface.vertices[edges[:, 0]] - surface.vertices[edges[:, 1]]
+    model = judged.posed.vertices[edges[:, 0]] - judged.posed.vertices[edges[:, 1]]
+    apart = surface.vertices - judged.posed.vertices
+    return {
+        "scan_to_model": _robust_mean(judged.matches),
+        "model_to_scan": back,
+        "hidden": hidden,
+        "hidden_free": hidden_free,
+        "scan_to_surface": _robust_mean(free_matches),
+        "covered": float(np.isfinite(distances).sum()) / max(count, 1),
+        "moved": float(np.linalg.norm(apart - apart.mean(axis=0), axis=1).mean() * MM),
+        "stretch": float(np.sqrt(((own - model) ** 2).sum(axis=1).mean()) * MM),
+        "pose": fit.prior.cost(evaluation.state.pose[1:]) / max(len(fit.prior.mean), 1),
+        "shape": float(np.sqrt((evaluation.state.shape**2).mean())) if fit.model.num_shape else 0.0,
+    }
+
+
+def _robust_mean(matches: Matches) -> float:
+    square = 16.0
+    r2 = np.where(matches.faces >= 0, matches.offsets * MM, 1e3) ** 2
+    counted = ~matches.on_rim
+    return float((r2 * square / (r2 + square))[counted].mean()) if counted.any() else square
+
+
+def _look_back(fit: ModelFit, scan: ScanPoints, vertices: Array) -> tuple[float, float]:
+    """Share of vertices that see no scan, and their mean robust cost, mm²."""
+    surface = scan.surface
+    distances, ids = surface.tree.query(vertices[fit.inner], distance_upper_bound=0.016)
+    is_near = np.asarray(ids < len(surface.points))
+    ids = np.where(is_near, ids, 0)
+    normals = surface.normals[ids]
+    mine = find_unit_normals(vertices, fit.search.faces)[fit.inner]
+    looks = (np.einsum("nd,nd->n", normals, mine) > 0.25) | ~normals.any(axis=1)
+    along = np.einsum("nd,nd->n", normals, vertices[fit.inner] - surface.points[ids])
+    r2 = np.where(is_near & looks, (MM * np.where(normals.any(axis=1), along, distances)) ** 2, 1e6)
+    is_seen = is_near & looks & (np.where(is_near, distances, 1.0) < 4e-3)
+    return float(1.0 - is_seen.mean()), float((16.0 * r2 / (16.0 + r2)).mean())
 
 
 def refuse(scan: Scan, model: BlendModel, model_digest: str, reasons: tuple[str, ...], seconds: float) -> Registration:

@@ -71,6 +71,9 @@ export const useLineage = (kind: LineageKind, id: string | undefined) =>
 
 export const modelFileUrl = (id: string): string => `${API}/hand-models/${id}/model.npz`;
 
+/** As `smplx` loads it. */
+export const manoFileUrl = (id: string, side: "right" | "left"): string => `${API}/hand-models/${id}/mano/${side}`;
+
 export const verifyTrainingSet = (id: string): Promise<Schemas["TrainingVerification"]> => request("GET", `/training-sets/${id}/verify`);
 export const trainingSetUrl = (id: string): string => `${API}/training-sets/${id}/registrations.zip`;
 

@@ -51,9 +51,11 @@ export const useScanCollections = () =>
 
 export const useScan = (id: string) => useQuery({ queryKey: scanKeys.one(id), queryFn: ({ signal }) => request<Scan>("GET", `/scans/${id}`, { signal }) });
 
+const cropKey = (scan: Pick<Scan, "id" | "revision"> | undefined) => [...scanKeys.one(scan?.id ?? ""), "crop", scan?.revision] as const;
+
 export const useScanCrop = (scan: Scan | undefined) =>
   useQuery({
-    queryKey: [...scanKeys.one(scan?.id ?? ""), "crop", scan?.revision],
+    queryKey: cropKey(scan),
     queryFn: () => request<ScanCropRevision>("GET", `/scans/${scan?.id}/crop`),
     enabled: scan !== undefined,
   });
@@ -63,7 +65,11 @@ export function useSaveCrop() {
   return useMutation({
     mutationFn: ({ scan, crop }: { scan: Scan; crop: ScanCrop }) =>
       requestWithHeaders<Scan>("PUT", `/scans/${scan.id}/crop`, { body: crop, headers: { "If-Match": `"${scan.revision}"` } }),
-    onSuccess: ({ data }) => client.setQueryData(scanKeys.one(data.id), data),
+    onSuccess: ({ data }, { crop }) => {
+      // Known before it is asked for, so that what was cropped stays on the screen.
+      client.setQueryData<ScanCropRevision>(cropKey(data), { ...crop, drops_objects: crop.drops_objects ?? false, revision: data.revision, removed_count: data.removed_count, author_name: null, created_at: null });
+      client.setQueryData(scanKeys.one(data.id), data);
+    },
     onSettled: () => client.invalidateQueries({ queryKey: scanKeys.all }),
   });
 }

@@ -51,10 +51,7 @@ export default function CuratePage() {
   const client = useQueryClient();
 
   const drawn = useRef("");
-  const holder = useRef<HTMLElement | null>(null);
-  const parts = useStage(() => {
-    if (holder.current) holder.current.dataset["drawn"] = drawn.current;
-  });
+  const parts = useStage(drawn);
   const { stage } = parts;
   const control = useLook(stage);
   const hand = useShownHand(stage, curation, drawn);
@@ -62,11 +59,13 @@ export default function CuratePage() {
   // Other pages show what was decided here.
   useEffect(() => () => void client.invalidateQueries({ queryKey: registrationKeys.all }), [client]);
 
-  const focusPicture = (): void => holder.current?.focus({ preventScroll: true });
   const decide = (decision: Standing, why: readonly string[] = []): void => {
-    if (!item || !hand.isDrawn) return;
-    curation.decide(decision, why);
-    focusPicture();
+    if (hand.isDrawn) curation.decide(decision, why);
+  };
+  // After a click the keys belong to the picture again.
+  const decideByClick = (decision: Standing, why: readonly string[] = []): void => {
+    decide(decision, why);
+    parts.element.current?.focus({ preventScroll: true });
   };
   useKeymap("curate", {
     ...handHandlers("curate", stage, control),
@@ -93,13 +92,7 @@ export default function CuratePage() {
         <HandView
           scope="curate"
           label={item ? `Scan and registered mesh of ${item.scan.name}` : "Scan and registered mesh"}
-          parts={{
-            ...parts,
-            holder: (element) => {
-              holder.current = element;
-              parts.holder(element);
-            },
-          }}
+          parts={parts}
           isBusy={!hand.isDrawn && !isEnd}
           hasLegend={control.look.hasErrors && hand.isDrawn}
           failure={
@@ -140,7 +133,7 @@ export default function CuratePage() {
           {item && <div className={classes.place}>{`${state.place + 1}${state.hasMore ? "" : ` of ${state.items.length}`} · ${item.scan.name}`}</div>}
           <DecisionRefusals status={status} onGo={curation.goTo} />
         </HandView>
-        {item ? <DecisionPanel item={item} mine={mine} reasons={reasons} onDecide={decide} /> : <aside className={classes.panel} aria-label="The registration and the decision" />}
+        {item ? <DecisionPanel item={item} mine={mine} reasons={reasons} onDecide={decideByClick} /> : <aside className={classes.panel} aria-label="The registration and the decision" />}
       </div>
       <div className={classes.line}>
         <SaveState status={{ ...status, refusals: status.refusals.size }} what="Every decision is kept in this browser until the server has it" action="curate.save" onFlush={() => decisionLog().flush()} />

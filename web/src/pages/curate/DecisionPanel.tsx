@@ -1,4 +1,4 @@
-import { Group, Kbd, Text, Title } from "@mantine/core";
+import { Group, Kbd, Text } from "@mantine/core";
 import { IconCheck, IconEyeOff, IconHelp, IconX } from "@tabler/icons-react";
 import { Link } from "react-router";
 import type { Reason, Registration } from "../../api/registrations";
@@ -40,6 +40,19 @@ export function DecisionPanel({ item, mine, reasons, onDecide }: DecisionPanelPr
             {[scan.subject, scan.pose].filter(Boolean).join(" · ")}
           </Text>
         </Group>
+        <Group gap={8} mt={8}>
+          <Text size="xs" className="quiet">
+            The program says
+          </Text>
+          <VerdictBadge verdict={item.verdict} />
+        </Group>
+        {item.reasons.length > 0 && (
+          <ul className={classes.doubts}>
+            {item.reasons.map((reason) => (
+              <li key={reason}>{reason}</li>
+            ))}
+          </ul>
+        )}
       </div>
       <div className={classes.acts} role="group" aria-label="Decision">
         {ACTS.map(({ kind, label, icon: Icon }) => (
@@ -91,11 +104,7 @@ export function DecisionPanel({ item, mine, reasons, onDecide }: DecisionPanelPr
           )}
         </div>
       )}
-      <section aria-label="The program’s own judgement">
-        <Group justify="space-between" mb={8}>
-          <Title order={3}>The program says</Title>
-          <VerdictBadge verdict={item.verdict} />
-        </Group>
+      <section aria-label="Figures">
         <dl className={classes.facts}>
           <dt>Scan to mesh, mean</dt>
           <dd>{mm(item.scan_to_mesh_mm.mean)}</dd>
@@ -116,13 +125,6 @@ export function DecisionPanel({ item, mine, reasons, onDecide }: DecisionPanelPr
           <dt>Collection</dt>
           <dd title={scan.collection}>{scan.collection}</dd>
         </dl>
-        {item.reasons.length > 0 && (
-          <ul className={classes.doubts}>
-            {item.reasons.map((reason) => (
-              <li key={reason}>{reason}</li>
-            ))}
-          </ul>
-        )}
       </section>
     </aside>
   );

@@ -1,17 +1,16 @@
-import { Button, Text } from "@mantine/core";
-import type { ReactNode, RefCallback } from "react";
+import { Button, Text, Tooltip } from "@mantine/core";
+import type { ReactNode } from "react";
 import { errorGradient, SCAN_ERROR_FULL_MM } from "../../model/errorColor";
 import type { ViewSide } from "../../canvas/hand3d/look";
-import type { Stage } from "../../canvas/hand3d/stage";
+import type { StageParts } from "../../canvas/hand3d/useStage";
 import { useHint } from "../../state/keys";
-import { Tooltip } from "@mantine/core";
 import classes from "./HandView.module.css";
 
 interface HandViewProps {
   scope: "curate" | "scan";
   label: string;
-  parts: { holder: RefCallback<HTMLElement>; canvas: RefCallback<HTMLCanvasElement>; stage: Stage | null; failure: string | null };
-  /** Null while there is something to draw. */
+  parts: StageParts;
+  /** Something is on its way. */
   isBusy: boolean;
   hasLegend: boolean;
   /** Why nothing can be drawn, with the next step. */

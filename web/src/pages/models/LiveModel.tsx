@@ -6,7 +6,7 @@ import type { Staged } from "../../canvas/hand3d/staged";
 import { useStage } from "../../canvas/hand3d/useStage";
 import { shapeHand } from "../../model/liveHand";
 import { patternOf, uprightFrom } from "../../model/upright";
-import { formatNumber } from "../../model/format";
+import { formatName, formatNumber } from "../../model/format";
 import classes from "./Models.module.css";
 
 /** More than anybody turns by hand. */
@@ -16,7 +16,7 @@ const SLIDERS = 10;
 export function LiveModel({ model }: { model: HandModel }) {
   const { data: geometry, error } = useModelGeometry(model.id);
   const [shape, setShape] = useState<readonly number[]>([]);
-  const parts = useStage(() => undefined);
+  const parts = useStage();
   const { stage } = parts;
   const staged = useRef<Staged | null>(null);
   const upright = useMemo(() => geometry && uprightFrom(geometry.vertices, patternOf(geometry.vertices, geometry.joints, geometry.tips), model.side), [geometry, model.side]);
@@ -39,7 +39,15 @@ export function LiveModel({ model }: { model: HandModel }) {
     [stage],
   );
 
-  if (error) return null;
+  if (error) {
+    return (
+      <Text size="sm" c="var(--bad-text)" role="alert">
+        The mesh could not be loaded: {error.message}
+      </Text>
+    );
+  }
+  const told = model.provenance["shape_names"]?.split(", ") ?? [];
+  const nameOf = (at: number): string => (told.length === model.shape_parameters.length ? formatName(told[at] ?? "") : `Component ${at + 1}`);
   const count = Math.min(SLIDERS, geometry?.shapeCount ?? 0);
   const set = (at: number, value: number): void => setShape(Array.from({ length: count }, (_, other) => (other === at ? value : (shape[other] ?? 0))));
   return (
@@ -62,12 +70,12 @@ export function LiveModel({ model }: { model: HandModel }) {
         {Array.from({ length: count }, (_, at) => (
           <div key={at}>
             <Group justify="space-between">
-              <Text size="xs">Component {at + 1}</Text>
+              <Text size="xs">{nameOf(at)}</Text>
               <Text size="xs" className="quiet">
                 {formatNumber(shape[at] ?? 0, 1)} sd
               </Text>
             </Group>
-            <Slider size="sm" min={-3} max={3} step={0.1} label={null} thumbLabel={`Component ${at + 1}, standard deviations`} value={shape[at] ?? 0} onChange={(value) => set(at, value)} />
+            <Slider size="sm" min={-3} max={3} step={0.1} label={null} thumbLabel={`${nameOf(at)}, standard deviations`} value={shape[at] ?? 0} onChange={(value) => set(at, value)} />
           </div>
         ))}
       </div>

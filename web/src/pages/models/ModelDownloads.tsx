@@ -1,13 +1,30 @@
-import { Button } from "@mantine/core";
-import { IconDownload } from "@tabler/icons-react";
-import { modelFileUrl, type HandModel } from "../../api/handModels";
+import { Button, Menu } from "@mantine/core";
+import { IconChevronDown, IconDownload } from "@tabler/icons-react";
+import { manoFileUrl, modelFileUrl, type HandModel } from "../../api/handModels";
 
-/** The model as a file. */
+/** The model as a file: for Handloom, or as MANO for either hand. */
 export function ModelDownloads({ model }: { model: HandModel }) {
-  if (model.kind === "default" || !model.created_at) return null;
+  if (model.kind === "default") return null;
   return (
-    <Button variant="default" component="a" href={modelFileUrl(model.id)} download leftSection={<IconDownload size={16} aria-hidden />}>
-      Download
-    </Button>
+    <Menu position="bottom-end">
+      <Menu.Target>
+        <Button variant="default" leftSection={<IconDownload size={16} aria-hidden />} rightSection={<IconChevronDown size={14} aria-hidden />}>
+          Download
+        </Button>
+      </Menu.Target>
+      <Menu.Dropdown>
+        {model.created_at && (
+          <Menu.Item component="a" href={modelFileUrl(model.id)} download>
+            The model (.npz), for Handloom
+          </Menu.Item>
+        )}
+        <Menu.Item component="a" href={manoFileUrl(model.id, "right")} download>
+          MANO file, right hand
+        </Menu.Item>
+        <Menu.Item component="a" href={manoFileUrl(model.id, "left")} download>
+          MANO file, left hand
+        </Menu.Item>
+      </Menu.Dropdown>
+    </Menu>
   );
 }

@@ -14,7 +14,7 @@ import classes from "./Models.module.css";
 import { TrainDialog } from "./TrainDialog";
 import { TrainingSets } from "./TrainingSets";
 
-const KINDS: Record<HandModel["kind"], string> = { default: "comes with Handloom", untrained: "not trained yet", trained: "trained here", uploaded: "uploaded" };
+const KINDS: Record<HandModel["kind"], string> = { default: "built in, tracks", untrained: "not trained yet", trained: "trained here", uploaded: "uploaded" };
 
 /** Each model followed by those trained from it, the newest branch first. */
 export function asTree(models: readonly HandModel[]): { model: HandModel; depth: number }[] {
@@ -72,7 +72,7 @@ export default function ModelsPage() {
               <Table.Thead>
                 <Table.Tr>
                   <Table.Th>Name</Table.Th>
-                  <Table.Th w={176}>Kind</Table.Th>
+                  <Table.Th w={152}>Kind</Table.Th>
                   <Table.Th w={80}>Hand</Table.Th>
                   <Table.Th w={96} ta="right">
                     Vertices

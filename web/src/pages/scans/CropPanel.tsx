@@ -1,18 +1,18 @@
 import { Button, Checkbox, Group, Stack, Text, Title } from "@mantine/core";
 import { formatCount } from "../../model/format";
 import { useHint } from "../../state/keys";
-import { theirsOf, type Crop } from "./useCrop";
+import type { Crop } from "./useCrop";
 
 interface CropPanelProps {
   crop: Crop;
+  revision: number;
   hasColors: boolean;
 }
 
 /** What is left out of the scan, and the way to keep it so. */
-export function CropPanel({ crop, hasColors }: CropPanelProps) {
+export function CropPanel({ crop, revision, hasColors }: CropPanelProps) {
   const hint = useHint();
   const { draft, save } = crop;
-  const theirs = theirsOf(save.error);
   return (
     <section aria-label="Crop">
       <Title order={3} mb={4}>
@@ -22,7 +22,7 @@ export function CropPanel({ crop, hasColors }: CropPanelProps) {
         One stroke with the knife: a closed one takes what it encloses, an open one what lies beyond it. What it takes is shown red and dim; the file stays whole.
       </Text>
       <Text size="sm" mb="sm" data-testid="crop-share">
-        {draft.cuts.length === 0 && !draft.dropsObjects ? "Nothing is left out." : `${formatCount(draft.cuts.length, "stroke")}; ${(100 * crop.share).toFixed(1)} % of the points are left out.`}
+        {draft.cuts.length === 0 && crop.share === 0 ? "Nothing is left out." : `${formatCount(draft.cuts.length, "stroke")}; ${(100 * crop.share).toFixed(1)} % of the points are left out.`}
       </Text>
       {hasColors && (
         <Checkbox
@@ -51,19 +51,19 @@ export function CropPanel({ crop, hasColors }: CropPanelProps) {
           Whole scan
         </Button>
       </Group>
-      {crop.isChanged && !save.error && (
+      {crop.isChanged && !save.error && !crop.isOvertaken && (
         <Text size="xs" className="quiet" mt="sm">
           Not saved yet; kept in this tab.
         </Text>
       )}
-      {save.error && (
+      {(save.error || crop.isOvertaken) && !save.isPending && (
         <Stack gap="sm" mt="sm" role="alert">
           <Text size="xs" c="var(--bad-text)" style={{ overflowWrap: "anywhere" }}>
-            {theirs ? "Somebody else has cropped this scan meanwhile. Your strokes are kept here until you choose." : `${save.error.message} Your strokes are kept here.`}
+            {crop.isOvertaken ? "Somebody else has cropped this scan meanwhile. Your strokes are kept here until you choose." : `${save.error?.message ?? ""} Your strokes are kept here.`}
           </Text>
-          {theirs && (
+          {crop.isOvertaken && (
             <Group gap="sm">
-              <Button size="compact-xs" onClick={() => crop.store(theirs)}>
+              <Button size="compact-xs" onClick={() => crop.store(revision)}>
                 Save mine over it
               </Button>
               <Button size="compact-xs" variant="default" onClick={crop.drop}>

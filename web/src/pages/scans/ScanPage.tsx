@@ -142,11 +142,8 @@ function OpenScan({ scan }: { scan: Scan }) {
     if (isNearEnd) void fetchNextPage();
   }, [isNearEnd, fetchNextPage]);
 
-  const holder = useRef<HTMLElement | null>(null);
   const shown = useRef("");
-  const parts = useStage(() => {
-    if (holder.current) holder.current.dataset["drawn"] = shown.current;
-  });
+  const parts = useStage(shown);
   const { stage } = parts;
   const control = useLook(stage);
   const crop = useCrop(scan, geometry.data ?? null);
@@ -228,13 +225,7 @@ function OpenScan({ scan }: { scan: Scan }) {
         <HandView
           scope="scan"
           label={`Scan ${scan.name}`}
-          parts={{
-            ...parts,
-            holder: (element) => {
-              holder.current = element;
-              parts.holder(element);
-            },
-          }}
+          parts={parts}
           isBusy={!geometry.data && !failure}
           hasLegend={control.look.hasErrors && Boolean(geometry.data?.mesh)}
           failure={
@@ -246,7 +237,7 @@ function OpenScan({ scan }: { scan: Scan }) {
           {isCutting && crop.isReady && <StrokeLayer onStroke={(points) => stage && crop.cut(points, stage.projection())} />}
         </HandView>
         <aside className={classes.panel} aria-label="About the scan" tabIndex={0}>
-          <CropPanel crop={crop} hasColors={scan.has_colors} />
+          <CropPanel crop={crop} revision={scan.revision} hasColors={scan.has_colors} />
           <Registrations scan={scan} />
           <section aria-label="Facts">
             <Title order={3} mb="sm">

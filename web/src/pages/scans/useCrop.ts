@@ -1,12 +1,13 @@
 import { useSessionStorage } from "@mantine/hooks";
 import { useMemo, useState } from "react";
-import { ApiError } from "../../api/client";
 import { useSaveCrop, useScanCrop, type Scan, type ScanCrop } from "../../api/scans";
 import type { HandGeometry } from "../../canvas/hand3d/geometry";
 import { countTaken, cutOf, readStroke, smallerSide, takenByAny, type Cut, type Point, type Projection, type Stroke } from "../../model/crop";
 
 /** What is not saved yet: the strokes as they should be, and those taken back. */
 interface Draft {
+  /** Revision of the crop that it was made from. */
+  readonly base: number;
   readonly cuts: readonly Cut[];
   readonly undone: readonly Cut[];
   readonly dropsObjects: boolean;
@@ -26,11 +27,11 @@ const isOfObject = (colors: Uint8Array, point: number): boolean => (colors[3 * p
 /** The crop of a scan: strokes with undo, kept over a reload until they are saved. */
 export function useCrop(scan: Scan, geometry: HandGeometry | null) {
   const saved = useScanCrop(scan).data;
-  const [kept, setDraft, dropDraft] = useSessionStorage<Draft | null>({ key: `handloom/crop/${scan.id}/${scan.revision}`, defaultValue: null, getInitialValueInEffect: false });
+  const [kept, setDraft, dropDraft] = useSessionStorage<Draft | null>({ key: `handloom/crop/${scan.id}`, defaultValue: null, getInitialValueInEffect: false });
   const [last, setLast] = useState<LastStroke | null>(null);
   const save = useSaveCrop();
 
-  const draft = useMemo<Draft>(() => kept ?? { cuts: (saved?.strokes as readonly Cut[] | undefined) ?? [], undone: [], dropsObjects: saved?.drops_objects ?? false }, [kept, saved]);
+  const draft = useMemo<Draft>(() => kept ?? { base: scan.revision, cuts: (saved?.strokes as readonly Cut[] | undefined) ?? [], undone: [], dropsObjects: saved?.drops_objects ?? false }, [kept, saved]);
   const taken = useMemo(() => {
     if (!geometry) return null;
     const { positions, colors } = geometry.scan;
@@ -84,9 +85,12 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
       dropDraft();
       save.reset();
     },
-    store(over: Scan = scan): void {
+    /** Somebody else has cropped it meanwhile, and what is drawn here was not made from that. */
+    isOvertaken: kept !== null && kept.base !== scan.revision,
+    /** Over the crop it was made from, or over somebody else's when that was asked for. */
+    store(revision: number = draft.base): void {
       save.mutate(
-        { scan: over, crop: { strokes: draft.cuts as unknown as ScanCrop["strokes"], drops_objects: draft.dropsObjects } },
+        { scan: { ...scan, revision }, crop: { strokes: draft.cuts as unknown as ScanCrop["strokes"], drops_objects: draft.dropsObjects } },
         { onSuccess: dropDraft },
       );
     },
@@ -94,6 +98,3 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
 }
 
 export type Crop = ReturnType<typeof useCrop>;
-
-/** The scan as somebody else has cropped it meanwhile; null when that is not why the saving failed. */
-export const theirsOf = (error: unknown): Scan | null => (error instanceof ApiError && error.status === 409 ? ((error.body["theirs"] as Scan | undefined) ?? null) : null);

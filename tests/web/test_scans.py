@@ -1,0 +1,171 @@
+"""Scans in a real browser: dropped, found again, looked at, cropped with one stroke, registered."""
+
+from __future__ import annotations
+
+import base64
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.web.hands import write_scans
+
+pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
+
+# Files fall onto the page as they do from a file manager.
+DROP = """([name, data]) => {
+  const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
+  const transfer = new DataTransfer();
+  transfer.items.add(new File([bytes], name));
+  for (const type of ['dragenter', 'dragover', 'drop'])
+    window.dispatchEvent(new DragEvent(type, { dataTransfer: transfer, bubbles: true, cancelable: true }));
+}"""
+
+
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two scans with their `scans.json`."""
+    return write_scans(tmp_path_factory.mktemp("scans"), 2)[0]
+
+
+@pytest.fixture(scope="module")
+def scans(studio: Any, archive: Path) -> list[dict[str, Any]]:
+    with archive.open("rb") as file:
+        answer = studio.send(
+            "POST", "/scans", files={"files": (archive.name, file)}, data={"options": '{"collection": "two"}'}
+        )
+    return answer.json()["added"] + answer.json()["known"]
+
+
+def drop(page: Any, name: str, data: bytes) -> None:
+    page.evaluate(DROP, [name, base64.b64encode(data).decode()])
+
+
+def stroke(page: Any, points: list[tuple[float, float]]) -> None:
+    """One drag over the 3D view; points as shares of its width and height."""
+    box = page.get_by_test_id("strokes").bounding_box()
+    at = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in points]
+    page.mouse.move(*at[0])
+    page.mouse.down()
+    for point in at[1:]:
+        page.mouse.move(*point, steps=4)
+    page.mouse.up()
+
+
+def open_scan(open_page: Any, scan: dict[str, Any], **options: Any) -> Any:
+    page = open_page(**options)
+    page.goto(f"/scans/{scan['id']}")
+    page.wait_for_function("(id) => document.querySelector('[data-hand-view]')?.dataset.drawn === id", arg=scan["id"])
+    return page
+
+
+def save(page: Any) -> None:
+    with page.expect_response(lambda answer: answer.request.method == "PUT" and answer.ok):
+        page.keyboard.press("Control+s")
+    page.get_by_text("Not saved yet; kept in this tab.").wait_for(state="detached")
+
+
+def share_of(page: Any) -> float:
+    found = re.search(r"([\d.]+) % of", page.get_by_test_id("crop-share").inner_text())
+    return float(found[1]) if found else 0.0
+
+
+def test_scans_dropped_on_the_page_are_added_and_each_that_cannot_be_used_says_why(
+    studio, open_page, archive, screenshots
+):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto("/scans")
+    page.get_by_role("button", name=re.compile("^Add")).first.wait_for()
+    screenshots.take(page, "scans-first")
+    drop(page, archive.name, archive.read_bytes())
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("Collection").fill("dropped")
+    screenshots.take(page, "scans-add")
+    dialog.get_by_role("button", name="Add 1 file").click()
+    dialog.get_by_text("2 scans added.").wait_for()
+    dialog.get_by_role("button", name="Done").click()
+    row = page.get_by_role("row").filter(has_text="flat_together")
+    expect(row).to_contain_text("22,000")
+
+    drop(page, "broken.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nend_header\n")
+    dialog.get_by_role("button", name="Add 1 file").click()
+    dialog.get_by_text("1 refused").wait_for()
+    expect(dialog.get_by_role("alert")).to_contain_text("broken.ply")
+    screenshots.take(page, "scans-refused")
+    dialog.get_by_role("button", name="Done").click()
+    assert len(studio.get("/scans?collection=dropped")["items"]) == 2
+
+
+def test_the_list_is_narrowed_and_the_address_holds_how(scans, open_page):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto("/scans?collection=two")
+    expect(page.get_by_role("row")).to_have_count(3)
+    page.get_by_label("Filter scans by name").fill("flat")
+    expect(page.get_by_role("row")).to_have_count(2)
+    page.wait_for_url(re.compile("search=flat"))
+    page.get_by_label("Filter scans by name").fill("nothing of that name")
+    page.get_by_text("No scan is like that").wait_for()
+
+
+def test_one_stroke_crops_a_scan_and_can_be_taken_back_before_and_after_it_is_saved(
+    studio, scans, open_page, screenshots
+):
+    scan = scans[0]
+    page = open_scan(open_page, scan)
+    page.keyboard.press("x")
+    stroke(page, [(0.1, 0.8), (0.5, 0.82), (0.9, 0.8)])
+    below = share_of(page)
+    assert 2 < below < 50
+    page.keyboard.press("f")
+    assert share_of(page) == pytest.approx(100 - below, abs=0.2), "the two sides of a line are the whole scan"
+    page.keyboard.press("f")
+    stroke(page, [(0.5, 0.3), (0.6, 0.3), (0.6, 0.45), (0.5, 0.45), (0.5, 0.3)])
+    screenshots.take(page, "scan-crop")
+    assert share_of(page) > below, "a closed stroke takes more"
+    page.keyboard.press("z")
+    assert share_of(page) == below
+    page.reload()
+    page.get_by_text("Not saved yet; kept in this tab.").wait_for()
+    save(page)
+
+    kept = studio.get(f"/scans/{scan['id']}")
+    assert kept["revision"] == scan["revision"] + 1
+    assert 100 * kept["removed_count"] / kept["point_count"] == pytest.approx(below, abs=1)
+    page.keyboard.press("z")
+    save(page)
+    assert studio.get(f"/scans/{scan['id']}")["removed_count"] == 0, "the file stayed whole"
+
+
+def test_a_crop_that_somebody_else_has_changed_meanwhile_is_not_overwritten(studio, scans, open_page):
+    scan = studio.get(f"/scans/{scans[1]['id']}")
+    page = open_scan(open_page, scan)
+    page.keyboard.press("x")
+    stroke(page, [(0.1, 0.85), (0.9, 0.85)])
+    plane = {"kind": "plane", "normal": [1, 0, 0], "offset": 10}
+    theirs = {"strokes": [plane], "drops_objects": False}
+    path = f"/scans/{scan['id']}/crop"
+    studio.send("PUT", path, json=theirs, headers={"If-Match": f'"{scan["revision"]}"'}).raise_for_status()
+    page.keyboard.press("Control+s")
+    page.get_by_text("Somebody else has cropped this scan meanwhile").wait_for()
+    assert studio.get(path)["strokes"][0]["kind"] == "plane"
+    with page.expect_response(lambda answer: answer.request.method == "PUT" and answer.ok):
+        page.get_by_role("button", name="Save mine over it").click()
+    assert [one["kind"] for one in studio.get(path)["strokes"]] == ["polygon"]
+
+
+def test_registering_is_started_from_the_scan(studio, scans, open_page):
+    page = open_scan(open_page, scans[0])
+    page.get_by_role("button", name="Register …").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_text("1 chosen scan.").wait_for()
+    dialog.get_by_role("button", name="Register", exact=True).click()
+    page.wait_for_url(re.compile("/jobs/"))
+    page.get_by_role("heading", name=re.compile("1 scan")).wait_for()
+    job = page.url.rsplit("/", 1)[-1]
+    assert studio.get(f"/jobs/{job}")["kind"] == "register"
+    studio.send("POST", f"/jobs/{job}/cancel")

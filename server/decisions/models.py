@@ -10,6 +10,8 @@ from sqlalchemy import CheckConstraint, ForeignKey, Index, String, Text, UniqueC
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
+from server.hand_models.models import HandModelRow
+from server.registrations.models import RegistrationRow
 
 
 class DecisionRow(Base):
@@ -26,9 +28,9 @@ class DecisionRow(Base):
         CheckConstraint("(decision = 'undo') = (undoes_id IS NOT NULL)", name="undo"),
     )
 
-    registration_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("registrations.id"))
+    registration_id: Mapped[uuid.UUID] = mapped_column(ForeignKey(RegistrationRow.id))
     account_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("accounts.id"))
-    model_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("hand_models.id"))
+    model_id: Mapped[uuid.UUID] = mapped_column(ForeignKey(HandModelRow.id))
     """The model version that was judged."""
     number: Mapped[int]
     """Counts the decisions about a registration from 1."""

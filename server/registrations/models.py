@@ -10,6 +10,8 @@ from sqlalchemy import CheckConstraint, ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
+from server.hand_models.models import HandModelRow
+from server.scans.models import ScanRow
 
 
 class RegistrationRow(Base):
@@ -27,8 +29,8 @@ class RegistrationRow(Base):
         CheckConstraint("side IN ('right', 'left')", name="side"),
     )
 
-    scan_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("scans.id"))
-    model_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("hand_models.id"))
+    scan_id: Mapped[uuid.UUID] = mapped_column(ForeignKey(ScanRow.id))
+    model_id: Mapped[uuid.UUID] = mapped_column(ForeignKey(HandModelRow.id))
     job_id: Mapped[uuid.UUID | None]
     round: Mapped[int]
     """1 for registrations by an untrained model, and one more than its round for a trained one."""

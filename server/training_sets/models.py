@@ -10,6 +10,8 @@ from sqlalchemy import ForeignKey, Index, String, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
+from server.decisions.models import DecisionRow
+from server.registrations.models import RegistrationRow
 
 
 class TrainingSetRow(Base):
@@ -38,6 +40,6 @@ class TrainingMemberRow(Base):
     __table_args__ = (UniqueConstraint("training_set_id", "registration_id"), Index(None, "registration_id"))
 
     training_set_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("training_sets.id"))
-    registration_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("registrations.id"))
-    decision_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("decisions.id"))
+    registration_id: Mapped[uuid.UUID] = mapped_column(ForeignKey(RegistrationRow.id))
+    decision_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(DecisionRow.id))
     """The decision that it was taken by; None when the program's own verdict was."""

@@ -1,0 +1,198 @@
+"""Jobs on scans: what they are to do, that a killed worker loses one scan at most, and what training leaves."""
+
+from __future__ import annotations
+
+import shutil
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi import FastAPI
+from sqlalchemy import select
+
+from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.database import Database
+from server.database.migrate import upgrade
+from server.hand_models.models import HandModelRow
+from server.hand_models.storing import UNTRAINED_ID, find_file
+from server.jobs import making, service
+from server.jobs.models import JobRow
+from server.jobs.scan_workflow import plan_loop
+from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate, TrainingParams
+from server.registrations.models import RegistrationRow
+from server.scans.models import ScanRow
+from server.settings import Settings
+from server.storage import Storage
+from server.training_sets.schemas import TrainingRule
+from server.training_sets.service import create_training_set
+from tests.server.conftest import GeneratedHand, Studio
+from tests.server.curation import add_registered
+from tests.server.jobs.test_worker import Bench
+from tests.server.teams.conftest import Join, join
+from tracker import load_blend_model, load_registration, save_registration
+from tracker.synthesis.scans.generate import generate_truth
+
+__all__ = ["join"]
+
+
+class ScanBench(Bench):
+    """A studio's data with scans in it, and workers to be started."""
+
+    def __init__(self, settings: Settings, database: Database) -> None:
+        self.settings, self.database = settings, database
+        self.storage = Storage(settings.data_dir)
+        self.processes = []
+        self.app = FastAPI()
+        self.app.state.storage, self.app.state.database = self.storage, database
+
+    def make(self, maker: Callable[..., JobRow], asked: Any) -> uuid.UUID:
+        with self.database.writing() as session:
+            return maker(session, self.storage, asked, LOCAL_ACCOUNT_ID).id
+
+    def registrations(self, job_id: uuid.UUID) -> list[RegistrationRow]:
+        with self.database.reading() as session:
+            return list(session.scalars(select(RegistrationRow).where(RegistrationRow.job_id == job_id)))
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Iterator[ScanBench]:
+    settings = Settings(data_dir=tmp_path / "data", database_url=f"sqlite:///{tmp_path}/test.sqlite3")
+    with closing(Database(settings.sqlalchemy_url)) as database:
+        upgrade(database)
+        opened = ScanBench(settings, database)
+        yield opened
+        for process in opened.processes:
+            if process.poll() is None:
+                opened.kill(process)
+
+
+def test_a_killed_worker_loses_one_scan_at_most_and_none_is_registered_twice(
+    bench: ScanBench, generated_hand: GeneratedHand
+) -> None:
+    for number in range(3):
+        add_registered(bench.app, generated_hand, f"s{number}")
+    with bench.database.writing() as session:
+        damaged = session.scalars(select(ScanRow).where(ScanRow.name == "s2")).one()
+    (bench.storage.folder("scans", damaged.id) / "scan.ply").write_bytes(b"ply\nnothing\n")
+    worker = bench.start_worker()
+    job_id = bench.make(making.make_register_job, RegisterCreate(only="all"))
+    bench.wait(job_id, lambda job: job.frames_done >= 1)
+    bench.kill(worker)
+    assert bench.job(job_id).state == "running"
+    bench.start_worker()
+    job = bench.wait_for_end(job_id)
+    assert (job.frames_done, job.frames_total, job.progress) == (3, 3, 1.0)
+    assert any("going on after the last finished step" in line for line in bench.log(job_id))
+    made = bench.registrations(job_id)
+    assert len(made) == 2 and len({row.scan_id for row in made}) == 2
+    for row in made:
+        assert row.is_current and row.model_id == UNTRAINED_ID and row.round == 1
+        found = load_registration(bench.storage.folder("registrations", row.id))
+        np.testing.assert_allclose(found.vertices, generated_hand.found.vertices, atol=1e-9)
+        assert (found.subject, found.pose_name) == ("Ada", "flat")
+    with bench.database.reading() as session:
+        assert session.get_one(ScanRow, damaged.id).state == "failed"
+        assert session.scalars(select(RegistrationRow).where(RegistrationRow.is_current)).all().__len__() == 3
+    assert any("1 not read" in line for line in bench.log(job_id))
+
+
+def test_a_trained_model_knows_what_it_was_trained_from_and_registers_the_next_round(
+    bench: ScanBench, generated_hand: GeneratedHand, tmp_path: Path
+) -> None:
+    """The registrations are true ones here, so that there are enough of them."""
+    for subject in (1, 2, 4):
+        for pose in range(8):
+            truth = generate_truth(subject, 5 * pose)
+            folder = tmp_path / f"{subject}-{pose}"
+            found = replace(generated_hand.found, vertices=truth.vertices, subject=str(subject), verdict="doubtful")
+            save_registration(found, folder)
+            shutil.copyfile(generated_hand.folder / "hand.ply", folder / "hand.ply")
+            hand = replace(generated_hand, folder=folder)
+            add_registered(bench.app, hand, folder.name, subject=str(subject), verdict="good", collection="true")
+    with bench.database.writing() as session:
+        rule = TrainingRule(by="verdict")
+        chosen, _ = create_training_set(session, bench.storage, "true", rule, LOCAL_ACCOUNT_ID)
+    options = TrainingParams(rounds=1, num_shapes=2, with_pose_shapes=False)
+    job_id = bench.make(making.make_train_job, TrainCreate(training_set_id=chosen.id, name="Our hand", options=options))
+    bench.start_worker()
+    job = bench.wait_for_end(job_id)
+    with bench.database.reading() as session:
+        model = session.get_one(HandModelRow, job.hand_model_id)
+        assert (model.kind, model.round, model.parent_id) == ("trained", 1, UNTRAINED_ID)
+        assert (model.training_set_id, model.job_id, model.name) == (chosen.id, job_id, "Our hand")
+        assert model.report is not None and model.facts["shape_parameters"] == ["shape 1", "shape 2"]
+    assert load_blend_model(find_file(bench.storage, model)).num_shape == 2
+    with bench.database.reading() as session:
+        scan_id = session.scalars(select(ScanRow.id).order_by(ScanRow.name)).first()
+    asked = RegisterCreate(scan_ids=[scan_id], model_id=model.id)
+    again = bench.make(making.make_register_job, asked)
+    bench.wait_for_end(again)
+    [row] = bench.registrations(again)
+    assert (row.round, row.model_id, row.scan_id) == (2, model.id, scan_id)
+    assert not bench.storage.folder("jobs", job_id).exists()
+
+
+def test_a_job_registers_what_was_chosen_when_it_was_made(studio: Studio, generated_hand: GeneratedHand) -> None:
+    bench = ScanBench(studio.settings, studio.database)
+    one = add_registered(studio.app, generated_hand, "one", collection="x")
+    add_registered(studio.app, generated_hand, "two", collection="x", subject="Bob")
+    with pytest.raises(Exception, match="no such scan to register"):
+        bench.make(making.make_register_job, RegisterCreate(collection="x"))  # this model has registered both
+    with studio.database.writing() as session:
+        session.get_one(RegistrationRow, one).decision = "accept"
+        scan = session.get_one(RegistrationRow, one).scan_id
+    for asked, names in (
+        (RegisterCreate(collection="x", only="all"), ["one", "two"]),
+        (RegisterCreate(only="not_accepted"), ["two"]),
+        (RegisterCreate(only="all", subject="Bob"), ["two"]),
+        (RegisterCreate(only="all", scan_ids=[scan]), ["one"]),
+    ):
+        job_id = bench.make(making.make_register_job, asked)
+        with studio.database.reading() as session:
+            chosen = [session.get_one(ScanRow, id_).name for id_ in making.list_job_scans(session, job_id)]
+        assert chosen == names
+        retried = studio.client.post(f"/api/v1/jobs/{job_id}/cancel").status_code
+        again = studio.client.post(f"/api/v1/jobs/{job_id}/retry").json()
+        with studio.database.reading() as session:
+            assert len(making.list_job_scans(session, uuid.UUID(again["id"]))) == len(names)
+        assert retried == 200 and again["title"].endswith("with Untrained right hand")
+
+
+def test_jobs_that_make_no_sense_are_refused(studio: Studio, generated_hand: GeneratedHand, join: Join) -> None:
+    rob, ann = join("rob", "reviewer"), join("ann")
+    nobody = str(uuid.uuid4())
+    assert rob.send("POST", "/jobs/register", {}).status_code == 422
+    add_registered(studio.app, generated_hand, "one")
+    assert rob.send("POST", "/jobs/register", {"scan_ids": [nobody]}).status_code == 404
+    assert rob.send("POST", "/jobs/register", {"only": "all", "model_id": nobody}).status_code == 404
+    assert rob.send("POST", "/jobs/train", {"training_set_id": nobody, "name": "x"}).status_code == 404
+    assert rob.send("POST", "/jobs/loop", {"name": "x", "by": "decisions", "rounds": 2}).status_code == 422
+    assert "accepted" in rob.send("POST", "/jobs/loop", {"name": "x", "by": "decisions"}).json()["detail"]
+    assert rob.send("POST", "/jobs/loop", {"name": "x", "options": {"rounds": 0}}).status_code == 422
+    made = rob.send("POST", "/jobs/loop", {"name": "x"}).json()
+    assert (made["kind"], made["title"], made["unit"], made["sequence_id"]) == (
+        "loop",
+        "x: 1 round over 1 scans",
+        "scans",
+        None,
+    )
+    for kind in ("register", "train", "loop"):
+        assert ann.send("POST", f"/jobs/{kind}", {"name": "x"}).status_code in (403, 422)
+    listed = rob.get("/jobs", kind="loop", search="round")["items"]
+    assert [item["id"] for item in listed] == [made["id"]]
+    assert LoopCreate.model_validate({"name": "x"}).rounds == 1 and service.KINDS
+
+
+def test_the_bar_of_a_loop_is_filled_without_gaps() -> None:
+    for rounds in (1, 3):
+        for first in (True, False):
+            spans = plan_loop(rounds, first)
+            assert len(spans) == 2 * rounds + first
+            assert spans[0][0] == 0.0 and spans[-1][1] == 1.0
+            assert all(a[1] == b[0] for a, b in pairwise(spans))

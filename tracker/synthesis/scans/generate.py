@@ -8,23 +8,19 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.scan import Scan
-from tracker.errors import TrackerError
 from tracker.model.mirroring import MIRROR
-from tracker.synthesis.scans.angles import clip_to_limits, pose_angles, vary
+from tracker.synthesis.scans.arrange import SIDES, arrange
 from tracker.synthesis.scans.colors import paint
 from tracker.synthesis.scans.deform import PosedHand, deform
 from tracker.synthesis.scans.generated_scan import GeneratedScan, HandTruth
 from tracker.synthesis.scans.held import place_object
 from tracker.synthesis.scans.pose_list import POSE_NAMES, POSES
 from tracker.synthesis.scans.scanner import Scanner, scan_surface
-from tracker.synthesis.scans.settle import settle
-from tracker.synthesis.scans.subject import BONES, Subject, load_subject, load_surface
+from tracker.synthesis.scans.subject import BONES, Subject, load_surface
 from tracker.synthesis.scans.ties import OVERHANG, load_ties
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
-
-SIDES = ("right", "left")
 
 FOREARM = (0.030, 0.045)
 """How much forearm is in a scan, behind the untrained hand's border, m."""
@@ -78,7 +74,7 @@ def generate_truth(
         options: See `ScanOptions`.
     """
     options = options or ScanOptions()
-    person, name, angles = _arrange(subject, pose, side, seed, options)
+    person, name, angles = arrange(subject, pose, side, seed, options.is_varied)
     return _make_truth(person, name, deform(person, angles, options.strength), side)
 
 
@@ -99,7 +95,7 @@ def generate_scan(
 ) -> GeneratedScan:
     """A scan with its truth; the same arguments, which are those of `generate_truth`, make the same scan."""
     options = options or ScanOptions()
-    person, pose_name, angles = _arrange(subject, pose, side, seed, options)
+    person, pose_name, angles = arrange(subject, pose, side, seed, options.is_varied)
     posed = deform(person, angles, options.strength)
     truth = _make_truth(person, pose_name, posed, side)
     number = POSE_NAMES.index(pose_name) if pose_name in POSE_NAMES else len(POSES)
@@ -133,33 +129,6 @@ def generate_scan(
 
 def scan_name(subject: int, pose_name: str, side: str, seed: int) -> str:
     return f"subject{subject:02d}_{pose_name}_{side}_{seed}"
-
-
-def _arrange(
-    subject: int, pose: int | str | Array, side: str, seed: int, options: ScanOptions
-) -> tuple[Subject, str, Array]:
-    """Who it is, the name of the pose, and the angles (31,) rad from the rest pose."""
-    if side not in SIDES:
-        raise TrackerError(f"A hand is 'right' or 'left', not {side!r}.")
-    if subject == 0:
-        raise TrackerError("There is no subject 0; subjects are numbered from 1.")
-    person = load_subject(subject)
-    if isinstance(pose, np.ndarray):
-        if pose.shape != (len(person.dofs),):
-            raise TrackerError(f"A pose has {len(person.dofs)} angles; got an array of the shape {pose.shape}.")
-        return person, "given", pose.astype(np.float64)
-    if isinstance(pose, str):
-        if pose not in POSE_NAMES:
-            raise TrackerError(f"There is no pose {pose!r}; choose one of {', '.join(POSE_NAMES)}.")
-        pose = POSE_NAMES.index(pose)
-    if not 0 <= pose < len(POSES):
-        raise TrackerError(f"There is no pose {pose}; there are 0 to {len(POSES) - 1}.")
-    angles = pose_angles(person, POSES[pose])
-    if not options.is_varied:
-        return person, POSE_NAMES[pose], settle(person, clip_to_limits(person, angles), POSES[pose].touches)
-    habit = np.random.default_rng([subject, pose, 0])
-    moment = np.random.default_rng([subject, pose, SIDES.index(side), seed, 0])
-    return person, POSE_NAMES[pose], settle(person, vary(person, angles, habit, moment), POSES[pose].touches)
 
 
 def _mirror(truth: HandTruth) -> HandTruth:

@@ -29,7 +29,7 @@ class TrainingOptions:
     with_mirrored: bool = True
     ridges: tuple[float, ...] = RIDGES
     num_shapes: int = 10
-    joint_stiffness: float = 1.0
+    joint_stiffness: float = 2.0
     weight_stiffness: float = 0.1
     threads: int = 1
 

@@ -24,11 +24,11 @@ def test_a_template_of_ones_own_meets_the_registration_it_was_made_from():
     assert judge_model(model, [hand]).vertices[0] > 3.0 * errors.vertices[0]
 
 
-def test_errors_are_in_mm_and_the_truth_is_nearer_than_any_model():
+def test_errors_are_in_mm_and_the_true_vertices_are_near_the_surface():
     model, hand = untrained_hand("right"), make_hand("relaxed")
     errors = judge_model(model, [hand]).summarize()
     assert 0.2 < errors["scan_to_mesh_mm"] < 3.0 and 0.3 < errors["vertices_mm"] < 6.0
-    assert measure_floor(model, [hand]) < errors["scan_to_mesh_mm"]
+    assert 0.05 < measure_floor(model, [hand]) < 0.5
 
 
 def test_templates_of_few_kinds_are_met_with_as_many_components_by_people_left_out():

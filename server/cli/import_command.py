@@ -1,4 +1,4 @@
-"""`handloom import`: a recording, or labels of one, from files on this machine into the studio."""
+"""`handloom import`: a recording, labels of one, or scans, from files on this machine into the studio."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ NUMBERS = {
     "depth-scale": "metres per unit of the depth images, 0.001 for millimetres",
     "world-unit-m": "metres per unit of the calibration",
 }
+SCANS = "scans"
 TEXTS = {
     "name": "name of the recording",
     "intrinsics": "TUM RGB-D: the camera it was recorded with",
@@ -36,7 +37,7 @@ TEXTS = {
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "import",
-        help="bring a recording, or labels of one, into the studio",
+        help="bring a recording, labels of one, or scans into the studio",
         description="Bring a recording into the studio, or with --into the labels of recordings that are there: all of "
         "it, or nothing and why. The format is recognised when it can be.",
     )
@@ -44,8 +45,14 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--format",
         metavar="F",
-        help=f"recording_folder, rgbd_folder, tum_rgbd or synced_videos; of labels: {', '.join(LABELS)}",
+        help=f"recording_folder, rgbd_folder, tum_rgbd or synced_videos; {SCANS}; of labels: {', '.join(LABELS)}",
     )
+    scans = parser.add_argument_group("scans: PLY, OBJ or STL files, or a folder of them, perhaps with a scans.json")
+    scans.add_argument("--collection", metavar="NAME", help="what they belong to (the folder's name)")
+    scans.add_argument("--subject", metavar="NAME", help="whose hand, where no scans.json says it")
+    scans.add_argument("--pose", metavar="NAME", help="which pose, where no scans.json says it")
+    scans.add_argument("--side", choices=("right", "left"), help="which hand, where no scans.json says it")
+    scans.add_argument("--metres-per-unit", type=float, metavar="N", help="of the files; guessed when left out")
     labels = parser.add_argument_group("labels")
     labels.add_argument("--into", nargs="+", metavar="NAME", help="labels: names or ids of the recordings they are of")
     labels.add_argument(
@@ -74,6 +81,8 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(f"{args.path}: does not exist; needed a recording's folder or a video.")
     if args.into or args.format in LABELS:
         return _import_labels(args, path)
+    if args.format == SCANS or (args.format is None and holds_scans(path)):
+        return _import_scans(args, path)
     names = ("format", *NUMBERS, *TEXTS, "distortion", "hands", "allow-gaps")
     given = {name.replace("-", "_"): getattr(args, name.replace("-", "_")) for name in names}
     options = {name: value for name, value in given.items() if value is not None}
@@ -81,6 +90,45 @@ def run(args: argparse.Namespace) -> int:
         row = import_recording(studio, path, options)
     result = {"id": str(row.id), "name": row.name, "frames": row.frame_count, "report": row.report}
     return answer(args, result, f"{row.name}: {row.frame_count} frames imported as {row.id}")
+
+
+def holds_scans(path: Path) -> bool:
+    """Whether a path is a scan or a folder of scans, and no recording."""
+    suffixes = (".ply", ".obj", ".stl")
+    if path.is_file():
+        return path.suffix.lower() in suffixes
+    if (path / "scans.json").is_file():
+        return True
+    files = [file for file in path.iterdir() if file.is_file()]
+    return any(file.suffix.lower() in suffixes for file in files) and not (path / "sequence.json").exists()
+
+
+def _import_scans(args: argparse.Namespace, path: Path) -> int:
+    import server.app.parts  # the tables that those of scans name
+    from server.accounts.models import LOCAL_ACCOUNT_ID
+    from server.scans.adding import add_scans, make_options
+
+    assert server.app.parts.ROUTERS
+    names = ("collection", "subject", "pose", "side", "metres_per_unit")
+    given = {name: value for name in names if (value := getattr(args, name)) is not None}
+    own_name = path.stem if path.is_file() else path.name
+    with open_studio() as studio:
+        options = make_options({"collection": own_name or "scans"} | given)
+        done = add_scans(studio.database, studio.storage, path, options, LOCAL_ACCOUNT_ID, moves=False)
+    for refusal in done.refused:
+        sys.stderr.write(f"handloom: {refusal.file}: not imported. {refusal.detail}\n")
+    for note in done.notes:
+        sys.stderr.write(f"handloom: {note}\n")
+    if not done.added and not done.known:
+        raise CommandError(f"{args.path}: none of {len(done.refused)} scans could be imported.")
+    result = {
+        "collection": options.collection,
+        "added": [{"id": str(row.id), "name": row.name} for row in done.added],
+        "known": [{"id": str(row.id), "name": row.name} for row in done.known],
+        "refused": [refusal.model_dump() for refusal in done.refused],
+    }
+    told = f"{len(done.added)} scans imported into {options.collection}, {len(done.known)} were there already"
+    return answer(args, result, told)
 
 
 def _import_labels(args: argparse.Namespace, path: Path) -> int:

@@ -8,12 +8,13 @@ from types import TracebackType
 from typing import Any
 
 from server.client.annotations import Annotations
+from server.client.curation import Curation
 from server.client.jobs import Jobs
 from server.client.link import Link
 
 
 class Studio:
-    """Recordings, annotations, jobs and tracks of a studio, as the dictionaries that the API gives (`docs/api.md`).
+    """Recordings, annotations, jobs, tracks, scans and hand models of a studio, as the dictionaries of `docs/api.md`.
 
     Args:
         url: Such as `http://127.0.0.1:8000`.
@@ -24,6 +25,7 @@ class Studio:
     def __init__(self, url: str = "http://127.0.0.1:8000", token: str | None = None, timeout: float = 60.0) -> None:
         self.link = Link(url, token, timeout)
         self.jobs = Jobs(self.link)
+        self.curation = Curation(self.link)
 
     def __enter__(self) -> Studio:
         return self

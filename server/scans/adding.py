@@ -74,11 +74,22 @@ def parse_options(text: str) -> ScanOptions:
     if not text.strip():
         return ScanOptions()
     try:
-        return ScanOptions.model_validate_json(text)
+        options = json.loads(text)
+    except (ValueError, RecursionError):
+        options = None
+    if not isinstance(options, dict):
+        raise InvalidError(f"The field `options` is {text[:80]!r}; needed a JSON object.")
+    return make_options(options)
+
+
+def make_options(options: dict[str, Any]) -> ScanOptions:
+    """Options that somebody gave; raises for what they cannot be."""
+    try:
+        return ScanOptions.model_validate(options)
     except ValidationError as fault:
         first = fault.errors()[0]
-        place = ".".join(str(part) for part in first["loc"]) or "the whole"
-        raise InvalidError(f"The field `options` cannot be used: {place}: {first['msg']}.") from None
+        place = ".".join(str(part) for part in first["loc"]) or "the options"
+        raise InvalidError(f"{place}: {first['msg']} (got {str(first['input'])[:80]!r}).") from None
 
 
 def add_scans(

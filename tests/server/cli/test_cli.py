@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -14,6 +15,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
+
+from tests.server.conftest import GeneratedHand
 
 ROOT = Path(__file__).resolve().parents[3]
 API = "api/v1"
@@ -245,3 +248,21 @@ def test_the_help_of_import_names_the_formats_there_are() -> None:
     command = [sys.executable, "-m", "server.cli", "import", "--help"]
     shown = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert [name for name in IMPORT_FORMATS if name not in shown] == []
+
+
+def test_a_folder_of_scans_is_imported_once_and_what_is_none_is_named(
+    tmp_path: Path, generated_hand: GeneratedHand
+) -> None:
+    folder = tmp_path / "Lab scans"
+    folder.mkdir()
+    shutil.copyfile(generated_hand.folder / "hand.ply", folder / "one.ply")
+    (folder / "broken.stl").write_bytes(b"solid nothing")
+    (folder / "scans.json").write_text(json.dumps([{"file": "one.ply", "subject": "Ada", "side": "right"}]))
+    first = handloom(tmp_path / "data", "import", str(folder), "--json")
+    assert first.returncode == 0, first.stderr
+    made = json.loads(first.stdout)
+    assert (made["collection"], [item["name"] for item in made["added"]]) == ("Lab scans", ["one"])
+    assert [item["file"] for item in made["refused"]] == ["broken.stl"] and "broken.stl" in first.stderr
+    again = json.loads(handloom(tmp_path / "data", "import", str(folder), "--json").stdout)
+    assert (again["added"], [item["id"] for item in again["known"]]) == ([], [made["added"][0]["id"]])
+    assert handloom(tmp_path / "data", "import", str(folder / "broken.stl")).returncode == 2

@@ -55,7 +55,14 @@ def test_an_answer_that_was_lost_is_asked_for_again_and_the_change_is_made_once(
     remote: Remote, add_recording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     annotations = remote.annotations(add_recording()["id"])
-    request, lost = remote.link._client.request, iter([True, True])
+    lose_first_answers(remote, monkeypatch, 2)
+    assert annotations.put("cam0", 0, "right", POINTS)["revision"] == 1
+    assert annotations.put("cam0", 0, "right", POINTS, revision=1)["revision"] == 2
+
+
+def lose_first_answers(remote: Remote, monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+    """Have the first answers get lost after the studio has given them."""
+    request, lost = remote.link._client.request, iter([True] * count)
 
     def lose_answers(*arguments: object, **options: object) -> httpx.Response:
         answer = request(*arguments, **options)
@@ -64,8 +71,6 @@ def test_an_answer_that_was_lost_is_asked_for_again_and_the_change_is_made_once(
         return answer
 
     monkeypatch.setattr(remote.link._client, "request", lose_answers)
-    assert annotations.put("cam0", 0, "right", POINTS)["revision"] == 1
-    assert annotations.put("cam0", 0, "right", POINTS, revision=1)["revision"] == 2
 
 
 def test_a_job_is_watched_to_its_end(remote: Remote, studio: Studio, add_recording) -> None:

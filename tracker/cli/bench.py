@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tracker.cli.bench_registration import add_registration
 from tracker.cli.command import add_json, run_guarded
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError
@@ -29,6 +30,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> argparse._SubParsersA
     parser = subparsers.add_parser("bench", help="where the time goes", description="Measure speed on this machine.")
     subjects = parser.add_subparsers(required=True, metavar="SUBJECT")
     _add_tracking(subjects)
+    add_registration(subjects)
     return subjects
 
 

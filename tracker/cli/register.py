@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +20,10 @@ if TYPE_CHECKING:
     from tracker.registration.options import RegistrationOptions
 
 Job = tuple[Path, Path, Path | None, Path | None, "RegistrationOptions", float | None]
+
+
+NO_SCANS = ("truth.npz", "registration.npz", "registration.ply")
+"""Files of other meaning that may lie among scans."""
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
@@ -50,7 +56,7 @@ def register(args: argparse.Namespace) -> list[dict[str, Any]]:
         raise TrackerError(f"--processes {args.processes}: needed 1 to 256.")
     paths = list_scans(args.scans)
     if args.model is not None:
-        _load_model(args.model)  # said before anything is begun
+        load_hand_model(args.model)  # said before anything is begun
     options = RegistrationOptions(side=args.side, use_colors=not args.no_colors)
     jobs: list[Job] = []
     for path, name in name_scans(paths):
@@ -78,7 +84,7 @@ def list_scans(given: list[Path]) -> list[Path]:
     for path in given:
         if path.is_dir():
             inside = (p for p in sorted(path.rglob("*")) if p.suffix.lower() in SCAN_SUFFIXES and p.is_file())
-            paths += [p for p in inside if p.name not in ("truth.npz", "registration.npz", "registration.ply")]
+            paths += [p for p in inside if p.parent.name != "truth" and p.name not in NO_SCANS]
         else:
             paths.append(path)
     if not paths:
@@ -128,7 +134,7 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
     path, folder, model_path, start_folder, options, metres_per_unit = job
     try:
         scan = load_scan(path, metres_per_unit)
-        model = _load_model(model_path)
+        model = load_hand_model(model_path)
         if not again and (folder / REGISTRATION_FILE).is_file():
             try:
                 done = load_registration(folder)
@@ -160,33 +166,44 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
 _models: dict[Path | None, Any] = {}
 
 
-def _load_model(path: Path | None):
+def load_hand_model(path: Path | None):
+    """The model of a file, or the untrained hand; the same object every time, so that work on it is done once."""
     if path not in _models:
         from tracker.model.blend_files import load_blend_model
+        from tracker.model.mano_files import is_mano_npz, load_mano
+        from tracker.model.npz_arrays import list_npz_arrays
         from tracker.model.untrained_hand import untrained_hand
 
-        _models[path] = untrained_hand() if path is None else load_blend_model(path)
+        if path is None:
+            _models[path] = untrained_hand()
+        elif path.suffix.lower() == ".pkl" or (path.suffix == ".npz" and is_mano_npz(list_npz_arrays(path))):
+            _models[path] = load_mano(path)
+        else:
+            _models[path] = load_blend_model(path)
     return _models[path]
 
 
 def _read_labels(path: Path) -> tuple[str, str]:
     """Subject and pose from `scans.json` beside the scan or one folder up, if that names it; else empty."""
-    import json
-
     for folder in (path.parent, path.parent.parent):
-        listing = folder / "scans.json"
-        if not listing.is_file() or listing.stat().st_size > 64 * 2**20:
-            continue
-        try:
-            document = json.loads(listing.read_text())
-        except (OSError, ValueError):
-            continue
-        rows = document.get("scans", []) if isinstance(document, dict) else document
-        for row in rows if isinstance(rows, list) else []:
-            file = row.get("file", "") if isinstance(row, dict) else ""
-            if isinstance(file, str) and file and Path(file).stem == path.stem:
-                return str(row.get("subject", ""))[:100], str(row.get("pose", ""))[:100]
+        row = _read_listing(folder / "scans.json").get(path.stem)
+        if row is not None:
+            return str(row.get("subject", ""))[:100], str(row.get("pose", ""))[:100]
     return "", ""
+
+
+@lru_cache(maxsize=4)
+def _read_listing(path: Path) -> dict[str, dict[str, Any]]:
+    """Rows of a `scans.json` by the names of their files; none if there is no such list."""
+    try:
+        if path.stat().st_size > 64 * 2**20:
+            return {}
+        document = json.loads(path.read_text())
+    except (OSError, ValueError):
+        return {}
+    rows = document.get("scans") if isinstance(document, dict) else document
+    rows = [row for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
+    return {Path(row["file"]).stem: row for row in rows if isinstance(row.get("file"), str)}
 
 
 def show(results: list[dict[str, Any]]) -> str:

@@ -114,7 +114,6 @@ def register_scan(
         count, settings = options.last_stage
         centred = replace(surface.state, translation=surface.state.translation + surface.offset)
         last = tools.fit.fit(centred, hand.first(count), settings)
-        surface = replace(surface, state=last.state, model_vertices=last.posed.vertices)
     with clock.measure("judge"):
         flip = np.array([1.0 if side == "right" else -1.0, 1.0, 1.0])
         distances = _measure(tools, surface.vertices, scan, keep, flip)
@@ -122,11 +121,11 @@ def register_scan(
     tell("done", 1.0)
     return Registration(
         vertices=surface.vertices * flip,
-        model_vertices=surface.model_vertices * flip,
+        model_vertices=last.posed.vertices * flip,
         faces=np.asarray(tools.model.faces if side == "right" else tools.model.faces[:, ::-1], dtype=np.int64),
-        pose=surface.state.pose,
-        shape=surface.state.shape,
-        translation=surface.state.translation,
+        pose=last.state.pose,
+        shape=last.state.shape,
+        translation=last.state.translation,
         side=side,
         verdict=verdict.name,
         score=verdict.score,

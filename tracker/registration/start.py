@@ -21,16 +21,17 @@ from tracker.registration.vertex_normals import find_unit_normals
 
 Array = npt.NDArray[np.float64]
 
-FEW, SOME, MORE = 200, 500, 1000
-"""Points that are fitted stiffly, coarsely and finely."""
+FEW, SOME, MORE, MANY = 200, 500, 1000, 2500
+"""Points that are fitted stiffly, coarsely, finely and at last."""
 
-ROUNDS = 2
+ROUNDS, RIVALS = 2, 3
 
 KEPT_STIFF, KEPT_COARSE = 10, 3
 """Candidates that go on."""
 
 COARSE = (FitSettings(20.0, 6, 0.7, tolerance=5e-3, back=250), FitSettings(8.0, 6, 0.7, tolerance=5e-3, back=250))
 FINE = (FitSettings(10.0, 6, 0.7, tolerance=3e-3, back=250), FitSettings(4.0, 8, 0.7, tolerance=2e-3, back=250))
+LAST = (FitSettings(6.0, 8, 0.5, tolerance=1e-3, back=400),)
 JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=3.0)
 
 
@@ -94,8 +95,11 @@ class StartSearch:
         tell(0.7)
         found.sort(key=lambda start: start.cost)
         best = self._try_fingers(scans[found[0].side].first(MORE), found[0])
+        # the first looks were short and at few points: the best of them are looked at again, longer
+        last = [self._fit(s.evaluation.state, scans[s.side].first(MANY), s.side, LAST) for s in [best, *found[:RIVALS]]]
+        last.sort(key=lambda start: start.cost)
         tell(1.0)
-        return [best, *found]
+        return last
 
     def _place(self, scan: ScanPoints, grid: NearestGrid) -> list[HandState]:
         """The best stiff hands, no two nearly alike."""

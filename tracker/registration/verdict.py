@@ -21,8 +21,30 @@ Array = npt.NDArray[np.float64]
 JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=3.0)
 JUDGE_POINTS = 4000
 
-GOOD, BAD = 0.35, 0.7
-"""Scores below the one are good, above the other bad."""
+LIMITS = {
+    "stretch": 1.02,
+    "scan_to_surface": 0.10,
+    "scan_to_model": 1.4,
+    "model_to_scan": 4.2,
+    "moved": 2.8,
+    "shape": 1.8,
+}
+"""A registration is good when every measure is below its limit, see docs/registration.md."""
+
+BAD = 1.6
+"""A measure so many times its limit makes it bad."""
+
+LEAST_COVERED = 0.35
+
+TOLD = {
+    "stretch": "the surface is stretched against the model (edges differ by {:.2f} mm)",
+    "scan_to_surface": "parts of the scan lie away from the surface ({:.2f} mm² a point)",
+    "scan_to_model": "parts of the scan lie away from the model ({:.1f} mm² a point)",
+    "model_to_scan": "parts of the model have no scan beside them ({:.1f} mm² a vertex)",
+    "moved": "the surface left the model ({:.1f} mm)",
+    "shape": "the shape is unlike a hand's ({:.1f} standard deviations)",
+    "covered": "only {:.0%} of the points lie beside the hand",
+}
 
 
 @dataclass(frozen=True)
@@ -51,10 +73,14 @@ def judge(
         count: Points that may be a hand's.
     """
     measures = measure(fit, scan, evaluation, surface, distances, count)
-    score = float(np.clip(measures["model_to_scan"] / 10.0, 0.0, 1.0))
-    reasons = []
-    name = "good" if score < GOOD else "doubtful" if score < BAD else "bad"
-    return Verdict(name, score, tuple(reasons), measures)
+    shares = {name: measures[name] / limit for name, limit in LIMITS.items()}
+    if measures["covered"] < LEAST_COVERED:
+        shares["covered"] = 2.0 * LEAST_COVERED / max(measures["covered"], 1e-3)
+    worst = max(shares.values())
+    score = float(worst / (1.0 + worst))
+    name = "good" if worst < 1.0 else "doubtful" if worst < BAD else "bad"
+    faults = sorted((name for name in shares if shares[name] >= 1.0), key=lambda name: -shares[name])
+    return Verdict(name, score, tuple(TOLD[fault].format(measures[fault]) for fault in faults), measures)
 
 
 def measure(
@@ -76,19 +102,20 @@ def measure(
     """
     points = scan.first(JUDGE_POINTS)
     judged = fit.evaluate(evaluation.state, points, JUDGE)
-    free_matches = fit.search.match(surface.vertices, points.points, points.normals, 4e-3 * 4)
+    free_matches = fit.search.match(surface.vertices, points.points, points.normals, 0.016)
+    beside = ~fit.search.match(surface.vertices, points.points, np.zeros_like(points.normals), 1.0).on_rim
     hidden, back = _look_back(fit, scan, judged.posed.vertices)
     hidden_free, _ = _look_back(fit, scan, surface.vertices)
     edges = fit.search.faces[:, [0, 1]]
     own = surface.vertices[edges[:, 0]] - surface.vertices[edges[:, 1]]
-    model = judged.posed.vertices[edges[:, 0]] - judged.posed.vertices[edges[:, 1]]
+    model = surface.model_vertices[edges[:, 0]] - surface.model_vertices[edges[:, 1]]
     apart = surface.vertices - judged.posed.vertices
     return {
-        "scan_to_model": _robust_mean(judged.matches),
+        "scan_to_model": _robust_mean(judged.matches, beside),
         "model_to_scan": back,
         "hidden": hidden,
         "hidden_free": hidden_free,
-        "scan_to_surface": _robust_mean(free_matches),
+        "scan_to_surface": _robust_mean(free_matches, beside),
         "covered": float(np.isfinite(distances).sum()) / max(count, 1),
         "moved": float(np.linalg.norm(apart - apart.mean(axis=0), axis=1).mean() * MM),
         "stretch": float(np.sqrt(((own - model) ** 2).sum(axis=1).mean()) * MM),
@@ -97,10 +124,10 @@ def measure(
     }
 
 
-def _robust_mean(matches: Matches) -> float:
+def _robust_mean(matches: Matches, beside: npt.NDArray[np.bool_]) -> float:
     square = 16.0
     r2 = np.where(matches.faces >= 0, matches.offsets * MM, 1e3) ** 2
-    counted = ~matches.on_rim
+    counted = beside & ~matches.on_rim
     return float((r2 * square / (r2 + square))[counted].mean()) if counted.any() else square
 
 

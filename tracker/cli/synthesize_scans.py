@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import time
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,12 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--poses", default="all", metavar="LIST", help="all, fists, or names such as fist,tip_pinch (all)"
+    )
+    parser.add_argument(
+        "--motions",
+        type=Path,
+        metavar="FOLDER",
+        help="T16's models and motions; then 09-60 is a pose, too: its frame 60",
     )
     parser.add_argument("--sides", default="right,left", metavar="LIST", help="right, left or right,left (both)")
     parser.add_argument("--repeats", type=int, default=1, metavar="N", help="scans of each pose (1)")
@@ -61,13 +68,14 @@ def synthesize_scans(args: argparse.Namespace) -> dict[str, Any]:
     options = ScanOptions(scanner, args.strength, args.objects, has_forearm=args.forearm != "no")
     wanted = ScanSet(
         parse_subjects(args.subjects),
-        parse_poses(args.poses),
+        parse_poses(args.poses, args.motions is not None),
         parse_sides(args.sides),
         args.repeats,
         args.seed,
         options,
         args.forearm == "half",
         args.surfaces,
+        "" if args.motions is None else str(args.motions.resolve()),
     )
     began = time.monotonic()
     line = ProgressLine(f"scanning {len(wanted)} hands")
@@ -98,14 +106,16 @@ def parse_subjects(text: str) -> tuple[int, ...]:
     return tuple(dict.fromkeys(numbers))
 
 
-def parse_poses(text: str) -> tuple[str, ...]:
-    """`all`, `fists`, or names."""
+def parse_poses(text: str, has_motions: bool) -> tuple[str, ...]:
+    """`all`, `fists`, or names; `09-60` is frame 60 of a motion."""
     from tracker.synthesis.scans.pose_list import FISTS, POSE_NAMES
 
     if text in ("all", "fists"):
         return POSE_NAMES if text == "all" else FISTS
     names = tuple(dict.fromkeys(word.strip() for word in text.split(",")))
-    unknown = [name for name in names if name not in POSE_NAMES]
+    unknown = [name for name in names if name not in POSE_NAMES and not re.fullmatch(r"[0-9]{1,3}-[0-9]{1,6}", name)]
+    if not has_motions and not unknown and not set(names) <= set(POSE_NAMES):
+        raise TrackerError(f"--poses {text!r}: frames of motions need --motions FOLDER, T16's models and motions.")
     if unknown:
         raise TrackerError(f"There is no pose {unknown[0]!r}; there are {', '.join(POSE_NAMES)}.")
     return names

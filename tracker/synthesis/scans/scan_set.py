@@ -18,6 +18,7 @@ from tracker.capture.scan import save_scan
 from tracker.errors import TrackerError
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan, scan_name
 from tracker.synthesis.scans.generated_scan import GeneratedScan
+from tracker.synthesis.scans.motions import load_motion_angles
 
 Array = npt.NDArray[np.float64]
 
@@ -30,11 +31,12 @@ class ScanSet:
     """Which scans to generate: every subject in every pose with every side, `repeats` times.
 
     Attributes:
-        subjects, poses, sides: See `generate_scan`; poses by name.
+        subjects, poses, sides: See `generate_scan`; poses by name, or as "09-60" frame 60 of a motion of T16.
         repeats: Times, with the seeds `seed`, `seed` + 1 and so on.
         seed: See repeats.
         options: Of all scans.
         every_second_without_forearm: Whether half of the scans end at the wrist.
+        motions: T16's folder, for frames of its motions.
         has_surfaces: Whether the truth holds the scanned surface too (330 kB a scan).
     """
 
@@ -46,6 +48,7 @@ class ScanSet:
     options: ScanOptions = field(default_factory=ScanOptions)
     every_second_without_forearm: bool = False
     has_surfaces: bool = False
+    motions: str = ""
 
     def items(self) -> Iterator[tuple[int, str, str, int, ScanOptions]]:
         """Subject, pose, side, seed and options of each scan."""
@@ -86,7 +89,7 @@ def write_scan_set(
         scan, truth = folder / row["file"], folder / row["truth"]
         # The truth is written last: where it is, the scan is.
         if not truth.exists():
-            made = generate_scan(subject, pose, side, seed, options)
+            made = _generate(wanted.motions, subject, pose, side, seed, options)
             save_scan(made.scan, scan)
             write_atomically(truth, pack_truth(made, wanted.has_surfaces))
         if progress is not None:
@@ -99,6 +102,16 @@ def _read_settings(path: Path) -> Any:
         return json.loads(path.read_text())["settings"]
     except (ValueError, KeyError, TypeError) as error:
         raise TrackerError(f"{path} is not a list of generated scans; choose another folder.") from error
+
+
+def _generate(motions: str, subject: int, pose: str, side: str, seed: int, options: ScanOptions) -> GeneratedScan:
+    sequence, dash, moment = pose.partition("-")
+    if not dash:
+        return generate_scan(subject, pose, side, seed, options)
+    angles = load_motion_angles(Path(motions), sequence, side, int(moment), subject)
+    made = generate_scan(subject, angles, side, seed, options)
+    named = replace(made.scan, name=scan_name(subject, pose, side, seed))
+    return replace(made, scan=named, pose_name=pose)
 
 
 def describe(wanted: ScanSet) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import IO, Any
 
+import numpy as np
 from sqlalchemy import func, select, tuple_
 from sqlalchemy.orm import Session
 
@@ -287,8 +288,12 @@ def list_files(storage: Storage, row: TrainingSetRow) -> list[tuple[str, Any]]:
 
 
 def write_archive(storage: Storage, row: TrainingSetRow, file: IO[bytes]) -> None:
-    """A set as a zip: a folder for each registration, and the list."""
+    """A set as a zip: a folder for each registration, the list, and the scans' names for `train-model --accepted`."""
+    accepted = set()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         archive.writestr("training_set.json", storage.document(AREA, row.id).read_bytes())
         for name, path in list_files(storage, row):
             archive.write(path, name)
+            with np.load(path, allow_pickle=False) as arrays:
+                accepted.add(str(arrays["scan"]))
+        archive.writestr("accepted.json", json.dumps(sorted(accepted)))

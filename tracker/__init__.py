@@ -177,7 +177,6 @@ _HOMES = {
     "TrackSetup": "tracker.tracking.setup",
     "TrackState": "tracker.tracking.state",
     "make_training_set": "tracker.training.training_set",
-    "mirror_blend": "tracker.model.blend_mirroring",
     "train_model": "tracker.training.train",
     "triangulate": "tracker.capture.triangulation",
     "Training": "tracker.training.train",

@@ -10,6 +10,7 @@ import { decisionOf, shownIn } from "../../state/curation";
 import { decisionLog } from "../../state/deciding";
 import type { Standing } from "../../state/decisionLog";
 import { useKeyOf } from "../../state/keys";
+import { hasRole, useMe } from "../../state/me";
 import { HandRail } from "../hand3d/HandRail";
 import { HandView } from "../hand3d/HandView";
 import { handHandlers, useLook } from "../hand3d/useLook";
@@ -59,8 +60,11 @@ export default function CuratePage() {
   // Other pages show what was decided here.
   useEffect(() => () => void client.invalidateQueries({ queryKey: registrationKeys.all }), [client]);
 
+  const mayDecide = hasRole(useMe(), "reviewer");
   const decide = (decision: Standing, why: readonly string[] = []): void => {
-    if (hand.isDrawn) curation.decide(decision, why);
+    // As it is now, not as of the last rendering: nothing is judged that is not on the screen, and no key is lost.
+    const isSeen = drawn.current !== "" && drawn.current === shownIn(curation.store.get())?.id;
+    if (isSeen && mayDecide) curation.decide(decision, why);
   };
   // After a click the keys belong to the picture again.
   const decideByClick = (decision: Standing, why: readonly string[] = []): void => {
@@ -133,7 +137,7 @@ export default function CuratePage() {
           {item && <div className={classes.place}>{`${state.place + 1}${state.hasMore ? "" : ` of ${state.items.length}`} · ${item.scan.name}`}</div>}
           <DecisionRefusals status={status} onGo={curation.goTo} />
         </HandView>
-        {item ? <DecisionPanel item={item} mine={mine} reasons={reasons} onDecide={decideByClick} /> : <aside className={classes.panel} aria-label="The registration and the decision" />}
+        {item ? <DecisionPanel item={item} mine={mine} reasons={reasons} mayDecide={mayDecide} onDecide={decideByClick} /> : <aside className={classes.panel} aria-label="The registration and the decision" />}
       </div>
       <div className={classes.line}>
         <SaveState status={{ ...status, refusals: status.refusals.size }} what="Every decision is kept in this browser until the server has it" action="curate.save" onFlush={() => decisionLog().flush()} />

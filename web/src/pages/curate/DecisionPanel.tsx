@@ -13,6 +13,7 @@ interface DecisionPanelProps {
   item: Registration;
   mine: Standing | null;
   reasons: readonly Reason[];
+  mayDecide: boolean;
   onDecide: (decision: Standing, reasons?: readonly string[]) => void;
 }
 
@@ -25,7 +26,7 @@ const ACTS = [
 const mm = (value: number | null): string => (value === null ? "–" : `${formatNumber(value, 2)} mm`);
 
 /** What is judged, what the program thinks of it, and what one can say. */
-export function DecisionPanel({ item, mine, reasons, onDecide }: DecisionPanelProps) {
+export function DecisionPanel({ item, mine, reasons, mayDecide, onDecide }: DecisionPanelProps) {
   const keyOf = useKeyOf();
   const { scan } = item;
   return (
@@ -45,7 +46,19 @@ export function DecisionPanel({ item, mine, reasons, onDecide }: DecisionPanelPr
             The program says
           </Text>
           <VerdictBadge verdict={item.verdict} />
+          {(mine || (item.decision && !item.is_hidden)) && (
+            <Text size="xs" className="quiet" ml={8}>
+              {mine ? "you" : formatCount(item.reviewer_count, "person", "people")}
+            </Text>
+          )}
+          {mine ? <DecisionBadge decision={mine} /> : item.decision && !item.is_hidden && <DecisionBadge decision={item.decision} />}
         </Group>
+        {!mine && item.is_hidden && (
+          <Group gap={8} mt={8} wrap="nowrap">
+            <IconEyeOff size={16} aria-hidden style={{ flex: "none" }} />
+            <Text size="xs">Second review: somebody has decided; what they said is hidden from you.</Text>
+          </Group>
+        )}
         {item.reasons.length > 0 && (
           <ul className={classes.doubts}>
             {item.reasons.map((reason) => (
@@ -54,9 +67,14 @@ export function DecisionPanel({ item, mine, reasons, onDecide }: DecisionPanelPr
           </ul>
         )}
       </div>
+      {!mayDecide && (
+        <Text size="xs" className="quiet">
+          Reviewers and leads decide; you look on.
+        </Text>
+      )}
       <div className={classes.acts} role="group" aria-label="Decision">
         {ACTS.map(({ kind, label, icon: Icon }) => (
-          <button key={kind} type="button" className={classes.act} data-kind={kind} aria-pressed={mine === kind} onClick={() => onDecide(kind)}>
+          <button key={kind} type="button" className={classes.act} data-kind={kind} aria-pressed={mine === kind} disabled={!mayDecide} onClick={() => onDecide(kind)}>
             <Icon size={18} aria-hidden />
             {label}
             <Kbd size="xs" aria-hidden>
@@ -72,7 +90,7 @@ export function DecisionPanel({ item, mine, reasons, onDecide }: DecisionPanelPr
         <ol className={classes.reasons}>
           {reasons.map((reason, at) => (
             <li key={reason.name}>
-              <button type="button" className={classes.reason} onClick={() => onDecide("reject", [reason.name])}>
+              <button type="button" className={classes.reason} disabled={!mayDecide} onClick={() => onDecide("reject", [reason.name])}>
                 <Kbd size="xs" aria-hidden>
                   {keyOf(`curate.reason${at + 1}`) || "–"}
                 </Kbd>
@@ -82,28 +100,6 @@ export function DecisionPanel({ item, mine, reasons, onDecide }: DecisionPanelPr
           ))}
         </ol>
       </section>
-      {(mine || item.is_hidden || item.decision) && (
-        <div className={classes.mine}>
-          {mine && (
-            <Group gap={8}>
-              <Text size="xs">You</Text>
-              <DecisionBadge decision={mine} />
-            </Group>
-          )}
-          {!mine && item.is_hidden && (
-            <Group gap={8} wrap="nowrap">
-              <IconEyeOff size={16} aria-hidden style={{ flex: "none" }} />
-              <Text size="xs">Second review: somebody has decided; what they said is hidden from you.</Text>
-            </Group>
-          )}
-          {!mine && !item.is_hidden && item.decision && (
-            <Group gap={8}>
-              <Text size="xs">{formatCount(item.reviewer_count, "person", "people")}, last</Text>
-              <DecisionBadge decision={item.decision} />
-            </Group>
-          )}
-        </div>
-      )}
       <section aria-label="Figures">
         <dl className={classes.facts}>
           <dt>Scan to mesh, mean</dt>

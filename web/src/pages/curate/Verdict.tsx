@@ -13,7 +13,7 @@ const VERDICTS: Record<Verdict, { color: string; icon: typeof IconCheck }> = {
 export function VerdictBadge({ verdict }: { verdict: Verdict }) {
   const { color, icon: Icon } = VERDICTS[verdict];
   return (
-    <Badge variant="light" color={color} leftSection={<Icon size={12} aria-hidden />} tt="none">
+    <Badge variant="light" color={color} c={color === "yellow" ? "var(--warn-text)" : undefined} leftSection={<Icon size={12} aria-hidden />} tt="none">
       {verdict}
     </Badge>
   );

@@ -30,6 +30,7 @@ function Curves({ title, note, unit, digits, lines }: { title: string; note: str
     [shown, places, unit, digits],
   );
   if (shown.length === 0) return null;
+  const common = Math.min(...shown.map(({ curve }) => curve.components.at(-1) ?? 0));
   return (
     <section className={`card ${classes.plot}`} aria-label={title}>
       <div className={classes.plotTitle}>
@@ -38,7 +39,7 @@ function Curves({ title, note, unit, digits, lines }: { title: string; note: str
           {note}
         </Text>
       </div>
-      <Plot label={title} frames={places} curves={curves} lost={NONE} frame={at ?? places.at(-1) ?? null} onSeek={setAt} />
+      <Plot label={title} frames={places} curves={curves} lost={NONE} frame={at ?? common} onSeek={setAt} />
     </section>
   );
 }

@@ -2,12 +2,14 @@ import { Button } from "@mantine/core";
 import { IconUpload } from "@tabler/icons-react";
 import { useEffect, useRef, useState } from "react";
 import { readChoice, readDrop } from "../../actions/readDrop";
+import { hasRole, useMe } from "../../state/me";
 import { chooseScans } from "../../state/scanUpload";
 import classes from "./ScansPage.module.css";
 
-/** Choose scans without dragging. */
+/** Choose scans without dragging; leads add scans. */
 export function AddScansButton({ label }: { label: string }) {
   const input = useRef<HTMLInputElement>(null);
+  if (!hasRole(useMe(), "lead")) return null;
   return (
     <>
       <Button leftSection={<IconUpload size={16} aria-hidden />} onClick={() => input.current?.click()}>
@@ -36,7 +38,9 @@ const holdsFiles = (event: DragEvent): boolean => event.dataTransfer?.types.incl
 /** Scans and folders of them may be dropped anywhere on the page. */
 export function ScanDrops() {
   const [isOver, setOver] = useState(false);
+  const mayAdd = hasRole(useMe(), "lead");
   useEffect(() => {
+    if (!mayAdd) return;
     let depth = 0;
     const enter = (event: DragEvent): void => {
       if (!holdsFiles(event)) return;
@@ -67,7 +71,7 @@ export function ScanDrops() {
       window.removeEventListener("dragover", over);
       window.removeEventListener("drop", drop);
     };
-  }, []);
+  }, [mayAdd]);
   return (
     <div data-takes-drops>
       {isOver && (

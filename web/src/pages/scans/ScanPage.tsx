@@ -1,11 +1,10 @@
 import { ActionIcon, Button, Group, Kbd, Text, TextInput, Title, Tooltip } from "@mantine/core";
 import { IconArrowBackUp, IconChevronLeft, IconChevronRight, IconDownload, IconFlipHorizontal, IconScissors } from "@tabler/icons-react";
-import { useQuery } from "@tanstack/react-query";
+import { useQuery, useQueryClient } from "@tanstack/react-query";
 import { useDisclosure } from "@mantine/hooks";
 import { useEffect, useRef, useState } from "react";
 import { Link, useNavigate, useParams } from "react-router";
 import { useKeymap } from "../../actions/useKeymap";
-import { useQueryClient } from "@tanstack/react-query";
 import { fetchPattern } from "../../api/handModels";
 import { fetchRegistrationGeometry, useRegistration, useScanRegistrations, type Registration } from "../../api/registrations";
 import { fetchScanGeometry, scanFileUrl, useChangeScan, useScan, useScanList, type Scan } from "../../api/scans";
@@ -20,6 +19,7 @@ import { handHandlers, useLook } from "../hand3d/useLook";
 import viewClasses from "../hand3d/HandView.module.css";
 import { LineageList } from "../models/LineageList";
 import { Failure } from "../parts/Failure";
+import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { Tool } from "../parts/Tool";
@@ -210,9 +210,11 @@ function OpenScan({ scan }: { scan: Scan }) {
           <Button size="xs" variant="default" ml={8} component="a" href={scanFileUrl(scan)} download leftSection={<IconDownload size={14} aria-hidden />}>
             Download
           </Button>
-          <Button size="xs" ml={4} onClick={registering.open}>
-            Register …
-          </Button>
+          <For role="reviewer">
+            <Button size="xs" ml={4} onClick={registering.open}>
+              Register …
+            </Button>
+          </For>
         </Group>
       </div>
       <div className={classes.middle}>
@@ -270,7 +272,9 @@ function OpenScan({ scan }: { scan: Scan }) {
               </ul>
             )}
           </section>
-          <Details key={`${scan.name}/${scan.subject}/${scan.pose}/${scan.collection}`} scan={scan} />
+          <For role="lead">
+            <Details key={`${scan.name}/${scan.subject}/${scan.pose}/${scan.collection}`} scan={scan} />
+          </For>
           <LineageList kind="scan" id={scan.id} />
         </aside>
       </div>

@@ -9,6 +9,7 @@ import { formatAgo, formatCount } from "../../model/format";
 import { VerdictBadge } from "../curate/Verdict";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
+import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
 import { useTitle } from "../parts/useTitle";
 import { offerUndo, tellFailure } from "../projects/offerUndo";
@@ -106,9 +107,11 @@ export default function ScansPage() {
           <Button variant="default" component={Link} to={filters.collection ? `/curate?collection=${encodeURIComponent(filters.collection)}` : "/curate"} leftSection={<IconChecks size={16} aria-hidden />}>
             Curate
           </Button>
-          <Button variant="default" onClick={registering.open}>
-            Register …
-          </Button>
+          <For role="reviewer">
+            <Button variant="default" onClick={registering.open}>
+              Register …
+            </Button>
+          </For>
           <AddScansButton label="Add" />
         </Group>
       </Group>
@@ -160,12 +163,16 @@ export default function ScansPage() {
           <Text size="sm" fw={600}>
             {formatCount(selected.length, "scan")} chosen
           </Text>
-          <Button size="xs" onClick={registering.open}>
-            Register …
-          </Button>
-          <Button size="xs" variant="default" loading={remove.isPending} leftSection={<IconTrash size={14} aria-hidden />} onClick={hide}>
-            Delete (can be undone)
-          </Button>
+          <For role="reviewer">
+            <Button size="xs" onClick={registering.open}>
+              Register …
+            </Button>
+          </For>
+          <For role="lead">
+            <Button size="xs" variant="default" loading={remove.isPending} leftSection={<IconTrash size={14} aria-hidden />} onClick={hide}>
+              Delete (can be undone)
+            </Button>
+          </For>
           <Button size="xs" variant="subtle" onClick={() => setChosen(new Set())}>
             Choose none
           </Button>

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tests.web.hands import Hands, fill_studio
+from tests.web.test_accessibility import find_faults
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 
@@ -227,3 +228,17 @@ def test_the_agreement_page_says_what_there_is_to_do(studio, fresh, open_page, s
     page.get_by_role("dialog").get_by_role("button", name="Ask").click()
     page.get_by_text("now wait for a second person").wait_for()
     screenshots.take(page, "agreement")
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_pages_with_hands_on_them_have_no_serious_fault(studio, fresh, open_page, scheme):
+    page = open_page(scheme=scheme)
+    for address, sign in (
+        ("/curate?collection=curation", "[data-hand-view][data-drawn]"),
+        (f"/scans/{fresh.scans[0]['id']}", "[data-hand-view][data-drawn]"),
+        ("/scans?collection=curation", "tbody tr"),
+        (f"/models/{fresh.model_id}", "section[aria-label='The model'] canvas"),
+    ):
+        page.goto(address)
+        page.locator(sign).first.wait_for()
+        assert find_faults(page) == [], address

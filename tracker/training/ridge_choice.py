@@ -21,7 +21,8 @@ MOST = 150
 
 AS_GOOD = 1.25
 """Of weights whose error is at most so many times the least, the largest is chosen. With a template of one's own that
-costs some 0.03 mm, with the shape fitted too nothing; blend shapes stay nearer to their joints, and the joints right."""
+costs some 0.03 mm, with the shape fitted too nothing; blend shapes stay nearer to their joints, and joints are right.
+"""
 
 
 def choose_ridge(

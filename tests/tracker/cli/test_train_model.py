@@ -61,7 +61,7 @@ def test_a_model_is_trained_from_a_folder(loop, capsys):
 def test_the_loop_keeps_what_is_there(loop, capsys):
     folder, _ = loop
     command = ["model-loop", str(folder / "scans"), "--out", str(folder / "out"), "--rounds", "1", "--json"]
-    command += ["--rounds-of-training", "1", "--metres-per-unit", "1"]
+    command += ["--rounds-of-training", "1", "--no-pose-shapes", "--metres-per-unit", "1"]
     assert main(command) == 0
     first = json.loads(capsys.readouterr().out)
     assert first["rounds"][0]["registered"] == {"good": 24}

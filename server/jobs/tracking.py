@@ -47,7 +47,7 @@ class TrackingJob:
 
         return load_sequence(self.recording)
 
-    def _load_hands(self) -> dict[str, ArticulatedModel] | None:
+    def load_hands(self) -> dict[str, ArticulatedModel] | None:
         """Both hands of the chosen model."""
         from tracker import articulated_of, load_blend_model, mirror_blend
 
@@ -66,7 +66,7 @@ class TrackingJob:
         sequence = self.load_recording()
         options = self.options
         annotations = load_annotations(self.files.annotations) if self.files.annotations.exists() else None
-        setup, state = start_tracking(sequence, options, self._load_hands(), annotations, progress.stage)
+        setup, state = start_tracking(sequence, options, self.load_hands(), annotations, progress.stage)
         self.files.write(self.files.setup, setup.save)
         self.files.write(self.files.state(0), state.save)
         frames = options.frame_range(sequence.frame_count)

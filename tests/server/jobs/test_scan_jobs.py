@@ -22,16 +22,18 @@ from server.database.migrate import upgrade
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID, find_file
 from server.jobs import making, service
+from server.jobs.files import JobFiles
 from server.jobs.models import JobRow
 from server.jobs.scan_workflow import plan_loop
 from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate, TrainingParams
+from server.jobs.tracking import TrackingJob
 from server.registrations.models import RegistrationRow
 from server.scans.models import ScanRow
 from server.settings import Settings
 from server.storage import Storage
 from server.training_sets.schemas import TrainingRule
 from server.training_sets.service import create_training_set
-from tests.server.conftest import GeneratedHand, Studio
+from tests.server.conftest import GeneratedHand, Studio, Tracked
 from tests.server.curation import add_registered
 from tests.server.jobs.test_worker import Bench
 from tests.server.teams.conftest import Join, join
@@ -196,3 +198,30 @@ def test_the_bar_of_a_loop_is_filled_without_gaps() -> None:
             assert len(spans) == 2 * rounds + first
             assert spans[0][0] == 0.0 and spans[-1][1] == 1.0
             assert all(a[1] == b[0] for a, b in pairwise(spans))
+
+
+def test_recordings_are_tracked_with_a_model_of_the_studio_and_its_mirror_image(
+    studio: Studio, generated_hand: GeneratedHand, tracked: Tracked, tmp_path: Path
+) -> None:
+    add_registered(studio.app, generated_hand, "one")  # the untrained hand is stored when it is first used
+    fields = {field["name"]: field for field in studio.client.get("/api/v1/jobs/form").json()["fields"]}
+    assert fields["hand_model_id"]["choices"] == ["", str(UNTRAINED_ID)]
+    body = {"kind": "track", "sequence_id": str(tracked.sequence_id)}
+    params = {"hand_model_id": str(UNTRAINED_ID), "calibrate": False, "last_frame": 1}
+    job = studio.client.post("/api/v1/jobs", json=body | {"params": params}).json()
+    assert job["params"]["hand_model_id"] == str(UNTRAINED_ID)
+    default = studio.client.post("/api/v1/jobs", json=body | {"params": {"hand_model_id": ""}}).json()
+    assert "hand_model_id" not in default["params"]
+    for wrong in (str(uuid.uuid4()), "x", 3):
+        answer = studio.client.post("/api/v1/jobs", json=body | {"params": {"hand_model_id": wrong}})
+        assert answer.status_code in (404, 422), answer.text
+    storage = studio.app.state.storage
+    with studio.database.reading() as session:
+        file = find_file(storage, session.get_one(HandModelRow, UNTRAINED_ID))
+    recording = storage.folder("sequences", tracked.sequence_id)
+    tracking = TrackingJob(recording, job["params"], JobFiles(tmp_path / "job"), file)
+    hands = tracking.load_hands()
+    assert hands is not None and hands.keys() == {"right", "left"}
+    for side, hand in hands.items():
+        assert hand.hand is not None and hand.hand.side == side and len(hand.skeleton.bone_names) == 16
+    assert not tracking.options.calibrate

@@ -178,7 +178,7 @@ class _System:
         g_model = -np.einsum("vdp,vd->p", J, pull)
         g_model[first:last] += settings.pose_weight * prior_Jtr * pose_scales
         g_model[last:] += settings.shape_weight * here.state.shape * fit.scales[last:]
-        H_model = np.tensordot(J, LJ, ((0, 1), (0, 1))) + prior
+        H_model = J.reshape(-1, J.shape[2]).T @ LJ.reshape(-1, J.shape[2]) + prior
         H_model[np.diag_indices_from(H_model)] += 1e-9 * np.trace(H_model) / len(H_model)
         blocks = strength * free.coupling_blocks
         blocks[free.diagonal_places] += 1e-6 * strength * np.eye(3)

@@ -56,12 +56,23 @@ function groupOf(value: unknown): NamedValue[] {
     .sort((a, b) => b.value - a.value);
 }
 
-/** `{"components": [..], "error_mm": [..]}`. */
+/** `[{"components": 5, "mean_mm": 1.2}, ..]`, as `tracker/evaluation/model_study.py` measures it. */
 function curveOf(value: unknown): ComponentCurve {
-  if (!isRecord(value)) return NOTHING;
-  const components = numbersOf(value["components"]);
-  const values = numbersOf(value["error_mm"]);
-  return components.length > 0 && components.length === values.length ? { components, values } : NOTHING;
+  if (!Array.isArray(value)) return NOTHING;
+  const rows = value.flatMap((row: unknown) => {
+    const [components, mean] = isRecord(row) ? [numberOf(row["components"]), numberOf(row["mean_mm"])] : [null, null];
+    return components === null || mean === null ? [] : [{ components, mean }];
+  });
+  return { components: rows.map((row) => row.components), values: rows.map((row) => row.mean) };
+}
+
+/** `{"learned": {"scan_to_mesh_mm": 0.4}, ..}`. */
+function comparisonOf(value: unknown): NamedValue[] {
+  if (!isRecord(value)) return [];
+  return Object.entries(value).flatMap(([name, one]) => {
+    const mean = isRecord(one) ? numberOf(one["scan_to_mesh_mm"]) : null;
+    return mean === null ? [] : [{ name, value: mean, count: null }];
+  });
 }
 
 export function readReport(report: Json): TrainingReport {
@@ -75,7 +86,7 @@ export function readReport(report: Json): TrainingReport {
     poseCompactness: cumulative(numbersOf(report["pose_space"])),
     shapeGeneralisation: curveOf(study["shape_generalisation"]),
     poseGeneralisation: curveOf(study["pose_generalisation"]),
-    comparison: groupOf(study["comparison_mm"]),
+    comparison: comparisonOf(study["models"]),
     byHand: groupOf(report["by_hand"]),
     byPose: groupOf(report["by_pose"]),
     seconds: groupOf(report["seconds"]),

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     )
     from tracker.evaluation.comparison import JudgedTrack, compare_tracks
     from tracker.evaluation.evaluation import Evaluation, evaluate_track
+    from tracker.evaluation.model_study import generalize_shapes
     from tracker.evaluation.report_csv import write_csv
     from tracker.evaluation.report_html import write_html
     from tracker.evaluation.worst_picture import draw_item, encode_jpeg
@@ -116,6 +117,7 @@ _HOMES = {
     "HAND_EDGES": "tracker.model.joints",
     "HAND_JOINTS": "tracker.model.joints",
     "IMPORT_FORMATS": "tracker.capture.import_check",
+    "generalize_shapes": "tracker.evaluation.model_study",
     "import_labels": "tracker.label_formats.formats",
     "ImportedLabels": "tracker.label_formats.label_set",
     "ImportHints": "tracker.label_formats.label_set",
@@ -264,6 +266,7 @@ __all__ = [
     "find_hand_points",
     "find_path_fault",
     "fit_marked",
+    "generalize_shapes",
     "import_labels",
     "join_chunks",
     "list_image_names",

@@ -33,7 +33,7 @@ from server.storage.digest import compute_digest
 from server.training_sets import service as training_sets
 
 if TYPE_CHECKING:
-    from tracker import BlendModel, Registration, RegistrationStart, Scan
+    from tracker import BlendModel, Registration, RegistrationStart, Scan, Training
 
 log = logging.getLogger(__name__)
 
@@ -209,7 +209,7 @@ class ScanRun(JobRun):
                     parent_id=parent_id,
                     training_set_id=set_id,
                     job_id=self.job_id,
-                    report=trained.report,
+                    report=trained.report | {"study": study_people(trained)},
                     created_by=self.row.created_by,
                 )
             )
@@ -225,6 +225,18 @@ class ScanRun(JobRun):
                 service.append_log(session, self.job_id, "info", f"{len(outcomes)} scans: {told}")
             values = {"frames_done": len(outcomes), "frames_total": len(outcomes)} if outcomes else {}
             self.end(session, attempt, "succeeded", progress=1.0, hand_model_id=model_id, **values)
+
+
+def study_people(trained: Training) -> dict[str, Any]:
+    """How well the shape space holds people that it was not made from, each left out in turn: [R17] Fig. 14."""
+    from tracker import generalize_shapes
+
+    people = np.array([hand.split(" ")[0] for hand in trained.report["by_hand"]])
+    most = min(20, len(np.unique(people)) - 2)
+    if most < 1 or len(people) != len(trained.templates):
+        return {}
+    counts = sorted({*range(1, min(10, most) + 1), most})
+    return {"shape_generalisation": generalize_shapes(trained.templates, people, counts)}
 
 
 def _gather(files: list[tuple[str, Path]], folder: Path) -> None:

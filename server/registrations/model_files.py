@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from tracker import BlendModel
 
 
+MANO_VERTICES, MANO_MIRROR = 778, np.array([-1.0, 1.0, 1.0])
+"""A model with MANO's own vertices stands in MANO's axes, in which its left hand mirrors the right one's x."""
+
+
 def open_any_model(session: Session, storage: Storage, model_id: uuid.UUID) -> BlendModel:
     """A stored model, or the untrained one, which is stored only when somebody uses it."""
     if model_id == storing.UNTRAINED_ID and session.get(HandModelRow, model_id) is None:
@@ -43,9 +47,15 @@ def pack_model(model: BlendModel) -> bytes:
 
 def write_mano(model: BlendModel, side: str) -> bytes:
     """The bytes of a MANO file that `smplx` loads; the other hand is the mirror image."""
-    from tracker import mirror_blend, save_mano
+    from tracker import save_mano
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"MANO_{side.upper()}.pkl"
-        save_mano(model if model.side == side else mirror_blend(model), path)
+        save_mano(model if model.side == side else _other_hand(model), path)
         return path.read_bytes()
+
+
+def _other_hand(model: BlendModel) -> BlendModel:
+    from tracker import mirror_blend
+
+    return mirror_blend(model, MANO_MIRROR) if len(model.template) == MANO_VERTICES else mirror_blend(model)

@@ -71,8 +71,9 @@ def test_a_network_that_is_away_for_a_minute_takes_nothing_with_it(studio, recor
     picture.click(336, 335)
     expect(page.get_by_test_id("save-state")).to_have_text("offline, 1 waiting")
     page.clock.fast_forward("01:00")
-    page.keyboard.press("f")
-    page.keyboard.press("d")
+    for key, frame in (("f", "1"), ("d", "0")):
+        page.keyboard.press(key)
+        expect(page.get_by_label("Frame", exact=True)).to_have_value(frame)
     picture.click(350, 320)
     expect(page.get_by_test_id("save-state")).to_have_text("offline, 1 waiting")
     assert len(history_of(studio, recording)) == 1

@@ -87,6 +87,7 @@ def test_scans_dropped_on_the_page_are_added_and_each_that_cannot_be_used_says_w
     dialog.get_by_role("button", name="Add 1 file").click()
     dialog.get_by_text("2 scans added.").wait_for()
     dialog.get_by_role("button", name="Done").click()
+    page.goto("/scans?collection=dropped")
     row = page.get_by_role("row").filter(has_text="flat_together")
     expect(row).to_contain_text("22,000")
 

@@ -22,6 +22,8 @@ interface ImagePaneProps extends PaneGestures {
   layers: readonly PaneLayer[];
   /** Which frame they are of; `data-drawn` says which one is on the screen. */
   shownFrame?: number | null;
+  /** Told whenever it was drawn, with the frame that is on the screen now. */
+  onDrawn?: (frame: number | null) => void;
   /** Null fits the image. */
   view: View | null;
   onView: (view: View | null) => void;
@@ -47,7 +49,7 @@ const KeepAlive = () => <Rect width={1} height={1} fill="#000" opacity={0.01} li
 
 /** One picture with what is drawn on it; zoom, pan and the pointer are handled here, in image pixels for everybody else. */
 export function ImagePane(props: ImagePaneProps) {
-  const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, isBusy, children, withCursor, overlay, shownFrame = null } = props;
+  const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, isBusy, children, withCursor, overlay, shownFrame = null, onDrawn } = props;
   const { ref: sizeRef, width, height } = useElementSize();
   const surface = useRef<HTMLDivElement | null>(null);
   const imageLayer = useRef<Konva.Layer>(null);
@@ -60,16 +62,17 @@ export function ImagePane(props: ImagePaneProps) {
     if (canvas) canvas.style.filter = brightness === 1 && contrast === 1 ? "" : `brightness(${brightness}) contrast(${contrast})`;
   });
 
-  const meant = useRef<{ picture: Picture | null; frame: number | null }>({ picture: null, frame: null });
+  const meant = useRef<{ picture: Picture | null; frame: number | null; onDrawn: typeof onDrawn }>({ picture: null, frame: null, onDrawn });
   useLayoutEffect(() => {
-    meant.current = { picture: layers[0]?.picture ?? null, frame: shownFrame };
+    meant.current = { picture: layers[0]?.picture ?? null, frame: shownFrame, onDrawn };
   });
   const hasStage = width > 0 && height > 0;
   useEffect(() => {
     const layer = imageLayer.current;
     const note = (): void => {
-      const { picture, frame } = meant.current;
+      const { picture, frame, onDrawn: tell } = meant.current;
       const isOnScreen = picture !== null && layer?.findOne<Konva.Image>("Image")?.image() === picture;
+      if (isOnScreen) tell?.(frame);
       if (surface.current && isOnScreen && surface.current.dataset["drawn"] !== String(frame)) surface.current.dataset["drawn"] = String(frame);
     };
     layer?.on("draw", note);

@@ -30,7 +30,7 @@ interface PaneProps {
 
 /** One picture of one camera, to be annotated; a gesture on a camera that is not the active one makes it so first. */
 export function Pane({ camera, label, layers, isBusy, shownFrame, overlay }: PaneProps) {
-  const { state, pose, options, viewOf, setView, hover, isMagnified, act, run } = useAnnotating();
+  const { state, pose, options, viewOf, setView, noteDrawn, hover, isMagnified, act, run } = useAnnotating();
   const isActive = camera.id === state.camera;
   const shown = isActive ? pose : (state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })] ?? emptyPose());
   const here = (): void => act(activateCamera, camera.id);
@@ -50,6 +50,7 @@ export function Pane({ camera, label, layers, isBusy, shownFrame, overlay }: Pan
       isMagnified={isMagnified}
       isBusy={isBusy}
       shownFrame={shownFrame}
+      onDrawn={(frame) => noteDrawn(camera.id, frame)}
       hitJoint={(view, screen) => (options.areHandsShown ? jointAt(shown, view, screen, isActive ? state.joint : -1) : -1)}
       onDouble={onDouble}
       onPlace={(pixel) => {

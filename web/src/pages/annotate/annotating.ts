@@ -35,6 +35,8 @@ export interface Annotating {
   /** Null fits the image. */
   viewOf(camera: string): View | null;
   setView(camera: string, view: View | null): void;
+  /** Which frame of a camera is on the screen now. */
+  noteDrawn(camera: string, frame: number | null): void;
   /** In the pictures of the active camera. */
   readonly pointer: PointerStore;
   /** In whichever camera's pictures it is. */

@@ -1,6 +1,6 @@
 /** The annotator's own state beside the session: pictures, views, keys, playback. */
 
-import { useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState, type RefObject } from "react";
+import { useCallback, useEffect, useMemo, useRef, useState, type RefObject } from "react";
 import { useSearchParams } from "react-router";
 import { PLACE_MODES } from "../../actions/annotate/place";
 import { stepFrames } from "../../actions/annotate/select";
@@ -67,14 +67,25 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     },
   });
 
-  const seen = useRef(state.frame);
-  useLayoutEffect(() => {
-    if (!pictures.isStale || pictures.failure) seen.current = state.frame;
-  }, [state.frame, pictures.isStale, pictures.failure]);
+  const drawn = useRef(new Map<string, number | null>());
   const steps = useSeenSteps(
     (by) => act(stepFrames, by),
-    () => seen.current === session.store.get().frame,
+    () => {
+      const { camera: active, frame } = session.store.get();
+      return Boolean(pictures.failure) || drawn.current.get(active) === frame;
+    },
   );
+  const noteDrawn = useCallback(
+    (id: string, frame: number | null) => {
+      drawn.current.set(id, frame);
+      // Behind the drawing that this is said from; what changes now is drawn for the refresh after it.
+      queueMicrotask(steps.drawn);
+    },
+    [steps],
+  );
+  useEffect(() => {
+    if (pictures.failure) steps.drawn();
+  }, [pictures.failure, steps]);
 
   useEffect(() => {
     const timer = setTimeout(() => {
@@ -173,6 +184,7 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     setOptions,
     viewOf: (id) => views[id] ?? null,
     setView,
+    noteDrawn,
     pointer,
     hover,
     isMagnified,

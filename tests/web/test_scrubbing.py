@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import os
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,6 +17,9 @@ import pytest
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 
 FRAMES = 1500
+LAST = min(FRAMES - 1, int(os.environ.get("HANDLOOM_SCRUB_TO", "600")))
+"""Where scrubbing ends: the whole recording takes 50 s, so one asks for it (docs/browser.md)."""
+
 FPS = 30
 SIZE = (320, 240)
 
@@ -135,18 +139,16 @@ def test_scrubbing_forward_at_thirty_frames_a_second_shows_every_frame(
     assert read_number(page) == 0
 
     page.evaluate(WATCH)
-    took_ms = page.evaluate(SCRUB, [FRAMES - 1, FPS])
-    page.wait_for_function(
-        "(last) => document.querySelector('[data-picture]').dataset.drawn === last", arg=str(FRAMES - 1)
-    )
-    assert read_number(page) == FRAMES - 1, "what is said to be drawn is what is on the screen"
+    took_ms = page.evaluate(SCRUB, [LAST, FPS])
+    page.wait_for_function("(last) => document.querySelector('[data-picture]').dataset.drawn === last", arg=str(LAST))
+    assert read_number(page) == LAST, "what is said to be drawn is what is on the screen"
 
     drawn = page.evaluate("window.drawn")
     frames = [int(frame) for frame, _ in drawn]
     gaps = np.diff([time for _, time in drawn])
-    dropped = sorted(set(range(1, FRAMES)) - set(frames))
+    dropped = sorted(set(range(1, LAST + 1)) - set(frames))
     report = (
-        f"{len(set(frames))} of {FRAMES - 1} frames drawn in {took_ms / 1000:.1f} s, "
+        f"{len(set(frames))} of {LAST} frames drawn in {took_ms / 1000:.1f} s, "
         f"{len(dropped)} left out {dropped[:10]}; "
         f"interval median {np.median(gaps):.1f} ms, p99 {np.percentile(gaps, 99):.1f} ms, longest {gaps.max():.1f} ms"
     )
@@ -154,4 +156,4 @@ def test_scrubbing_forward_at_thirty_frames_a_second_shows_every_frame(
     logging.getLogger(__name__).info(report)
     assert frames == sorted(frames), "no frame is shown after a later one"
     assert not dropped, report
-    assert took_ms < 1.05 * 1000 * (FRAMES - 1) / FPS, report
+    assert took_ms < 1.05 * 1000 * LAST / FPS, report

@@ -110,7 +110,7 @@ class JobFiles:
             if path.is_dir():
                 shutil.rmtree(path)
             os.replace(temporary, path)
-            sync(path.parent)
+            _sync_one(path.parent)  # the name alone: what lies beside it is other writers' and may vanish
         finally:
             if temporary.is_dir():
                 shutil.rmtree(temporary, ignore_errors=True)
@@ -128,8 +128,7 @@ def sync(path: Path) -> None:
     """Have the disk hold a file, or a folder with all below it."""
     if path.is_dir():
         for child in path.rglob("*"):
-            if child.is_file():
-                _sync_one(child)
+            _sync_one(child)
     _sync_one(path)
 
 

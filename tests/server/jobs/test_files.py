@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -50,3 +51,21 @@ def test_a_manifest_cut_short_counts_as_none(tmp_path: Path) -> None:
     files.write_manifest("start", [files.state(0)], {})
     (tmp_path / "start.json").write_text('{"files": {"state')
     assert files.read_manifest("start") is None
+
+
+def test_a_write_makes_its_own_files_and_its_name_durable_and_leaves_its_siblings_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two workers end their jobs in one folder: what the other has begun may vanish at any moment."""
+    begun = tmp_path / ".begun-by-another"
+    begun.mkdir()
+    (begun / "track.npz").write_bytes(b"half")
+    synced: list[str] = []
+    fsync = os.fsync
+    monkeypatch.setattr(os, "fsync", lambda fd: (synced.append(os.readlink(f"/proc/self/fd/{fd}")), fsync(fd))[1])
+    files = JobFiles(tmp_path / "job")
+    files.write(tmp_path / "track", lambda path: ((path / "deep").mkdir(parents=True), (path / "deep" / "a").touch()))
+    names = [Path(name).relative_to(tmp_path).parts for name in synced]
+    assert not any(begun.name in parts for parts in names)
+    assert {parts[1:] for parts in names} == {("deep", "a"), ("deep",), ()}
+    assert names[-1] == (), "the folder, once the name is given"

@@ -19,7 +19,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         help="train a hand model from registrations",
         description="Learn template, shapes, blend weights, joints and pose blend shapes of a hand ([R17] section 3.3) "
         "from registrations, as `handloom register` writes them: from those whose verdict is good, or those of a list. "
-        "Beside the model, FILE.json says what it was learnt from and how well it fits.",
+        "Beside the model, FILE.json says what it was learnt from and how well it fits. Every stage is kept in "
+        "FILE.stages until the model is written: stopped and started again, the same training goes on where it was.",
     )
     parser.add_argument("registrations", type=Path, metavar="DIR", help="the folder with the registrations")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="the model, .npz")
@@ -54,7 +55,9 @@ def train_from(folder: Path, initial, out: Path, name: str, accepted: set[str] |
     """Train from a folder of registrations, write the model and its report, and return what `--json` prints."""
     from tracker.capture.atomic_file import write_atomically
     from tracker.model.blend_files import save_blend_model
+    from tracker.training.checkpoints import FolderCheckpoints
     from tracker.training.options import TrainingOptions
+    from tracker.training.stages import list_stages
     from tracker.training.train import train_model
     from tracker.training.training_set import load_training_set
 
@@ -69,16 +72,18 @@ def train_from(folder: Path, initial, out: Path, name: str, accepted: set[str] |
     )
     began = time.monotonic()
     line = ProgressLine(f"training on {len(training_set)} registrations")
-    training = train_model(training_set, initial, options, lambda stage, share: line.show(share, stage))
+    kept = FolderCheckpoints(out.with_suffix(".stages"))
+    training = train_model(training_set, initial, options, lambda stage, share: line.show(share, stage), kept)
     out.parent.mkdir(parents=True, exist_ok=True)
     save_blend_model(training.model, out)
     write_atomically(out.with_suffix(".json"), json.dumps(training.report, indent=1).encode())
-    kept = ("registrations", "people", "hands", "residual_mm", "ridge", "joint_regressor_mm")
+    kept.remove(list_stages(options.rounds))
+    told = ("registrations", "people", "hands", "residual_mm", "ridge", "joint_regressor_mm")
     return {
         "out": str(out),
         "report": str(out.with_suffix(".json")),
         "training_set": training_set.digest,
-        **{key: training.report[key] for key in kept},
+        **{key: training.report[key] for key in told},
         "seconds": round(time.monotonic() - began, 1),
     }
 

@@ -95,26 +95,43 @@ def improve(
     is_last: bool,
     progress: Callable[[str, float], None],
 ) -> Learnt:
-    """One round: poses with joints, templates, blend weights, blend shapes, joint regressor.
+    """One round: poses with joints, templates, blend weights, blend shapes, joint regressor."""
+    return improve_surface(improve_joints(learnt, data, options, progress), data, options, is_last, progress)
 
-    In the last round the joints are those that the regressor gives, so that all the rest fits to them.
-    """
-    targets, owners, rig, regressor = data.targets, data.owners, learnt.rig, learnt.regressor
-    expected = np.stack([regressor @ own for own in learnt.templates])
+
+def improve_joints(
+    learnt: Learnt, data: Data, options: TrainingOptions, progress: Callable[[str, float], None]
+) -> Learnt:
+    """The first and longer half of a round: poses with joints."""
     progress("poses and joints", 0.0)
     poses, joints = fit_joints(
         learnt.poses,
-        targets,
+        data.targets,
         learnt.templates,
-        owners,
+        data.owners,
         learnt.joints,
-        expected,
+        np.stack([learnt.regressor @ own for own in learnt.templates]),
         options.joint_stiffness,
-        rig,
+        learnt.rig,
         4,
         options.threads,
         lambda share: progress("poses and joints", share),
     )
+    return replace(learnt, poses=poses, joints=joints)
+
+
+def improve_surface(
+    learnt: Learnt,
+    data: Data,
+    options: TrainingOptions,
+    is_last: bool,
+    progress: Callable[[str, float], None],
+) -> Learnt:
+    """The second half: templates, blend weights, joint regressor, poses, blend shapes.
+
+    In the last round the joints are those that the regressor gives, so that all the rest fits to them.
+    """
+    targets, owners, rig, poses, joints = data.targets, data.owners, learnt.rig, learnt.poses, learnt.joints
     even = np.ones(len(targets))
     progress("templates", 0.0)
     templates = fit_templates(poses, targets, owners, even, joints, rig)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,12 +12,14 @@ import numpy.typing as npt
 
 from tracker.errors import TrainingError
 from tracker.model.blend_model import BlendModel
-from tracker.training.learn import Data, Learnt, begin, improve
+from tracker.training.checkpoints import Checkpoints, NoCheckpoints, compute_key
+from tracker.training.learn import Data, Learnt, begin, improve_joints, improve_surface
 from tracker.training.motion import fill_skinning
 from tracker.training.options import TrainingOptions
 from tracker.training.pose_fit import fit_poses
 from tracker.training.report import describe_training
 from tracker.training.spaces import compute_rotation_vectors, find_shape_space, find_space
+from tracker.training.stages import Stage, find_last, list_stages, pack_stage, unpack_stage
 from tracker.training.training_set import TrainingSet
 
 Array = npt.NDArray[np.float64]
@@ -51,70 +53,109 @@ def train_model(
     initial: BlendModel,
     options: TrainingOptions | None = None,
     progress: Progress | None = None,
+    checkpoints: Checkpoints | None = None,
 ) -> Training:
     """Learn template, shape space, blend weights, joint regressor, pose blend shapes and pose space.
 
-    The same registrations, model and options give the same model, bit for bit on one machine, whatever the threads.
+    The same registrations, model and options give the same model, bit for bit on one machine, whatever the threads, and
+    however often the training was interrupted.
 
     Args:
         training_set: Registrations of the initial model's template.
         initial: A right hand, crude or trained before: its zero pose, bones and first blend weights.
         options: See there.
         progress: Told what is under way and the share of all that is done, 0 to 1; may raise to cancel.
+        checkpoints: Where each stage is kept when it is done; stages of just this training that are there are not done
+            again.
 
     Raises:
         TrainingError: Too few people, registrations or poses, another template, or a left model.
     """
     options = options or TrainingOptions()
-    say = progress or (lambda stage, share: None)
     chosen, owners, left_out = _choose(training_set, initial, options)
-    targets = training_set.vertices[chosen]
-    clock = _Clock(say, options.rounds)
-    clock.say("first poses", 0.0)
-    parents = np.ascontiguousarray(initial.parents, dtype=np.int64)
+    used = training_set.select(chosen)
     # far from the origin half of the digits would go into where a hand is
-    centres = targets.mean(1)
-    targets = targets - centres[:, None]
-    people = np.unique(training_set.subjects[chosen], return_inverse=True)[1]
+    targets = used.vertices - used.vertices.mean(1)[:, None]
+    people = np.unique(used.subjects, return_inverse=True)[1]
     data = Data(targets, owners, people, np.asarray(initial.faces, dtype=np.int64))
-    learnt = begin(
-        data,
-        np.asarray(initial.template),
-        parents,
-        np.asarray(initial.skinning_weights),
-        initial.joint_regressor,
-        options,
-        lambda share: clock.say("first poses", share),
+    clock = _Clock(progress or (lambda stage, share: None), options.rounds)
+    stage = _learn(data, initial, options, clock, checkpoints or NoCheckpoints(), compute_key(used, initial, options))
+    clock.say("spaces", 1.0)
+    model, shape_space, pose_space, turns = _assemble(stage.learnt, initial, training_set, options)
+    report = describe_training(
+        used, owners, left_out, stage.learnt, shape_space, pose_space, [*stage.errors], options, clock.seconds()
     )
-    _check_poses(learnt)
-    errors = [float(np.sqrt(np.mean(learnt.poses.errors**2)))]
-    for number in range(options.rounds):
-        clock.begin_round(number)
-        is_last = number == options.rounds - 1
-        learnt = improve(learnt, data, options, is_last, clock.say)
-        errors.append(float(np.sqrt(np.mean(learnt.poses.errors**2))))
+    clock.end()
+    return Training(model, report, stage.learnt.templates, owners, turns)
+
+
+def _learn(
+    data: Data, initial: BlendModel, options: TrainingOptions, clock: _Clock, kept: Checkpoints, key: str
+) -> Stage:
+    """All stages that are not kept yet, one after the other; what stands after the last one."""
+    names = list_stages(options.rounds)
+    done, stage = find_last(kept, names, key)
+    if stage is not None:
+        clock.resume(stage.seconds)
+    for number in range(done, len(names)):
+        learnt = None if stage is None else stage.learnt
+        learnt = _do_stage(number, len(names), learnt, data, initial, options, clock)
+        errors = () if stage is None else stage.errors
+        if number % 2 == 0 or number == len(names) - 1:
+            errors = (*errors, float(np.sqrt(np.mean(learnt.poses.errors**2))))
+        arrays = pack_stage(Stage(learnt, errors, clock.seconds()), key)
+        kept.save(names[number], arrays)
+        stage = unpack_stage(arrays)  # as whoever goes on after an interruption has it
+    assert stage is not None, "there is at least one stage"
     clock.begin_round(options.rounds)
+    return stage
+
+
+def _do_stage(
+    number: int,
+    count: int,
+    learnt: Learnt | None,
+    data: Data,
+    initial: BlendModel,
+    options: TrainingOptions,
+    clock: _Clock,
+) -> Learnt:
+    """One stage: first poses; then by turns the two halves of each round; last poses."""
+    clock.begin_round((number - 1) // 2)
+    if learnt is None:
+        learnt = begin(
+            data,
+            np.asarray(initial.template),
+            np.ascontiguousarray(initial.parents, dtype=np.int64),
+            np.asarray(initial.skinning_weights),
+            initial.joint_regressor,
+            options,
+            lambda share: clock.say("first poses", share),
+        )
+        _check_poses(learnt)
+        return learnt
+    if number == count - 1:
+        return _fit_last_poses(learnt, data, options, clock)
+    if number % 2 == 1:
+        return improve_joints(learnt, data, options, clock.say)
+    return improve_surface(learnt, data, options, number == count - 2, clock.say)
+
+
+def _fit_last_poses(learnt: Learnt, data: Data, options: TrainingOptions, clock: _Clock) -> Learnt:
+    """Poses under the joints that the regressor gives, as those who use the model have them."""
     joints = np.stack([learnt.regressor @ own for own in learnt.templates])
     poses = fit_poses(
         learnt.poses,
-        targets,
+        data.targets,
         learnt.templates,
-        owners,
+        data.owners,
         joints,
         learnt.rig,
         4,
         options.threads,
         lambda share: clock.say("last poses", share),
     )
-    learnt = replace(learnt, poses=poses, joints=joints)
-    clock.say("spaces", 1.0)
-    errors.append(float(np.sqrt(np.mean(poses.errors**2))))
-    model, shape_space, pose_space, turns = _assemble(learnt, initial, training_set, options)
-    report = describe_training(
-        training_set.select(chosen), owners, left_out, learnt, shape_space, pose_space, errors, options, clock.seconds()
-    )
-    say("done", 1.0)
-    return Training(model, report, learnt.templates, owners, turns)
+    return replace(learnt, poses=poses, joints=joints)
 
 
 def _choose(
@@ -187,31 +228,38 @@ def _assemble(learnt: Learnt, initial: BlendModel, training_set: TrainingSet, op
 
 
 class _Clock:
-    """Says how far the whole training is, and remembers how long each stage took."""
+    """Says how far the whole training is, and remembers how long each part took."""
 
     def __init__(self, say: Progress, rounds: int) -> None:
         self._say, self._rounds, self._round = say, rounds, -1
-        self._stage, self._began = "", time.monotonic()
+        self._part, self._began = "", time.monotonic()
         self._seconds: dict[str, float] = {}
+
+    def resume(self, seconds: Mapping[str, float]) -> None:
+        """Count on from what an interrupted training took."""
+        self._seconds = dict(seconds)
 
     def begin_round(self, number: int) -> None:
         self._round = number
 
-    def say(self, stage: str, share: float) -> None:
-        self._take(stage)
+    def say(self, part: str, share: float) -> None:
+        self._take(part)
         weights = {"poses and joints": (0.0, 0.6), "poses": (0.65, 0.25), "pose blend shapes": (0.9, 0.0)}
-        start, length = weights.get(stage, (0.6, 0.05)) if 0 <= self._round < self._rounds else (0.0, 1.0)
+        start, length = weights.get(part, (0.6, 0.05)) if 0 <= self._round < self._rounds else (0.0, 1.0)
         done = (self._round + 1 + start + length * share) / (self._rounds + 2)
-        name = f"round {self._round + 1}: {stage}" if 0 <= self._round < self._rounds else stage
+        name = f"round {self._round + 1}: {part}" if 0 <= self._round < self._rounds else part
         self._say(name, done)
 
-    def seconds(self) -> dict[str, float]:
-        """By stage, s."""
-        self._take("")
-        return {stage: round(value, 2) for stage, value in self._seconds.items()}
+    def end(self) -> None:
+        self._say("done", 1.0)
 
-    def _take(self, stage: str) -> None:
+    def seconds(self) -> dict[str, float]:
+        """By part, s."""
+        self._take("")
+        return {part: round(value, 2) for part, value in self._seconds.items()}
+
+    def _take(self, part: str) -> None:
         now = time.monotonic()
-        if self._stage:
-            self._seconds[self._stage] = self._seconds.get(self._stage, 0.0) + now - self._began
-        self._stage, self._began = stage, now
+        if self._part:
+            self._seconds[self._part] = self._seconds.get(self._part, 0.0) + now - self._began
+        self._part, self._began = part, now

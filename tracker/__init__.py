@@ -37,6 +37,9 @@ if TYPE_CHECKING:
     )
     from tracker.evaluation.comparison import JudgedTrack, compare_tracks
     from tracker.evaluation.evaluation import Evaluation, evaluate_track
+    from tracker.evaluation.held_out import HeldOut, choose_held_out, make_test_hand
+    from tracker.evaluation.held_out_study import STUDY_LEVELS, study_held_out
+    from tracker.evaluation.model_report_html import write_model_html
     from tracker.evaluation.model_study import generalize_shapes
     from tracker.evaluation.report_csv import write_csv
     from tracker.evaluation.report_html import write_html
@@ -80,11 +83,18 @@ if TYPE_CHECKING:
     from tracker.tracking.track import Track, join_chunks, load_track
     from tracker.tracking.view_aids import ViewAids
     from tracker.tracking.warm_up import warm_up
+    from tracker.training.checkpoints import Checkpoints, pack_arrays, unpack_arrays
     from tracker.training.options import TrainingOptions
     from tracker.training.train import Training, train_model
     from tracker.training.training_set import TrainingSet, load_training_set, make_training_set
 
 _HOMES = {
+    "write_model_html": "tracker.evaluation.model_report_html",
+    "study_held_out": "tracker.evaluation.held_out_study",
+    "STUDY_LEVELS": "tracker.evaluation.held_out_study",
+    "make_test_hand": "tracker.evaluation.held_out",
+    "choose_held_out": "tracker.evaluation.held_out",
+    "HeldOut": "tracker.evaluation.held_out",
     "add_commands": "tracker.cli",
     "Annotation": "tracker.capture.annotations",
     "AnnotationError": "tracker.errors",
@@ -95,6 +105,9 @@ _HOMES = {
     "Camera": "tracker.capture.camera",
     "articulated_of": "tracker.model.blend_articulated",
     "check_import": "tracker.capture.import_check",
+    "Checkpoints": "tracker.training.checkpoints",
+    "pack_arrays": "tracker.training.checkpoints",
+    "unpack_arrays": "tracker.training.checkpoints",
     "compare_tracks": "tracker.evaluation.comparison",
     "default_hand": "tracker.model.default_hand",
     "describe_frame": "tracker.tracking.frame_view",
@@ -205,6 +218,7 @@ __all__ = [
     "MIN_FIT_JOINTS",
     "PRESETS",
     "SCAN_SUFFIXES",
+    "STUDY_LEVELS",
     "USUAL_PRESET",
     "Annotation",
     "AnnotationError",
@@ -213,12 +227,14 @@ __all__ = [
     "ArticulatedModel",
     "BlendModel",
     "Camera",
+    "Checkpoints",
     "Evaluation",
     "ExportedLabels",
     "Frame",
     "FrameError",
     "FrameResult",
     "FrameView",
+    "HeldOut",
     "ImportHints",
     "ImportOptions",
     "ImportRefusedError",
@@ -254,6 +270,7 @@ __all__ = [
     "add_commands",
     "articulated_of",
     "check_import",
+    "choose_held_out",
     "compare_tracks",
     "default_hand",
     "describe_frame",
@@ -280,8 +297,10 @@ __all__ = [
     "load_training_set",
     "make_anatomical_prior",
     "make_gaussian_prior",
+    "make_test_hand",
     "make_training_set",
     "mirror_blend",
+    "pack_arrays",
     "pack_files",
     "read_label_files",
     "register_scan",
@@ -295,15 +314,18 @@ __all__ = [
     "save_scan",
     "save_sequence_json",
     "start_tracking",
+    "study_held_out",
     "summarize_registration",
     "track_frames",
     "train_model",
     "triangulate",
+    "unpack_arrays",
     "untrained_hand",
     "view_track_hands",
     "warm_up",
     "write_csv",
     "write_html",
+    "write_model_html",
 ]
 
 

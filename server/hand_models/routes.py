@@ -6,7 +6,7 @@ import uuid
 from pathlib import Path
 from typing import Any
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Depends, Request, Response
 from pydantic import ValidationError
 
 from server.accounts.audit import record_act
@@ -21,6 +21,8 @@ from server.storage.upload import Upload, UploadLimits, work_on_upload
 from tracker import HAND_EDGES, HAND_JOINTS
 
 router = APIRouter(tags=["hands"], responses=error_responses())
+
+REPORT_POLICY = "sandbox; default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 
 LIMITS = UploadLimits(files=1, total_bytes=1024**3)
 _BODY: dict[str, Any] = {
@@ -74,6 +76,28 @@ def get_hand_model_report(model_id: uuid.UUID, session: SessionDep) -> HandModel
     if row.report is None:
         raise NotFoundError(f"{row.name} was not trained here, so there is no report of its training.")
     return HandModelReport(report=row.report)
+
+
+@router.get(
+    "/hand-models/{model_id}/report.html",
+    response_class=Response,
+    responses=error_responses(404) | {200: {"content": {"text/html": {}}}},
+)
+def download_hand_model_report(model_id: uuid.UUID, session: SessionDep) -> Response:
+    """The same as one file with its plots, for others: nothing in it is fetched, nothing runs."""
+    from tracker import write_model_html
+
+    row = service.get_hand_model(session, model_id)
+    if row.report is None:
+        raise NotFoundError(f"{row.name} was not trained here, so there is no report of its training.")
+    facts = {"Round": str(row.round), "Training set": str(row.training_set_id), "SHA-256": row.digest}
+    text = write_model_html(row.report, title=row.name, made_at=f"{row.created_at:%Y-%m-%d %H:%M} UTC", facts=facts)
+    headers = {
+        "Content-Disposition": f'attachment; filename="hand-model-{row.digest[:12]}.html"',
+        "Content-Security-Policy": REPORT_POLICY,
+        "Cache-Control": "no-store",
+    }
+    return Response(text, media_type="text/html; charset=utf-8", headers=headers)
 
 
 @router.post(

@@ -1,7 +1,8 @@
 """The working files of a job: written whole or not at all, and checked before they are read again.
 
 Layout of `jobs/<id>/`: `annotations.json` as they were when the job began, `setup/`, `state-0000.npz` before the first
-chunk, `state-0001.npz` and `chunk-0000.npz` after it, and so on. A step's manifest `<step>.json` is written last and
+chunk, `state-0001.npz` and `chunk-0000.npz` after it, and so on; of training `train-0-round-1.npz` and the like. A
+step's manifest `<step>.json` is written last and
 names the SHA-256 of each file of that step: a step whose manifest holds is done and need not be done again. With a
 store behind the data folder, files and manifests go there too, so that another machine can go on.
 """

@@ -18,10 +18,13 @@ from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate
 from server.registrations.models import RegistrationRow
 from server.scans.models import ScanRow
 from server.storage import Storage
+from server.training_sets.models import TrainingSetRow
 from server.training_sets.schemas import TrainingRule
-from server.training_sets.service import choose_registrations, get_training_set
+from server.training_sets.service import Chosen, choose_registrations, get_training_set, list_subjects
 
 AT_ONCE = 500
+
+NOBODY_LEFT_OUT = "Nobody is kept for testing, so there is nobody to evaluate on. Leave subjects out."
 
 
 def make_register_job(session: Session, storage: Storage, asked: RegisterCreate, account_id: uuid.UUID) -> JobRow:
@@ -49,7 +52,10 @@ def make_train_job(session: Session, storage: Storage, asked: TrainCreate, accou
         "model": model.name,
         "name": asked.name,
         "options": asked.options.model_dump(),
+        "evaluate": asked.evaluate,
     }
+    if asked.evaluate != "no":
+        params["test_subjects"] = _check_test_subjects(session, training_set, asked.test_subjects)
     return _make(session, "train", f"{asked.name} from {training_set.name}", params, account_id, [])
 
 
@@ -59,6 +65,8 @@ def make_loop_job(session: Session, storage: Storage, asked: LoopCreate, account
         raise InvalidError(
             f"rounds is {asked.rounds}; by people's decisions it is 1: what the new model registers waits for people."
         )
+    if asked.evaluate != "no" and not asked.leave_out_subjects:
+        raise InvalidError(NOBODY_LEFT_OUT)
     model = resolve_model(session, storage, asked.model_id)
     scans = _choose_scans(session, RegisterCreate(collection=asked.collection, only="all"), model)
     if not scans:
@@ -78,6 +86,33 @@ def make_rule(asked: LoopCreate, model_id: uuid.UUID | None) -> TrainingRule:
         model_id=model_id,
         leave_out_subjects=asked.leave_out_subjects,
     )
+
+
+def choose_held_out(session: Session, rule: TrainingRule, subjects: Sequence[str]) -> list[Chosen]:
+    """Registrations of people who are left out, chosen as a rule chooses those that are trained from."""
+    rule = rule.model_copy(update={"leave_out_subjects": []})
+    return [one for one in choose_registrations(session, rule) if one.scan.subject in subjects]
+
+
+def _check_test_subjects(session: Session, training_set: TrainingSetRow, asked: Sequence[str]) -> list[str]:
+    """Those to judge on, none of whom is learnt from and all of whom have registrations that count."""
+    rule = TrainingRule.model_validate(training_set.rule)
+    subjects = sorted(set(asked) or set(rule.leave_out_subjects))
+    if not subjects:
+        raise InvalidError(NOBODY_LEFT_OUT)
+    if known := sorted(list_subjects(session, training_set.id) & set(subjects)):
+        raise InvalidError(
+            f"{known[0]} is in the training set: a model is judged on people that it was not trained on. Leave out "
+            "those to judge on when the training set is made."
+        )
+    there = {one.scan.subject for one in choose_held_out(session, rule, subjects)}
+    if missing := [subject for subject in subjects if subject not in there]:
+        how = "that was accepted" if rule.by == "decisions" else "that is good"
+        raise InvalidError(
+            f"{missing[0]} has no registration {how}, so there is nothing to judge on. Register their scans"
+            f"{' and decide about them' if rule.by == 'decisions' else ''}, or leave them out of `test_subjects`."
+        )
+    return subjects
 
 
 def copy_job_scans(session: Session, source_id: uuid.UUID, job_id: uuid.UUID) -> None:

@@ -21,6 +21,7 @@ from server.hand_models import storing
 from server.hand_models.models import HandModelRow
 from server.hand_models.service import get_hand_model
 from server.jobs import making, service
+from server.jobs.checkpoints import JobCheckpoints
 from server.jobs.run import JobRun, WorkerContext
 from server.jobs.schemas import LoopCreate, TrainingParams
 from server.registrations import service as registrations
@@ -33,7 +34,7 @@ from server.storage.digest import compute_digest
 from server.training_sets import service as training_sets
 
 if TYPE_CHECKING:
-    from tracker import BlendModel, Registration, RegistrationStart, Scan, Training
+    from tracker import BlendModel, Registration, RegistrationStart, Scan, Training, TrainingSet
 
 log = logging.getLogger(__name__)
 
@@ -66,7 +67,7 @@ class ScanRun(JobRun):
 
     def __init__(self, context: WorkerContext, job_id: UUID, shelf: ModelShelf) -> None:
         super().__init__(context, job_id)
-        self._shelf = shelf
+        self.shelf = shelf
 
     def list_scans(self) -> list[str]:
         """Scans of the job, in order."""
@@ -126,7 +127,7 @@ class ScanRun(JobRun):
     ) -> str:
         from tracker import RegistrationOptions, register_scan, save_registration
 
-        model_row, model = self._shelf.get(model_id)
+        model_row, model = self.shelf.get(model_id)
         whole = scans.open_scan(self.context.storage, row)
         kept = ~find_cropped(whole, crop)
         options = RegistrationOptions(side=row.side, use_colors=crop.drops_objects)
@@ -165,8 +166,7 @@ class ScanRun(JobRun):
 
     def choose(self, attempt: int, model_id: UUID, number: int) -> str:
         """Keep what a round of a loop trains from; gives the id of the training set."""
-        params = {name: value for name, value in self.row.params.items() if name != "model"}
-        asked = LoopCreate.model_validate(params)
+        asked = read_loop(self.row.params)
         rule = making.make_rule(asked, model_id if asked.by == "verdict" else None)
         with self.context.database.writing() as session:
             row, _ = training_sets.create_training_set(
@@ -179,22 +179,25 @@ class ScanRun(JobRun):
 
     def train(self, attempt: int, set_id: UUID, parent_id: UUID, name: str, number: int, span: Span) -> str:
         """Train a model; gives its id."""
-        from tracker import TrainingOptions, load_training_set, train_model
+        from tracker import TrainingOptions, train_model
 
         progress = self.progress(attempt)
         model_id = uuid.uuid5(NAMESPACE, f"{self.job_id}/model/{number}")
         with self.context.database.reading() as session:
             if session.get(HandModelRow, model_id) is not None:
                 return str(model_id)
-            row = training_sets.get_training_set(session, set_id)
         progress.part(span, "gathering registrations", 0.0)
         params = TrainingParams.model_validate(self.row.params["options"])
-        parent_row, parent = self._shelf.get(parent_id)
-        folder = self.files.folder / f"set-{number}"
-        _gather(training_sets.list_files(self.context.storage, row), folder)
-        chosen = load_training_set(folder, verdicts=("good", "doubtful", "bad"))  # people or the rule chose them
+        parent_row, parent = self.shelf.get(parent_id)
+        chosen = self.load_training_set(set_id, number)
         options = TrainingOptions(name=name, threads=os.cpu_count() or 1, **params.model_dump())
-        trained = train_model(chosen, parent, options, lambda stage, share: progress.part(span, stage, share))
+        kept = JobCheckpoints(
+            self.files,
+            f"train-{number}",
+            lambda stage: progress.kept(),
+            lambda stage: progress.log("info", f"{stage.replace('-', ' ')} is kept from before"),
+        )
+        trained = train_model(chosen, parent, options, lambda stage, share: progress.part(span, stage, share), kept)
         digest = storing.write_model(self.context.storage, model_id, trained.model)
         with self.context.database.writing() as session:
             session.add(
@@ -214,7 +217,20 @@ class ScanRun(JobRun):
                 )
             )
             service.append_log(session, self.job_id, "info", f"{name} is trained")
+            service.update_running(
+                session, self.job_id, attempt, self.context.worker_id, hand_model_id=model_id, crashes=0
+            )
         return str(model_id)
+
+    def load_training_set(self, set_id: UUID, number: int) -> TrainingSet:
+        """The registrations of a set, each checked."""
+        from tracker import load_training_set
+
+        with self.context.database.reading() as session:
+            row = training_sets.get_training_set(session, set_id)
+        folder = self.files.folder / f"set-{number}"
+        _gather(training_sets.list_files(self.context.storage, row), folder)
+        return load_training_set(folder, verdicts=("good", "doubtful", "bad"))  # people or the rule chose them
 
     def finish(self, attempt: int, model_id: UUID | None, outcomes: list[str]) -> None:
         """End the job, and say what came of it."""
@@ -227,11 +243,16 @@ class ScanRun(JobRun):
             self.end(session, attempt, "succeeded", progress=1.0, hand_model_id=model_id, **values)
 
 
+def read_loop(params: dict[str, Any]) -> LoopCreate:
+    """What was asked of a loop."""
+    return LoopCreate.model_validate({name: value for name, value in params.items() if name != "model"})
+
+
 def study_people(trained: Training) -> dict[str, Any]:
     """How well the shape space holds people that it was not made from, each left out in turn: [R17] Fig. 14."""
     from tracker import generalize_shapes
 
-    people = np.array([hand.split(" ")[0] for hand in trained.report["by_hand"]])
+    people = np.array([hand.removesuffix(" (left)") for hand in trained.report["by_hand"]])
     most = min(20, len(np.unique(people)) - 2)
     if most < 1 or len(people) != len(trained.templates):
         return {}

@@ -66,6 +66,10 @@ class JobProgress:
         first, last = span
         self._publish_stage(name, first + (last - first) * min(max(share, 0.0), 1.0))
 
+    def kept(self) -> None:
+        """Say that what was done so far is safe on disk."""
+        self._publish(True, crashes=0)
+
     def scans(self, done: int, total: int, span: tuple[float, float], name: str, share: float) -> None:
         """Say that `done` of `total` scans are registered, and a share of the next; also how a job learns to stop."""
         self._publish(False, **self._describe_scans(done + share, total, span), stage=name, frames_done=done)

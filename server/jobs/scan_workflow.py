@@ -1,4 +1,4 @@
-"""The workflows of jobs that register scans and train hand models: a step for each scan, and one for each training."""
+"""The workflows of jobs that register scans and train hand models: a step for each scan, training and evaluation."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from uuid import UUID
 
 from dbos import DBOS
 
+from server.jobs.evaluating import evaluate_model
 from server.jobs.modelling import ModelShelf, ScanRun, Span
 from server.jobs.run import WorkerContext
 
@@ -36,6 +37,20 @@ def register_scan_workflows(context: WorkerContext) -> dict[str, Callable[[str, 
     ) -> str:
         return open_run(job_id).train(attempt, UUID(training_set_id), UUID(model_id), name, number, span)
 
+    @DBOS.step(name="evaluate model")
+    def evaluate(job_id: str, attempt: int, model_id: str, parent_id: str, number: int, span: Span) -> bool:
+        return evaluate_model(open_run(job_id), attempt, UUID(model_id), UUID(parent_id), number, span)
+
+    def train_and_evaluate(
+        run: ScanRun, attempt: int, training_set_id: str, parent_id: str, name: str, number: int, span: Span
+    ) -> str:
+        job_id, level = str(run.job_id), run.row.params.get("evaluate", "no")
+        border = span[0] + TRAINED[level] * (span[1] - span[0])
+        made = train_model(job_id, attempt, training_set_id, parent_id, name, number, (span[0], border))
+        if level != "no":
+            evaluate(job_id, attempt, made, parent_id, number, (border, span[1]))
+        return made
+
     @DBOS.step(name="finish scans")
     def finish(job_id: str, attempt: int, model_id: str | None, outcomes: list[str]) -> str:
         open_run(job_id).finish(attempt, None if model_id is None else UUID(model_id), outcomes)
@@ -64,8 +79,8 @@ def register_scan_workflows(context: WorkerContext) -> dict[str, Callable[[str, 
 
         def work() -> None:
             params = run.row.params
-            made = train_model(
-                job_id, attempt, params["training_set_id"], params["model_id"], params["name"], 0, (0.0, 1.0)
+            made = train_and_evaluate(
+                run, attempt, params["training_set_id"], params["model_id"], params["name"], 0, (0.0, 1.0)
             )
             finish(job_id, attempt, made, [])
 
@@ -84,7 +99,7 @@ def register_scan_workflows(context: WorkerContext) -> dict[str, Callable[[str, 
             for number in range(1, params["rounds"] + 1):
                 chosen = choose(job_id, attempt, model_id, number)
                 name = params["name"] if params["rounds"] == 1 else f"{params['name']}, round {number}"
-                model_id = train_model(job_id, attempt, chosen, model_id, name, number, spans.pop(0))
+                model_id = train_and_evaluate(run, attempt, chosen, model_id, name, number, spans.pop(0))
                 outcomes = register_all(job_id, attempt, model_id, spans.pop(0))
             finish(job_id, attempt, model_id, outcomes)
 
@@ -95,6 +110,9 @@ def register_scan_workflows(context: WorkerContext) -> dict[str, Callable[[str, 
 
 REGISTERING, TRAINING = 3.0, 1.0
 """Rough shares of the time of a loop."""
+
+TRAINED = {"no": 1.0, "quick": 0.7, "full": 0.3}
+"""Share of training in training and evaluation."""
 
 
 def plan_loop(rounds: int, registers_first: bool) -> list[Span]:

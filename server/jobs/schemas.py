@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import uuid
 from datetime import datetime
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -51,6 +51,16 @@ class TrainingParams(BaseModel):
     with_mirrored: bool = Field(default=True, description="Learn from left hands too, mirrored.")
 
 
+Evaluate = Annotated[
+    Literal["no", "quick", "full"],
+    Field(
+        description="Judge the model on people that it was not trained on, once it is stored. `quick`: beside the "
+        "untrained hand and without blend shapes; `full`: also beside plain skinning and right hands only, which are "
+        "trained for it."
+    ),
+]
+
+
 class TrainCreate(BaseModel):
     """A hand model to train."""
 
@@ -60,6 +70,10 @@ class TrainCreate(BaseModel):
     name: Name
     model_id: uuid.UUID | None = Field(default=None, description="To begin with; null: the one not trained yet.")
     options: TrainingParams = Field(default_factory=TrainingParams)
+    evaluate: Evaluate = "no"
+    test_subjects: list[Label] = Field(
+        default_factory=list, max_length=1000, description="To judge on; empty: those whom the training set leaves out."
+    )
 
 
 class LoopCreate(BaseModel):
@@ -78,6 +92,7 @@ class LoopCreate(BaseModel):
     rounds: int = Field(default=1, ge=1, le=10, description="By decisions: 1.")
     leave_out_subjects: list[Label] = Field(default_factory=list, max_length=1000, description="Kept for testing.")
     options: TrainingParams = Field(default_factory=TrainingParams)
+    evaluate: Evaluate = "no"
 
 
 class BatchCreate(BaseModel):

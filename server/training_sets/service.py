@@ -244,6 +244,17 @@ def list_members(
     return items, write_cursor(scan.name, str(member.id))
 
 
+def list_subjects(session: Session, set_id: uuid.UUID) -> set[str]:
+    """Whose hands a set is of."""
+    query = (
+        select(ScanRow.subject)
+        .join(RegistrationRow, RegistrationRow.scan_id == ScanRow.id)
+        .join(TrainingMemberRow, TrainingMemberRow.registration_id == RegistrationRow.id)
+        .where(TrainingMemberRow.training_set_id == set_id)
+    )
+    return set(session.scalars(query))
+
+
 def read_list(storage: Storage, row: TrainingSetRow) -> dict[str, Any]:
     """The set's own list; raises when it is not what it was."""
     try:

@@ -7,11 +7,13 @@ import shutil
 import uuid
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from fastapi import FastAPI
+from scipy.spatial import KDTree
 from sqlalchemy.orm import Session
 
 from server.decisions.schemas import DecisionMake
@@ -28,7 +30,10 @@ from server.training_sets.schemas import TrainingRule
 from server.training_sets.service import create_training_set
 from tests.server.conftest import GeneratedHand, Studio
 from tests.server.teams.conftest import Person, join
-from tracker import Scan
+from tracker import Registration, Scan, load_scan, save_registration, save_scan, untrained_hand
+from tracker.evaluation.scan_fit import fit_pose_to_vertices
+from tracker.synthesis.scans.generate import ScanOptions, generate_scan
+from tracker.synthesis.scans.scanner import Scanner
 
 __all__ = ["Curation", "curation", "join", "make_ball", "send_scans"]
 
@@ -40,6 +45,37 @@ def make_ball(seed: int = 0, count: int = 2000, radius: float = 0.08, colors: np
     directions = np.random.default_rng(seed).normal(size=(count, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     return Scan(radius * directions, directions, None, colors, "ball")
+
+
+def make_true_hand(folder: Path, subject: int, pose: int, side: str = "right", points: int = 2500) -> GeneratedHand:
+    """A small scan with the true registration of it, written into a folder of its own."""
+    options = ScanOptions(scanner=Scanner(num_points=points), has_forearm=False)
+    made = generate_scan(subject, pose, side, 100 * subject + pose, options)
+    folder.mkdir(parents=True)
+    save_scan(made.scan, folder / "hand.ply")
+    scan = load_scan(folder / "hand.ply")
+    distances = KDTree(made.true_surface[0]).query(scan.points)[0]
+    model = untrained_hand("right")
+    flip = np.array([1.0 if side == "right" else -1.0, 1.0, 1.0])
+    fit = fit_pose_to_vertices(model, made.true_vertices * flip)
+    found = Registration(
+        vertices=made.true_vertices,
+        model_vertices=made.true_vertices,
+        faces=model.faces if side == "right" else model.faces[:, ::-1],
+        pose=fit.pose,
+        shape=np.zeros(model.num_shape),
+        translation=fit.translation,
+        side=side,
+        verdict="good",
+        score=0.1,
+        reasons=(),
+        scan_to_mesh=distances,
+        seconds=1.0,
+        subject=f"S{subject}",
+        pose_name=made.pose_name,
+    )
+    save_registration(found, folder)
+    return GeneratedHand(scan, found, folder)
 
 
 def send_scans(studio: Studio, files: dict[str, bytes], headers: dict[str, str] | None = None, **options: Any) -> Any:

@@ -1,4 +1,4 @@
-"""A comparison as one file that anybody can open: nothing is fetched, nothing runs."""
+"""A comparison as a report."""
 
 from __future__ import annotations
 
@@ -10,14 +10,13 @@ from typing import Any
 from tracker.evaluation.comparison import word_of
 from tracker.evaluation.error_color import ANCHORS
 from tracker.evaluation.report_drawing import Line, draw_bar_cell, draw_curves
-from tracker.evaluation.report_style import STYLE
+from tracker.evaluation.report_page import write_page, write_row, write_table
 from tracker.evaluation.worst_picture import FULL_PX
 
 Document = Mapping[str, Any]
 Pictures = Mapping[tuple[str, int], bytes]
 """JPEG files by a track's key and the place in its `worst`."""
 
-POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 STATISTICS = (("mean", "Mean"), ("std", "Std"), ("median", "Median"), ("p95", "95 %"), ("max", "Max"))
 
 
@@ -34,7 +33,6 @@ def write_html(document: Document, pictures: Pictures, *, title: str, made_at: s
     tracks = document["tracks"]
     names = {track["key"]: _name(track, tracks) for track in tracks}
     parts = [
-        f"<h1>{escape(title)}</h1>",
         f"<p class=quiet>Distance in the image between annotated and tracked joints, px. Made {escape(made_at)}. "
         f"{escape(about)}</p>",
         _summary(document, names),
@@ -47,26 +45,12 @@ def write_html(document: Document, pictures: Pictures, *, title: str, made_at: s
         _worst(tracks, names, pictures),
         _lineage(tracks, names),
     ]
-    return (
-        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{STYLE}</style></head>'
-        f"<body>{''.join(parts)}</body></html>\n"
-    )
+    return write_page(title, parts)
 
 
 def _name(track: Document, tracks: Sequence[Document]) -> str:
     is_one = len({other["recording_key"] for other in tracks}) == 1
     return track["name"] if is_one else f"{track['name']} of {track['recording']}"
-
-
-def _table(head: Sequence[str], rows: Sequence[str]) -> str:
-    cells = "".join(f"<th{' class=number' if place else ''}>{escape(cell)}</th>" for place, cell in enumerate(head))
-    return f"<div class=scroll><table><thead><tr>{cells}</tr></thead><tbody>{''.join(rows)}</tbody></table></div>"
-
-
-def _row(name: str, cells: Sequence[str]) -> str:
-    return f"<tr><th scope=row>{escape(name)}</th>{''.join(cells)}</tr>"
 
 
 def _column(rows: Sequence[Document], group: str, measure: str) -> tuple[float, float | None]:
@@ -91,9 +75,9 @@ def _summary(document: Document, names: Mapping[str, str]) -> str:
         cells += [draw_bar_cell(track[group]["mean"], seen[group][0]) for group in ("visible", "occluded")]
         counts = (track["error"]["count"], track["annotated_frames"], track["frames"], track["lost"])
         cells += [f"<td class=number>{count}</td>" for count in counts]
-        rows.append(_row(names[track["key"]], cells))
+        rows.append(write_row(names[track["key"]], cells))
     head = ["Track", *(label for _, label in STATISTICS), f"Within {within:g} px", "Visible", "Occluded"]
-    return "<h2>Error</h2>" + _table([*head, "Joints", "Annotated frames", "Frames", "Lost"], rows)
+    return "<h2>Error</h2>" + write_table([*head, "Joints", "Annotated frames", "Frames", "Lost"], rows)
 
 
 def _difference_cells(paired: Document) -> list[str]:
@@ -121,11 +105,11 @@ def _paired(document: Document, names: Mapping[str, str]) -> str:
     found = [track for track in document["tracks"] if track["paired"] is not None]
     if not found:
         return ""
-    rows = [_row(names[track["key"]], _difference_cells(track["paired"])) for track in found]
+    rows = [write_row(names[track["key"]], _difference_cells(track["paired"])) for track in found]
     reference = names[document["reference"]]
     return (
         f"<h2>Against {escape(reference)}</h2><p class=quiet>Over the joints and frames that both have; below zero is "
-        "better. The interval is a bootstrap over frames.</p>" + _table(["Track", *DIFFERENCE_HEAD], rows)
+        "better. The interval is a bootstrap over frames.</p>" + write_table(["Track", *DIFFERENCE_HEAD], rows)
     )
 
 
@@ -146,9 +130,9 @@ def _methods(document: Document) -> str:
             shown = f"{paired['difference']:+.2f} ({paired['low']:+.2f} to {paired['high']:+.2f})"
         counts = (method["recordings"], method["frames"], method["lost"])
         cells += [f"<td class=number>{count}</td>" for count in counts]
-        rows.append(_row(method["name"], [*cells, f"<td class=number>{escape(shown)}</td>"]))
+        rows.append(write_row(method["name"], [*cells, f"<td class=number>{escape(shown)}</td>"]))
     head = ["Method", *(label for _, label in STATISTICS), "Recordings", "Frames", "Lost", "Difference"]
-    return "<h2>Methods over all recordings</h2>" + _table(head, rows)
+    return "<h2>Methods over all recordings</h2>" + write_table(head, rows)
 
 
 def _sequences(tracks: Sequence[Document]) -> str:
@@ -160,9 +144,9 @@ def _sequences(tracks: Sequence[Document]) -> str:
     rows = []
     for measure, label in (("mean", "Mean error (px)"), ("std", "Standard deviation (px)"), ("max", "Max error (px)")):
         full = max((track["error"][measure] or 0.0 for track in chosen), default=0.0)
-        rows.append(_row(label, [draw_bar_cell(track["error"][measure], full) for track in chosen]))
+        rows.append(write_row(label, [draw_bar_cell(track["error"][measure], full) for track in chosen]))
     head = ["", *(f"{track['recording']}: {track['name']}" for track in chosen)]
-    return "<h2>Recordings</h2>" + _table(head, rows)
+    return "<h2>Recordings</h2>" + write_table(head, rows)
 
 
 def _curves(document: Document, names: Mapping[str, str]) -> str:
@@ -186,7 +170,7 @@ def _joints(document: Document, names: Mapping[str, str]) -> str:
     tracks = document["tracks"]
     full = max((row["mean"] or 0.0 for track in tracks for row in track["by_joint"]), default=0.0)
     rows = [
-        _row(
+        write_row(
             joint.replace("_", " "),
             [
                 draw_bar_cell(found["mean"], full, None if found["mean"] is None else _mean_std(found))
@@ -196,7 +180,7 @@ def _joints(document: Document, names: Mapping[str, str]) -> str:
         for place, joint in enumerate(document["joints"])
     ]
     head = ["Joint", *(names[track["key"]] for track in tracks)]
-    return "<h2>Joints</h2><p class=quiet>Mean ± standard deviation (largest), px.</p>" + _table(head, rows)
+    return "<h2>Joints</h2><p class=quiet>Mean ± standard deviation (largest), px.</p>" + write_table(head, rows)
 
 
 def _mean_std(found: Document) -> str:
@@ -210,10 +194,10 @@ def _parameters(document: Document, names: Mapping[str, str]) -> str:
     if not parameters["different"]:
         return f"<h2>Parameters</h2>{alike}"
     rows = [
-        _row(item["name"], [f"<td class=number>{escape(word_of(item['values'][t['key']]))}</td>" for t in tracks])
+        write_row(item["name"], [f"<td class=number>{escape(word_of(item['values'][t['key']]))}</td>" for t in tracks])
         for item in parameters["different"]
     ]
-    return "<h2>Parameters</h2>" + _table(["Differing", *(names[t["key"]] for t in tracks)], rows) + alike
+    return "<h2>Parameters</h2>" + write_table(["Differing", *(names[t["key"]] for t in tracks)], rows) + alike
 
 
 def _worst(tracks: Sequence[Document], names: Mapping[str, str], pictures: Pictures) -> str:
@@ -247,6 +231,8 @@ def _lineage(tracks: Sequence[Document], names: Mapping[str, str]) -> str:
     for track in tracks:
         facts = {**track["labels"], **{f"track {name}": value for name, value in track["origin"].items()}}
         text = "; ".join(f"{name.replace('_', ' ')} {value}" for name, value in facts.items() if value is not None)
-        rows.append(_row(names[track["key"]], [f'<td style="white-space:normal"><code>{escape(text)}</code></td>']))
+        rows.append(
+            write_row(names[track["key"]], [f'<td style="white-space:normal"><code>{escape(text)}</code></td>'])
+        )
     body = "".join(rows)
     return f"<h2>What was judged, and by which labels</h2><div class=scroll><table><tbody>{body}</tbody></table></div>"

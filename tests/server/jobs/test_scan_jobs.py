@@ -4,74 +4,34 @@ from __future__ import annotations
 
 import shutil
 import uuid
-from collections.abc import Callable, Iterator
-from contextlib import closing
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from fastapi import FastAPI
 from sqlalchemy import select
 
 from server.accounts.models import LOCAL_ACCOUNT_ID
-from server.database import Database
-from server.database.migrate import upgrade
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID, find_file
 from server.jobs import making, service
 from server.jobs.files import JobFiles
-from server.jobs.models import JobRow
 from server.jobs.scan_workflow import plan_loop
 from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate, TrainingParams
 from server.jobs.tracking import TrackingJob
 from server.registrations.models import RegistrationRow
 from server.scans.models import ScanRow
-from server.settings import Settings
-from server.storage import Storage
 from server.training_sets.schemas import TrainingRule
 from server.training_sets.service import create_training_set
 from tests.server.conftest import GeneratedHand, Studio, Tracked
 from tests.server.curation import add_registered
-from tests.server.jobs.test_worker import Bench
+from tests.server.jobs.scan_bench import ScanBench, bench
 from tests.server.teams.conftest import Join, join
 from tracker import load_blend_model, load_registration, save_registration
 from tracker.synthesis.scans.generate import generate_truth
 
-__all__ = ["join"]
-
-
-class ScanBench(Bench):
-    """A studio's data with scans in it, and workers to be started."""
-
-    def __init__(self, settings: Settings, database: Database) -> None:
-        self.settings, self.database = settings, database
-        self.storage = Storage(settings.data_dir)
-        self.processes = []
-        self.app = FastAPI()
-        self.app.state.storage, self.app.state.database = self.storage, database
-
-    def make(self, maker: Callable[..., JobRow], asked: Any) -> uuid.UUID:
-        with self.database.writing() as session:
-            return maker(session, self.storage, asked, LOCAL_ACCOUNT_ID).id
-
-    def registrations(self, job_id: uuid.UUID) -> list[RegistrationRow]:
-        with self.database.reading() as session:
-            return list(session.scalars(select(RegistrationRow).where(RegistrationRow.job_id == job_id)))
-
-
-@pytest.fixture
-def bench(tmp_path: Path) -> Iterator[ScanBench]:
-    settings = Settings(data_dir=tmp_path / "data", database_url=f"sqlite:///{tmp_path}/test.sqlite3")
-    with closing(Database(settings.sqlalchemy_url)) as database:
-        upgrade(database)
-        opened = ScanBench(settings, database)
-        yield opened
-        for process in opened.processes:
-            if process.poll() is None:
-                opened.kill(process)
+__all__ = ["bench", "join"]
 
 
 def test_a_killed_worker_loses_one_scan_at_most_and_none_is_registered_twice(

@@ -712,6 +712,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/hand-models/{model_id}/report.html": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download Hand Model Report
+         * @description The same as one file with its plots, for others: nothing in it is fetched, nothing runs.
+         */
+        get: operations["download_hand_model_report"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/hand-models/{model_id}/restore": {
         parameters: {
             query?: never;
@@ -5117,6 +5137,13 @@ export interface components {
              */
             collection?: string | null;
             /**
+             * Evaluate
+             * @description Judge the model on people that it was not trained on, once it is stored. `quick`: beside the untrained hand and without blend shapes; `full`: also beside plain skinning and right hands only, which are trained for it.
+             * @default no
+             * @enum {string}
+             */
+            evaluate: "no" | "quick" | "full";
+            /**
              * Leave Out Subjects
              * @description Kept for testing.
              */
@@ -6983,6 +7010,13 @@ export interface components {
          */
         TrainCreate: {
             /**
+             * Evaluate
+             * @description Judge the model on people that it was not trained on, once it is stored. `quick`: beside the untrained hand and without blend shapes; `full`: also beside plain skinning and right hands only, which are trained for it.
+             * @default no
+             * @enum {string}
+             */
+            evaluate: "no" | "quick" | "full";
+            /**
              * Model Id
              * @description To begin with; null: the one not trained yet.
              */
@@ -6990,6 +7024,11 @@ export interface components {
             /** Name */
             name: string;
             options?: components["schemas"]["TrainingParams"];
+            /**
+             * Test Subjects
+             * @description To judge on; empty: those whom the training set leaves out.
+             */
+            test_subjects?: string[];
             /**
              * Training Set Id
              * Format: uuid
@@ -10296,6 +10335,73 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HandModelReport"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    download_hand_model_report: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                model_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/html": unknown;
                 };
             };
             /** @description Unauthorized */

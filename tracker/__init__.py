@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from tracker.model.default_hand import default_hand
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
     from tracker.model.mano_files import load_mano, save_mano
+    from tracker.model.trained_hand import trained_hand
     from tracker.model.untrained_hand import untrained_hand
     from tracker.registration.anatomy import make_anatomical_prior
     from tracker.registration.options import RegistrationOptions
@@ -199,6 +200,7 @@ _HOMES = {
     "TrainingOptions": "tracker.training.options",
     "TrainingSet": "tracker.training.training_set",
     "Triangulation": "tracker.capture.triangulation",
+    "trained_hand": "tracker.model.trained_hand",
     "untrained_hand": "tracker.model.untrained_hand",
     "USUAL_PRESET": "tracker.tracking.presets",
     "view_track_hands": "tracker.tracking.quick_fit",
@@ -318,6 +320,7 @@ __all__ = [
     "summarize_registration",
     "track_frames",
     "train_model",
+    "trained_hand",
     "triangulate",
     "unpack_arrays",
     "untrained_hand",

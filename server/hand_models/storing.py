@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 UNTRAINED_ID = uuid.uuid5(NAMESPACE, "untrained/right")
 UNTRAINED_NAME = "Untrained right hand"
+TRAINED_ID = uuid.uuid5(NAMESPACE, "trained/right")
+TRAINED_NAME = "Trained right hand"
 HAND_BONES = 16
 
 
@@ -39,10 +41,18 @@ def describe_untrained() -> HandModelOut:
     )
 
 
+def describe_trained() -> HandModelOut:
+    """The hand learnt from scans that comes with Handloom, which recordings can be tracked with."""
+    from tracker import trained_hand
+
+    named = {"id": TRAINED_ID, "name": TRAINED_NAME, "kind": "default", "side": "right"}
+    return HandModelOut.model_validate(describe_model(trained_hand("right")) | named)
+
+
 def list_built_in(session: Session) -> list[HandModelOut]:
     """Those that come with Handloom and that no row stands for."""
     is_stored = session.get(HandModelRow, UNTRAINED_ID) is not None
-    return [*list_default_models(), *([] if is_stored else [describe_untrained()])]
+    return [*list_default_models(), describe_trained(), *([] if is_stored else [describe_untrained()])]
 
 
 def describe_model(model: BlendModel) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from server.hand_models.models import HandModelRow
 from server.jobs.schemas import JobForm, JobFormField, JobPreset
-from server.jobs.service import HAND_MODEL
+from server.jobs.service import HAND_MODEL, TRAINED_HAND
 
 TYPE_NAMES: dict[type, Literal["integer", "number", "boolean", "text"]] = {
     int: "integer",
@@ -63,8 +63,8 @@ def _choose_hand(session: Session) -> JobFormField:
         type="text",
         default="",
         help="What the hands are taken to be; the other hand is its mirror image.",
-        choices=["", *(str(row.id) for row in rows)],
-        choice_labels=["The default hand", *(row.name for row in rows)],
+        choices=["", TRAINED_HAND, *(str(row.id) for row in rows)],
+        choice_labels=["The default hand", "The hand learnt from scans", *(row.name for row in rows)],
         low=None,
         high=None,
         unit=None,

@@ -21,6 +21,8 @@ from server.sequences.service import get_sequence
 KINDS = ("track", "register", "train", "loop")
 
 HAND_MODEL = "hand_model_id"
+TRAINED_HAND = "trained"
+"""In place of an id: the trained hand that comes with Handloom."""
 """Among the params of a tracking job: the tracker's options know no models of the studio."""
 
 LOG_PAGE = 1000
@@ -136,10 +138,14 @@ def _check_hand_model(session: Session, value: Any) -> dict[str, str]:
     """The id of a stored hand model as a param; none for the default hand."""
     if value in ("", None):
         return {}
+    if value == TRAINED_HAND:
+        return {HAND_MODEL: TRAINED_HAND}
     try:
         model_id = UUID(str(value))
     except ValueError:
-        raise InvalidError(f"{HAND_MODEL} is {str(value)[:80]!r}; needed the id of a hand model, or nothing.") from None
+        raise InvalidError(
+            f"{HAND_MODEL} is {str(value)[:80]!r}; needed a hand model's id, 'trained', or nothing."
+        ) from None
     return {HAND_MODEL: str(get_hand_model(session, model_id).id)}
 
 

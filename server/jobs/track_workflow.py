@@ -14,7 +14,7 @@ from server.annotations.service import export_annotations
 from server.hand_models.service import get_hand_model
 from server.hand_models.storing import find_file
 from server.jobs.run import JobRun, WorkerContext
-from server.jobs.service import HAND_MODEL
+from server.jobs.service import HAND_MODEL, TRAINED_HAND
 from server.jobs.tracking import TrackingJob
 from server.tracks.service import add_track
 
@@ -74,7 +74,7 @@ class _TrackRun(JobRun):
 
     def _find_hand_model(self) -> Path | None:
         model_id = self.row.params.get(HAND_MODEL)
-        if not model_id:
+        if not model_id or model_id == TRAINED_HAND:
             return None
         with self.context.database.reading() as session:
             return find_file(self.context.storage, get_hand_model(session, UUID(model_id), deleted_too=True))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from server.jobs.files import JobFiles
 from server.jobs.progress import JobProgress
-from server.jobs.service import HAND_MODEL
+from server.jobs.service import HAND_MODEL, TRAINED_HAND
 
 if TYPE_CHECKING:
     from tracker import ArticulatedModel, Sequence, TrackOptions
@@ -34,7 +34,7 @@ class TrackingJob:
     params: dict[str, Any]
     files: JobFiles
     hand_model: Path | None = None
-    """File of the hand model to track with; None for the default hand."""
+    """File of the hand model to track with; None for a hand that comes with Handloom."""
 
     @property
     def options(self) -> TrackOptions:
@@ -49,11 +49,14 @@ class TrackingJob:
 
     def load_hands(self) -> dict[str, ArticulatedModel] | None:
         """Both hands of the chosen model."""
-        from tracker import articulated_of, load_blend_model, mirror_blend
+        from tracker import articulated_of, load_blend_model, mirror_blend, trained_hand
 
-        if self.hand_model is None:
+        if self.hand_model is not None:
+            model = load_blend_model(self.hand_model)
+        elif self.params.get(HAND_MODEL) == TRAINED_HAND:
+            model = trained_hand("right")
+        else:
             return None
-        model = load_blend_model(self.hand_model)
         return {hand.side: articulated_of(hand) for hand in (model, mirror_blend(model))}
 
     def start(self, progress: JobProgress) -> dict[str, Any]:

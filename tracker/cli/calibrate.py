@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from tracker.cli.command import add_json, parse_hand, run_guarded
+from tracker.cli.command import TRAINED, add_json, parse_hand, run_guarded
 from tracker.cli.hands import load_hands
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError
@@ -27,7 +27,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         action="append",
         default=[],
         metavar="SIDE[=FILE]",
-        help="which hand, where the recording names two, and the model to begin with",
+        help="which hand, where the recording names two, and the model to begin with, or `trained`",
     )
     add_json(parser)
     parser.set_defaults(run=run_guarded(calibrate, show))
@@ -45,7 +45,8 @@ def calibrate(args: argparse.Namespace) -> dict[str, Any]:
     if args.out.suffix != ".npz":
         raise TrackerError(f"--out {args.out}: needed a file that ends in .npz.")
     sequence = load_sequence(args.recording)
-    side = args.hand[0][0] if args.hand else sequence.hands[0] if len(sequence.hands) == 1 else ""
+    named = [name for name, _ in args.hand if name != TRAINED]
+    side = named[0] if named else sequence.hands[0] if len(sequence.hands) == 1 else ""
     if side not in sequence.hands:
         raise TrackerError(f"Needed --hand with one of {list(sequence.hands)}.")
     path = sequence.annotations_path
@@ -54,7 +55,7 @@ def calibrate(args: argparse.Namespace) -> dict[str, Any]:
     setup, state = start_tracking(
         replace(sequence, hands=(side,), objects=()),
         TrackOptions(),
-        load_hands([hand for hand in args.hand if hand[1] is not None], (side,)),
+        load_hands([hand for hand in args.hand if hand[1] is not None or hand[0] == TRAINED], (side,)),
         annotations,
         lambda stage, share: line.show(share, stage),
     )

@@ -60,6 +60,10 @@ def parse_range(text: str) -> tuple[int | None, int | None]:
     return bounds
 
 
+TRAINED = "trained"
+"""Stands for the hand that was learnt from scans."""
+
+
 def parse_named_file(text: str) -> tuple[str, Path]:
     """`NAME=FILE`."""
     name, equals, path = text.partition("=")
@@ -69,10 +73,13 @@ def parse_named_file(text: str) -> tuple[str, Path]:
 
 
 def parse_hand(text: str) -> tuple[str, Path | None]:
-    """`right`, `left`, or either with `=FILE`, its model."""
+    """`right`, `left`, either with `=FILE`, its model, or `=trained`; `trained` alone for every hand."""
     name, path = parse_named_file(text) if "=" in text else (text, None)
-    if name not in ("right", "left"):
-        raise argparse.ArgumentTypeError(f"{text!r}: a hand is 'right' or 'left', or right=FILE with its model")
+    if name not in ("right", "left", TRAINED):
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: a hand is 'right' or 'left', or right=FILE with its model; '{TRAINED}' is the hand learnt from "
+            "scans, for both"
+        )
     return name, path
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tracker.cli.command import TRAINED
 from tracker.errors import TrackerError
 
 if TYPE_CHECKING:
@@ -13,28 +14,38 @@ if TYPE_CHECKING:
 
 
 def load_hands(given: Sequence[tuple[str, Path | None]], hands: tuple[str, ...]) -> dict[str, ArticulatedModel]:
-    """A model for each of the hands: from the file given for it, or the default hand.
+    """A model for each of the hands: from the file given for it, the hand learnt from scans, or the default hand.
 
     Raises:
         TrackerError: A file is given for a hand that is not among them, or holds none of that side.
     """
-    from tracker.model import load_model
     from tracker.model.default_hand import default_hand
 
     files = dict(given)
+    if TRAINED in files:
+        del files[TRAINED]
+        files = dict.fromkeys(hands, Path(TRAINED)) | files
     for side in files:
         if side not in hands:
             raise TrackerError(f"--hand {side}: there are the hands {list(hands)} only.")
     models = {}
     for side in hands:
         path = files.get(side)
-        models[side] = default_hand(side) if path is None else load_model(path)
+        models[side] = default_hand(side) if path is None else _load_hand(path, side)
         found = models[side].hand
         if found is None or found.side != side:
             raise TrackerError(
                 f"{path}: is {'no hand' if found is None else f'a {found.side} hand'}; needed a {side} hand."
             )
     return models
+
+
+def _load_hand(path: Path, side: str) -> ArticulatedModel:
+    from tracker.model import load_model
+    from tracker.model.blend_articulated import articulated_of
+    from tracker.model.trained_hand import trained_hand
+
+    return articulated_of(trained_hand(side)) if path == Path(TRAINED) else load_model(path)
 
 
 def load_objects(given: Sequence[tuple[str, Path]], objects: tuple[str, ...]) -> dict[str, ArticulatedModel]:

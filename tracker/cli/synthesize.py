@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from tracker.cli.command import add_json, choose_frames, parse_hand, parse_range, run_guarded
+from tracker.cli.command import TRAINED, add_json, choose_frames, parse_hand, parse_range, run_guarded
 from tracker.cli.hands import load_hands
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError
@@ -101,7 +101,7 @@ def _perform(args: argparse.Namespace):
     if args.motion not in MOTIONS:
         raise TrackerError(f"There is no motion {args.motion!r}; choose one of {', '.join(MOTIONS)}.")
     given = args.hand or [("right", None)]
-    models = load_hands(given, tuple(dict(given)))
+    models = load_hands(given, tuple(name for name in dict(given) if name != TRAINED) or ("right",))
     return perform(models, args.motion, args.frames[1] or MOTION_FRAMES, args.cameras, args.size)
 
 

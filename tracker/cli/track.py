@@ -29,7 +29,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         action="append",
         default=[],
         metavar="SIDE=FILE",
-        help="model of the right or left hand (npz, T16 .OFF, skinned glTF); the default hand otherwise",
+        help="model of the right or left hand (npz, MANO's files, T16 .OFF, skinned glTF), or 'trained' for the hand "
+        "learnt from scans; the default hand otherwise",
     )
     parser.add_argument(
         "--annotations", type=Path, metavar="FILE", help="instead of the recording's own; 'none' for no start"

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from tracker.export.bone_motions import find_bone_motions
 from tracker.export.glb_writer import ARRAY_BUFFER, ELEMENT_BUFFER, GlbWriter
+from tracker.export.pose_morphs import PoseMorphs, find_pose_morphs
 from tracker.model.articulated import ArticulatedModel
 from tracker.tracking.track import Track
 
@@ -29,7 +30,7 @@ def write_glb(track: Track, fps: float) -> bytes:
     """The meshes, skeletons and movement of a track.
 
     Nodes stand at rest; the animation "track" turns and shifts them, its time 0 being the track's first frame.
-    Vertices keep the numbers and units (m) that they have in the model.
+    Vertices keep the numbers and units (m) that they have in the model. Pose blend shapes become morph targets.
 
     Args:
         track: Any track.
@@ -44,6 +45,7 @@ def write_glb(track: Track, fps: float) -> bytes:
     document: dict[str, Any] = {"meshes": [], "skins": [], "materials": []}
     channels: list[dict[str, Any]] = []
     samplers: list[dict[str, Any]] = []
+    weights_of: dict[int, int] = {}
     times = writer.add(((track.frame - track.frame[0]) / fps).astype(np.float32), bounded=True)
     for index, (name, model) in enumerate(zip(track.setup.names, scene.models, strict=True)):
         bones, first = scene.bone_slices[index], len(nodes)
@@ -57,7 +59,13 @@ def write_glb(track: Track, fps: float) -> bytes:
         primitive = _add_mesh(
             writer, model, weights[0][vertices] - bones.start, weights[1][vertices], normals[vertices]
         )
-        document["meshes"].append({"name": name, "primitives": [primitive | {"material": index}]})
+        mesh: dict[str, Any] = {"name": name, "primitives": [primitive | {"material": index}]}
+        morphs = find_pose_morphs(model, motions[:, bones])
+        if morphs is not None:
+            mesh["primitives"][0]["targets"] = _add_targets(writer, morphs)
+            mesh["weights"] = [0.0] * len(morphs.targets)
+            weights_of[index] = writer.add(morphs.weights.astype(np.float32).reshape(-1))
+        document["meshes"].append(mesh)
         inverse = np.linalg.inv(Ts_rest).transpose(0, 2, 1).reshape(-1, 16).astype(np.float32)
         inverse[:, 15] = 1.0
         document["skins"].append(
@@ -80,6 +88,9 @@ def write_glb(track: Track, fps: float) -> bytes:
     roots = [0]
     for index, name in enumerate(track.setup.names):
         roots.append(len(nodes))
+        if index in weights_of:
+            samplers.append({"input": times, "output": weights_of[index], "interpolation": "LINEAR"})
+            channels.append({"sampler": len(samplers) - 1, "target": {"node": len(nodes), "path": "weights"}})
         nodes.append({"name": f"{name} mesh", "mesh": index, "skin": index})
     return writer.finish(
         {
@@ -135,6 +146,11 @@ def _add_mesh(
     }
     indices = writer.add(model.faces.astype(np.uint32).reshape(-1), target=ELEMENT_BUFFER)
     return {"attributes": attributes, "indices": indices, "mode": 4}
+
+
+def _add_targets(writer: GlbWriter, morphs: PoseMorphs) -> list[dict[str, int]]:
+    add = writer.add
+    return [{"POSITION": add(each.astype(np.float32), target=ARRAY_BUFFER, bounded=True)} for each in morphs.targets]
 
 
 def _make_material(name: str, model: ArticulatedModel) -> dict[str, Any]:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
 from tracker.model.articulated import ArticulatedModel, ShapeBasis
+from tracker.model.blend_landmarks import find_landmark_offsets
 from tracker.model.blend_limits import CHAINS, blend_chains
 from tracker.model.blend_model import BlendModel
 from tracker.model.decimation import limit_weights
@@ -28,7 +31,8 @@ def articulated_of(model: BlendModel) -> ArticulatedModel:
 
     Its 16 bones and its skin are the blend model's; each bone turns about the axes that a hand's can (`hand_axes`), not
     as a ball. The shape basis is "size" and the model's own shape directions. The boundary at the wrist is closed with
-    a vertex in its middle, so that the hand has an inside. A vertex follows its four heaviest bones.
+    a vertex in its middle, so that the hand has an inside. A vertex follows its four heaviest bones. Its landmarks are
+    where people see joints (`blend_landmarks`), which is not where it turns.
 
     Args:
         model: A hand of MANO's 16 joints.
@@ -65,7 +69,10 @@ def articulated_of(model: BlendModel) -> ArticulatedModel:
         faces=faces,
         skinning_weights=weights,
         skeleton=skeleton,
-        hand=find_hand_parts(model.side, template, weights, joints, 0, finger_bones, model.tips),
+        hand=replace(
+            find_hand_parts(model.side, template, weights, joints, 0, finger_bones, model.tips),
+            joint_offsets=find_landmark_offsets(template, faces, chains),
+        ),
         shape=shape,
         provenance=dict(model.provenance),
         pose_blend=PoseBlend(bones[1:], grow.rows(model.pose_directions)) if np.any(model.pose_directions) else None,

@@ -165,13 +165,15 @@ def test_recordings_are_tracked_with_a_model_of_the_studio_and_its_mirror_image(
 ) -> None:
     add_registered(studio.app, generated_hand, "one")  # the untrained hand is stored when it is first used
     fields = {field["name"]: field for field in studio.client.get("/api/v1/jobs/form").json()["fields"]}
-    assert fields["hand_model_id"]["choices"] == ["", str(UNTRAINED_ID)]
+    assert fields["hand_model_id"]["choices"] == ["", "trained", str(UNTRAINED_ID)]
     body = {"kind": "track", "sequence_id": str(tracked.sequence_id)}
     params = {"hand_model_id": str(UNTRAINED_ID), "calibrate": False, "last_frame": 1}
     job = studio.client.post("/api/v1/jobs", json=body | {"params": params}).json()
     assert job["params"]["hand_model_id"] == str(UNTRAINED_ID)
     default = studio.client.post("/api/v1/jobs", json=body | {"params": {"hand_model_id": ""}}).json()
     assert "hand_model_id" not in default["params"]
+    shipped = studio.client.post("/api/v1/jobs", json=body | {"params": {"hand_model_id": "trained"}}).json()
+    assert shipped["params"]["hand_model_id"] == "trained"
     for wrong in (str(uuid.uuid4()), "x", 3):
         answer = studio.client.post("/api/v1/jobs", json=body | {"params": {"hand_model_id": wrong}})
         assert answer.status_code in (404, 422), answer.text
@@ -179,9 +181,11 @@ def test_recordings_are_tracked_with_a_model_of_the_studio_and_its_mirror_image(
     with studio.database.reading() as session:
         file = find_file(storage, session.get_one(HandModelRow, UNTRAINED_ID))
     recording = storage.folder("sequences", tracked.sequence_id)
-    tracking = TrackingJob(recording, job["params"], JobFiles(tmp_path / "job"), file)
-    hands = tracking.load_hands()
-    assert hands is not None and hands.keys() == {"right", "left"}
-    for side, hand in hands.items():
-        assert hand.hand is not None and hand.hand.side == side and len(hand.skeleton.bone_names) == 16
-    assert not tracking.options.calibrate
+    for params, model in ((job["params"], file), (shipped["params"], None)):
+        tracking = TrackingJob(recording, params | {"calibrate": False}, JobFiles(tmp_path / "job"), model)
+        hands = tracking.load_hands()
+        assert hands is not None and hands.keys() == {"right", "left"}
+        for side, hand in hands.items():
+            assert hand.hand is not None and hand.hand.side == side and len(hand.skeleton.bone_names) == 16
+            assert (hand.pose_blend is None) == (model is not None), "only the trained one changes with the pose"
+        assert not tracking.options.calibrate

@@ -63,6 +63,7 @@ def test_a_range_past_the_end_is_cut_and_an_empty_one_refused():
 def test_a_hand_is_a_side_with_or_without_a_file():
     assert parse_hand("right") == ("right", None)
     assert parse_hand("left=a=b.npz") == ("left", Path("a=b.npz"))
+    assert parse_hand("trained") == ("trained", None)
     for text in ("middle", "middle=a.npz", "right="):
         with pytest.raises(argparse.ArgumentTypeError):
             parse_hand(text)

@@ -13,9 +13,11 @@ from scipy.spatial.transform import Rotation
 from tests.tracker.export.conftest import make_moved
 from tracker.export.gltf_animation import T_GLTF_WORLD, write_glb
 from tracker.geometry import se3
+from tracker.model.blend_articulated import articulated_of
 from tracker.model.default_hand import default_hand
 from tracker.model.gltf_container import Gltf, read_gltf
 from tracker.model.gltf_files import load_gltf_model
+from tracker.model.trained_hand import trained_hand
 
 
 @pytest.fixture(scope="module")
@@ -38,12 +40,16 @@ def find_moves(gltf: Gltf, key: int) -> dict[int, dict[str, np.ndarray]]:
     moves: dict[int, dict[str, np.ndarray]] = {}
     for channel in animation["channels"]:
         sampler, target = animation["samplers"][channel["sampler"]], channel["target"]
+        if target["path"] == "weights":
+            continue
         form = "VEC4" if target["path"] == "rotation" else "VEC3"
         moves.setdefault(target["node"], {})[target["path"]] = gltf.accessor(sampler["output"], form)[key]
     return moves
 
 
-def pose_skin(gltf: Gltf, mesh_node: dict[str, Any], moves: dict[int, dict[str, np.ndarray]]) -> np.ndarray:
+def pose_skin(
+    gltf: Gltf, mesh_node: dict[str, Any], moves: dict[int, dict[str, np.ndarray]], morphed: np.ndarray | float = 0.0
+) -> np.ndarray:
     """(V, 3) a skinned mesh as the glTF specification poses it, world of the file, m."""
     nodes = gltf.document["nodes"]
     Ts: dict[int, np.ndarray] = {}
@@ -63,7 +69,7 @@ def pose_skin(gltf: Gltf, mesh_node: dict[str, Any], moves: dict[int, dict[str, 
         gltf.accessor(primitive["attributes"][name], form)
         for name, form in (("POSITION", "VEC3"), ("JOINTS_0", "VEC4"), ("WEIGHTS_0", "VEC4"))
     )
-    homogeneous = np.c_[points, np.ones(len(points))]
+    homogeneous = np.c_[points + morphed, np.ones(len(points))]
     return np.einsum("vw,vwij,vj->vi", weights, moved[joints][:, :, :3], homogeneous)
 
 
@@ -76,6 +82,27 @@ def test_the_skin_of_the_file_moves_as_our_meshes_do(moved, path: Path):
         expected, moves = se3.transform(T_GLTF_WORLD, scene.pose_at(pose).vertices), find_moves(gltf, row)
         for node, where in zip(mesh_nodes, scene.vertex_slices, strict=True):
             assert np.abs(pose_skin(gltf, node, moves) - expected[where]).max() < 1e-5  # m
+
+
+def test_a_trained_hand_moves_in_the_file_with_what_its_pose_does_to_its_surface(tmp_path: Path):
+    one = make_moved({"right": articulated_of(trained_hand("right"))})
+    (tmp_path / "track.glb").write_bytes(write_glb(one.track, 30.0))
+    gltf, scene = read_gltf(tmp_path / "track.glb"), one.track.setup.scene
+    (node,) = (node for node in gltf.document["nodes"] if "mesh" in node)
+    (primitive,) = gltf.document["meshes"][0]["primitives"]
+    targets = np.array([gltf.accessor(target["POSITION"], "VEC3") for target in primitive["targets"]])
+    (animation,) = gltf.document["animations"]
+    (channel,) = (each for each in animation["channels"] if each["target"]["path"] == "weights")
+    assert gltf.document["nodes"][channel["target"]["node"]] == node
+    weights = gltf.accessor(animation["samplers"][channel["sampler"]]["output"], "SCALAR").reshape(-1, len(targets))
+    plain = 0.0
+    for row, pose in enumerate(one.track.pose):
+        expected = se3.transform(T_GLTF_WORLD, scene.pose_at(pose).vertices[: targets.shape[1]])
+        moves = find_moves(gltf, row)
+        morphed = np.einsum("k,kvx->vx", weights[row], targets)
+        assert np.linalg.norm(pose_skin(gltf, node, moves, morphed) - expected, axis=1).max() < 2e-4  # m
+        plain = max(plain, np.linalg.norm(pose_skin(gltf, node, moves) - expected, axis=1).max())
+    assert plain > 1e-3, "skinning alone would be off by millimetres"
 
 
 def test_times_are_those_of_the_recording_from_the_first_frame_on(moved, path: Path):

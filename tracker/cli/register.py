@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import signal
+import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
@@ -111,12 +113,19 @@ def run_jobs(jobs: list[Job], processes: int, again: bool) -> Iterator[dict[str,
             yield register_one(job, again)
         return
     os.environ["OMP_NUM_THREADS"] = os.environ["NUMBA_NUM_THREADS"] = "1"
-    with ProcessPoolExecutor(processes) as pool:
+    with ProcessPoolExecutor(processes, initializer=_leave_interrupts_to_the_parent) as pool:
         try:
             yield from pool.map(register_one, jobs, [again] * len(jobs))
-        except BaseException:
+        except BaseException as reason:
+            if isinstance(reason, KeyboardInterrupt):
+                print("\nhandloom: stopping once the scans under way are registered", file=sys.stderr)
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+def _leave_interrupts_to_the_parent() -> None:
+    """Ctrl-C reaches all processes of a terminal: what is under way ends first, so that nothing of it is lost."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def register_one(job: Job, again: bool) -> dict[str, Any]:

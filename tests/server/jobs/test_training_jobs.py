@@ -107,6 +107,7 @@ def test_killed_and_cancelled_in_training_and_in_evaluating_a_job_ends_with_the_
         assert answer.headers["content-disposition"].endswith('.html"') and "sandbox" in answer.headers[POLICY]
         assert f"{study['models']['learned']['scan_to_mesh_mm']:.3f}" in answer.text and "Our hand" in answer.text
         assert client.get(f"/api/v1/hand-models/{UNTRAINED_ID}/report.html").status_code == 404
+        assert client.get(f"/api/v1/hand-models/{UNTRAINED_ID}").json()["registration_count"] == 27
 
 
 def test_who_is_judged_on_must_be_there_and_not_have_been_learnt_from(filled: ScanBench) -> None:

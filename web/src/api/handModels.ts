@@ -27,10 +27,15 @@ export interface RegisterWish {
   model_id?: string;
 }
 
+/** How thoroughly a model is judged on people kept for testing. */
+export type Evaluate = Schemas["TrainCreate"]["evaluate"];
+
 export interface TrainWish {
   training_set_id: string;
   name: string;
   model_id?: string;
+  evaluate?: Evaluate;
+  test_subjects?: readonly string[];
 }
 
 /** Register, choose, train, register again. */
@@ -41,6 +46,7 @@ export interface LoopWish {
   by?: "verdict" | "decisions";
   rounds?: number;
   leave_out_subjects?: readonly string[];
+  evaluate?: Evaluate;
 }
 
 export const modelKeys = { all: ["hand-models"] as const, sets: ["training-sets"] as const };
@@ -70,6 +76,9 @@ export const useLineage = (kind: LineageKind, id: string | undefined) =>
   useQuery({ queryKey: ["lineage", kind, id], queryFn: () => request<Lineage>("GET", `/lineage/${kind}/${id}`), enabled: Boolean(id) });
 
 export const modelFileUrl = (id: string): string => `${API}/hand-models/${id}/model.npz`;
+
+/** One page with all plots. */
+export const reportFileUrl = (id: string): string => `${API}/hand-models/${id}/report.html`;
 
 /** As `smplx` loads it. */
 export const manoFileUrl = (id: string, side: "right" | "left"): string => `${API}/hand-models/${id}/mano/${side}`;

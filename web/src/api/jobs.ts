@@ -111,11 +111,13 @@ function takeIn(client: QueryClient, job: Job): void {
   client.setQueriesData<InfiniteData<Page<Job>>>({ queryKey: jobKeys.lists }, (list) =>
     list && { ...list, pages: list.pages.map((page) => ({ ...page, items: page.items.map((other) => (other.id === job.id ? job : other)) })) },
   );
+  if (before && before.hand_model_id !== job.hand_model_id) void client.invalidateQueries({ queryKey: ["hand-models"] });
   if (before?.state === job.state) return;
   void client.invalidateQueries({ queryKey: jobKeys.lists }); // it may be in other lists now
   void client.invalidateQueries({ queryKey: jobKeys.batches });
   if (!isActive(job)) {
-    void client.invalidateQueries({ queryKey: ["tracks"] });
+    const changed = job.unit === "scans" ? ["scans", "registrations", "hand-models", "training-sets", "lineage"] : ["tracks"];
+    for (const key of changed) void client.invalidateQueries({ queryKey: [key] });
     void client.invalidateQueries({ queryKey: recordingKeys.all });
   }
 }

@@ -88,7 +88,9 @@ export function JobPage() {
           </Text>
           <Text style={{ overflowWrap: "anywhere" }}>{job.error}</Text>
           <Text size="sm" className="quiet">
-            The recording and its annotations are untouched. Try again with the same parameters, or start from the recording with other ones.
+            {job.unit === "scans"
+              ? "What was done so far is kept: resume goes on there, try again begins anew with the same parameters."
+              : "The recording and its annotations are untouched. Try again with the same parameters, or start from the recording with other ones."}
           </Text>
         </Stack>
       )}

@@ -1,8 +1,9 @@
 import { Button, Group, Modal, NumberInput, Radio, Select, Stack, TagsInput, Text, TextInput, Title } from "@mantine/core";
 import { useState } from "react";
 import { useNavigate } from "react-router";
-import { useStartLoop, type HandModel } from "../../api/handModels";
+import { useStartLoop, type Evaluate, type HandModel } from "../../api/handModels";
 import { useScanCollections } from "../../api/scans";
+import { EvaluateChoice } from "./EvaluateChoice";
 
 const EVERY = "";
 
@@ -16,6 +17,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
   const [rounds, setRounds] = useState(1);
   const [collection, setCollection] = useState(EVERY);
   const [leaveOut, setLeaveOut] = useState<string[]>([]);
+  const [evaluate, setEvaluate] = useState<Evaluate>("quick");
   const submit = (): void =>
     start.mutate(
       {
@@ -23,6 +25,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
         by,
         rounds: by === "decisions" ? 1 : rounds,
         leave_out_subjects: leaveOut,
+        evaluate: leaveOut.length > 0 ? evaluate : "no",
         ...(collection ? { collection } : {}),
         ...(model ? { model_id: model.id } : {}),
       },
@@ -52,6 +55,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
             <Select label="Collection" allowDeselect={false} value={collection} data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]} onChange={(value) => setCollection(value ?? EVERY)} />
           </Group>
           <TagsInput label="Subjects to leave out" description="Kept for testing" placeholder={leaveOut.length === 0 ? "None" : ""} value={leaveOut} onChange={setLeaveOut} />
+          <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
           {start.error && (
             <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
               {start.error.message} No job was started.

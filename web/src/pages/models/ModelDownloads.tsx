@@ -1,8 +1,8 @@
 import { Button, Menu } from "@mantine/core";
 import { IconChevronDown, IconDownload } from "@tabler/icons-react";
-import { manoFileUrl, modelFileUrl, type HandModel } from "../../api/handModels";
+import { manoFileUrl, modelFileUrl, reportFileUrl, type HandModel } from "../../api/handModels";
 
-/** The model as a file: for Handloom, or as MANO for either hand. */
+/** The model as a file: for Handloom, or as MANO for either hand; and its report. */
 export function ModelDownloads({ model }: { model: HandModel }) {
   if (model.kind === "default") return null;
   return (
@@ -16,6 +16,11 @@ export function ModelDownloads({ model }: { model: HandModel }) {
         {model.created_at && (
           <Menu.Item component="a" href={modelFileUrl(model.id)} download>
             The model (.npz), for Handloom
+          </Menu.Item>
+        )}
+        {model.has_report && (
+          <Menu.Item component="a" href={reportFileUrl(model.id)} download>
+            The report (.html), with its plots
           </Menu.Item>
         )}
         <Menu.Item component="a" href={manoFileUrl(model.id, "right")} download>

@@ -1,9 +1,9 @@
 import { Text, Title } from "@mantine/core";
 import { useMemo, useState } from "react";
 import { Plot, type Curve } from "../../canvas/Plot";
-import { formatDuration, formatName, formatNumber } from "../../model/format";
+import { formatCount, formatDuration, formatName, formatNumber } from "../../model/format";
 import { trackStyle } from "../../model/trackStyle";
-import type { ComponentCurve, NamedValue, TrainingReport } from "../../model/trainingReport";
+import type { ComponentCurve, HeldOutStudy, NamedValue, TrainingReport } from "../../model/trainingReport";
 import classes from "./Models.module.css";
 
 interface Line {
@@ -88,6 +88,7 @@ function Bars({ title, note, rows, show }: { title: string; note: string; rows: 
 }
 
 const mm = (value: number): string => `${formatNumber(value, 2)} mm`;
+const mm3 = (value: number): string => `${formatNumber(value, 3)} mm`;
 
 /** How good a trained model is, as plots: [R17] Fig. 12 to 14 and what is beside them in a report. */
 export function ReportPlots({ report }: { report: TrainingReport }) {
@@ -98,23 +99,59 @@ export function ReportPlots({ report }: { report: TrainingReport }) {
     ],
     [report],
   );
-  const generalisation = useMemo(
-    () => [
-      { label: "Shape space", curve: report.shapeGeneralisation },
-      { label: "Pose space", curve: report.poseGeneralisation },
-    ],
-    [report],
-  );
+  const shapes = useMemo(() => [{ label: "People left out in turn", curve: report.shapeGeneralisation }], [report]);
   const passes = useMemo(() => [{ label: "To its registrations", curve: { components: report.roundsMm.map((_, at) => at + 1), values: report.roundsMm } }], [report]);
   return (
-    <div className={classes.plots}>
-      <Curves title="Compactness" note="Variance that so many components hold, %" unit="%" digits={1} lines={compactness} />
-      <Curves title="Generalisation" note="Mean error on hands kept out, by number of components, mm" unit="mm" digits={2} lines={generalisation} />
-      <Curves title="Passes" note="Distance of the model to what it learns from after each pass, mm" unit="mm" digits={3} lines={passes} />
-      <Bars title="Compared" note="Mean error on hands kept out: less is better" rows={report.comparison} show={mm} />
-      <Bars title="By hand" note="Distance to the registrations, and how many" rows={report.byHand} show={mm} />
-      <Bars title="By pose" note="Distance to the registrations, and how many" rows={report.byPose} show={mm} />
-      <Bars title="Time" note="What training spent where" rows={report.seconds} show={formatDuration} />
-    </div>
+    <>
+      <HeldOut study={report.heldOut} />
+      <section aria-label="What it has learnt">
+        <Title order={2} mb="sm">
+          What it has learnt
+        </Title>
+        <div className={classes.plots}>
+          <Curves title="Compactness" note="Variance that so many components hold, %" unit="%" digits={1} lines={compactness} />
+          <Curves title="Generalisation of shapes" note="Mean error of templates, by number of shape components, mm" unit="mm" digits={2} lines={shapes} />
+          <Curves title="Passes" note="Distance of the model to what it learns from after each pass, mm" unit="mm" digits={3} lines={passes} />
+          <Bars title="By hand" note="Distance to the registrations, and how many" rows={report.byHand} show={mm} />
+          <Bars title="By pose" note="Distance to the registrations, and how many" rows={report.byPose} show={mm} />
+          <Bars title="Time" note="What training spent where" rows={report.seconds} show={formatDuration} />
+        </div>
+      </section>
+    </>
+  );
+}
+
+/** The model on people it has not seen, beside others: or how to get to know that. */
+function HeldOut({ study }: { study: HeldOutStudy | null }) {
+  const poses = useMemo(() => (study?.poseGeneralisation ?? []).map(({ name, curve }) => ({ label: formatName(name), curve })), [study]);
+  return (
+    <section aria-label="People kept for testing">
+      <Title order={2}>People kept for testing</Title>
+      {study ? (
+        <>
+          <Text size="sm" className="quiet" mb="sm">
+            {formatCount(study.scans, "scan")} of {study.people.join(", ")}, of whom nothing was learnt. Less is better.
+            {study.floorMm !== null && ` Their registrations themselves lie ${mm(study.floorMm)} from the scans.`}
+          </Text>
+          <div className={classes.plots}>
+            <Curves title="Generalisation of poses" note="Scan to mesh, by number of pose components, mm" unit="mm" digits={2} lines={poses} />
+            <Bars title="Scan to mesh" note="Pose and shape fitted" rows={study.models.scanToMesh} show={mm3} />
+            <Bars title="Scan to mesh, own template" note="A template of each person, the pose fitted" rows={study.ownTemplate.scanToMesh} show={mm3} />
+            <Bars title="Vertices" note="To those of the registration; pose and shape fitted" rows={study.models.vertices} show={mm3} />
+            <Bars title="Vertices, own template" note="To those of the registration; the pose fitted" rows={study.ownTemplate.vertices} show={mm3} />
+          </div>
+          {study.notCompared.map(({ name, why }) => (
+            <Text key={name} size="xs" className="quiet" mt={4}>
+              Not compared: {name}. {why}
+            </Text>
+          ))}
+        </>
+      ) : (
+        <Text size="sm" className={`card ${classes.unknown}`}>
+          It was not evaluated on people it has not seen. When you train, or in the loop, leave subjects out and choose to evaluate: their scans then show how the model does with fewer pose components, without its blend shapes, and beside the
+          untrained hand.
+        </Text>
+      )}
+    </section>
   );
 }

@@ -2,9 +2,10 @@ import { Button, Checkbox, Group, Modal, Radio, Select, Stack, TagsInput, Text, 
 import { useDebouncedValue } from "@mantine/hooks";
 import { useState } from "react";
 import { useNavigate } from "react-router";
-import { useHandModels, useMakeTrainingSet, useStartTraining, useTrainingPreview, type TrainingRule } from "../../api/handModels";
+import { useHandModels, useMakeTrainingSet, useStartTraining, useTrainingPreview, type Evaluate, type TrainingRule } from "../../api/handModels";
 import { useScanCollections } from "../../api/scans";
 import { formatCount } from "../../model/format";
+import { EvaluateChoice } from "./EvaluateChoice";
 
 const EVERY = "";
 
@@ -27,6 +28,7 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
   const [needsTwo, setNeedsTwo] = useState(false);
   const [collection, setCollection] = useState(EVERY);
   const [leaveOut, setLeaveOut] = useState<string[]>([]);
+  const [evaluate, setEvaluate] = useState<Evaluate>("quick");
   const rule: TrainingRule = {
     by,
     collections: collection ? [collection] : [],
@@ -43,7 +45,12 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
     try {
       const title = name.trim() || "Hand model";
       const set = await makeSet.mutateAsync({ name: title, rule });
-      const job = await train.mutateAsync({ training_set_id: set.id, name: title });
+      const job = await train.mutateAsync({
+        training_set_id: set.id,
+        name: title,
+        ...(leaveOut.length > 0 ? { evaluate, test_subjects: leaveOut } : {}),
+        ...(modelId ? { model_id: modelId } : {}),
+      });
       void navigate(`/jobs/${job.id}`);
     } catch {
       // Both say what failed below.
@@ -76,6 +83,7 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
             />
             <TagsInput label="Subjects to leave out" description="Kept for testing" placeholder={leaveOut.length === 0 ? "None" : ""} value={leaveOut} onChange={setLeaveOut} />
           </Group>
+          <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
           {model && (
             <Text size="sm" className="quiet">
               Only registrations by {model.name}.

@@ -24,10 +24,13 @@ export function JobBadge({ state }: { state: JobState }) {
   );
 }
 
+/** A stage may hold the name of a scan, which stays as it is. */
+const capitalize = (text: string): string => text.replace(/^./, (letter) => letter.toUpperCase());
+
 /** "tracking, 40 of 200 frames, 1:20 left". */
 export function jobProgress(job: Job): string {
   const parts = [];
-  if (job.stage && isActive(job)) parts.push(formatName(job.stage));
+  if (job.stage && isActive(job)) parts.push(capitalize(job.stage));
   if (job.frames_total) parts.push(`${job.frames_done ?? 0} of ${job.frames_total} ${job.unit}`);
   if (job.state === "running" && job.seconds_left !== null) parts.push(`${formatDuration(job.seconds_left)} left`);
   if (job.state === "queued") parts.push("a worker takes it as soon as one is free");
@@ -48,13 +51,23 @@ export function JobActions({ job }: { job: Job }) {
           Open the track
         </Button>
       )}
+      {job.hand_model_id && (
+        <Button size="xs" variant={isActive(job) ? "default" : "filled"} component={Link} to={`/models/${job.hand_model_id}`}>
+          Open the model
+        </Button>
+      )}
+      {job.kind === "register" && job.frames_done > 0 && (
+        <Button size="xs" variant={isActive(job) ? "default" : "filled"} component={Link} to="/curate">
+          Curate
+        </Button>
+      )}
       <For role="reviewer">
         {isActive(job) && (
           <Button size="xs" variant="default" loading={cancel.isPending} onClick={() => cancel.mutate(job.id)}>
             Cancel
           </Button>
         )}
-        {(job.state === "failed" || job.state === "cancelled") && job.frames_done > 0 && (
+        {(job.state === "failed" || job.state === "cancelled") && (job.frames_done > 0 || (job.unit === "scans" && job.started_at)) && (
           <Button size="xs" variant="default" loading={resume.isPending} onClick={() => resume.mutate(job.id)}>
             Resume
           </Button>

@@ -56,7 +56,8 @@ def make_train_job(session: Session, storage: Storage, asked: TrainCreate, accou
     }
     if asked.evaluate != "no":
         params["test_subjects"] = _check_test_subjects(session, training_set, asked.test_subjects)
-    return _make(session, "train", f"{asked.name} from {training_set.name}", params, account_id, [])
+    title = asked.name if asked.name == training_set.name else f"{asked.name} from {training_set.name}"
+    return _make(session, "train", title, params, account_id, [])
 
 
 def make_loop_job(session: Session, storage: Storage, asked: LoopCreate, account_id: uuid.UUID) -> JobRow:

@@ -14,6 +14,7 @@ export interface ParamRow {
 /** A value as people read it. */
 export function showValue(value: unknown): string {
   if (typeof value === "boolean") return value ? "yes" : "no";
+  if (Array.isArray(value)) return value.length === 0 ? "–" : value.map(showValue).join(", ");
   return value === undefined || value === "" || value === null ? "–" : typeof value === "string" ? value : JSON.stringify(value);
 }
 
@@ -28,4 +29,12 @@ export function compareParams(first: Job, second: Job, form: JobForm | undefined
       return { name, label: labels.get(name) ?? formatName(name), first: showValue(a), second: showValue(b), isDifferent: JSON.stringify(a) !== JSON.stringify(b) };
     });
   return [...rows.filter((row) => row.isDifferent), ...rows.filter((row) => !row.isDifferent)];
+}
+
+/** Parameters one by one: those inside others too, and no id beside the name of the same thing. */
+export function listParams(params: Readonly<Record<string, unknown>>): [name: string, value: unknown][] {
+  return Object.entries(params).flatMap(([name, value]): [string, unknown][] => {
+    if (name.endsWith("_id") && name.slice(0, -3) in params) return [];
+    return typeof value === "object" && value !== null && !Array.isArray(value) ? listParams(value as Record<string, unknown>) : [[name, value]];
+  });
 }

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tracker.capture.import_options import ImportOptions
     from tracker.capture.import_report import ImportReport
     from tracker.capture.import_run import run_import
+    from tracker.capture.joint_source import JointSource, JointSources
     from tracker.capture.relative_path import find_path_fault
     from tracker.capture.scan import SCAN_SUFFIXES, Scan, load_scan, save_scan
     from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
@@ -140,6 +141,8 @@ _HOMES = {
     "ImportReport": "tracker.capture.import_report",
     "join_chunks": "tracker.tracking.track",
     "JOINT_ORDERS": "tracker.label_formats.orders",
+    "JointSource": "tracker.capture.joint_source",
+    "JointSources": "tracker.capture.joint_source",
     "JudgedTrack": "tracker.evaluation.comparison",
     "LABEL_FORMATS": "tracker.label_formats.formats",
     "LabelFormat": "tracker.label_formats.formats",
@@ -242,6 +245,8 @@ __all__ = [
     "ImportRefusedError",
     "ImportReport",
     "ImportedLabels",
+    "JointSource",
+    "JointSources",
     "JudgedTrack",
     "LabelFormat",
     "LabelSet",

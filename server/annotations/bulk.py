@@ -12,7 +12,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from server.annotations.models import Act, AnnotationRevisionRow, AnnotationRow
-from server.annotations.service import Place
+from server.annotations.service import Place, set_points
 from server.database import utc_now
 from server.errors import ConflictError
 
@@ -28,11 +28,13 @@ class BulkChange:
         place: Where.
         act: For the history.
         points: 21 times [x, y, v], or None to delete.
+        sources: As `Change.sources`.
     """
 
     place: Place
     act: Act
     points: list[Any] | None
+    sources: list[Any] | None = None
 
 
 def find_annotations(session: Session, sequence_id: uuid.UUID, *, hold: bool = False) -> dict[Key, AnnotationRow]:
@@ -55,7 +57,7 @@ def change_annotations(
         if row is None:
             row = AnnotationRow(id=uuid.uuid4(), **vars(place), revision=0)
             rows.append(row)
-        row.points = change.points
+        set_points(row, change.points, change.sources)
         row.revision += 1
         row.updated_at, row.author_id = now, account_id
         revisions.append(
@@ -65,6 +67,7 @@ def change_annotations(
                 operation_id=uuid.uuid4(),
                 act=change.act,
                 points=change.points,
+                sources=row.sources,
                 created_at=now,
                 author_id=account_id,
             )

@@ -32,6 +32,10 @@ class AnnotationRow(Base):
     hand: Mapped[str] = mapped_column(String(5))
     points: Mapped[list[Any] | None]
     """21 times [x, y, v], px; None when deleted."""
+    sources: Mapped[list[Any] | None]
+    """As `sources.py`; None where they were never noted."""
+    decided: Mapped[int] = mapped_column(default=0)
+    """Joints that somebody placed or said are not in the image, 0 to 21."""
     revision: Mapped[int]
     updated_at: Mapped[datetime] = mapped_column(default=utc_now)
     author_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))
@@ -53,5 +57,21 @@ class AnnotationRevisionRow(Base):
     """The client's; a repeated request with it changes nothing and is answered alike."""
     act: Mapped[str] = mapped_column(String(10))
     points: Mapped[list[Any] | None]
+    sources: Mapped[list[Any] | None]
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     author_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))
+
+
+class KeyFrameRow(Base):
+    """One hand in one image that is a key frame."""
+
+    __tablename__ = "key_frames"
+    __table_args__ = (UniqueConstraint("sequence_id", "replica", "camera", "frame", "hand"),)
+
+    sequence_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("sequences.id"))
+    replica: Mapped[str] = mapped_column(String(36), default="")
+    camera: Mapped[str] = mapped_column(String(64))
+    frame: Mapped[int]
+    hand: Mapped[str] = mapped_column(String(5))
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+    created_by: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Response
+from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
 from server.accounts.models import Account
 from server.accounts.service import CurrentAccount, find_names
-from server.annotations import guards, service
+from server.annotations import guards, key_frames, service
 from server.annotations.guards import GuardsDep, PlaceGuard
 from server.annotations.models import AnnotationRevisionRow, AnnotationRow
 from server.annotations.schemas import (
@@ -22,6 +23,8 @@ from server.annotations.schemas import (
     AnnotationRestore,
     AnnotationRevision,
     Hand,
+    KeyFrame,
+    KeyFrames,
 )
 from server.annotations.service import Change, Place, StaleAnnotationError
 from server.database import SessionDep
@@ -102,19 +105,18 @@ def list_annotations(
     return Page(items=_describe(session, rows), next_cursor=next_cursor)
 
 
-@router.get("/annotations.json")
+@router.get("/annotations.json", response_model=AnnotationFile)
 def get_annotation_file(
     sequence: SequenceDep,
     session: SessionDep,
     account: CurrentAccount,
     guarding: GuardsDep,
     replica: ReplicaDep,
-    response: Response,
-) -> AnnotationFile:
+) -> JSONResponse:
     """All annotations as the file `annotations.json` of a recording folder."""
     hidden = guards.find_hidden(guarding, session, account, sequence.id, replica)
-    response.headers["Content-Disposition"] = 'attachment; filename="annotations.json"'
-    return AnnotationFile.model_validate(service.export_annotations(session, sequence.id, replica, hidden))
+    headers = {"Content-Disposition": 'attachment; filename="annotations.json"'}
+    return JSONResponse(service.export_annotations(session, sequence.id, replica, hidden), headers=headers)
 
 
 @router.get("/annotations/{camera}/{frame}/{hand}")
@@ -143,7 +145,10 @@ def put_annotation(
     """
     points = service.check_points(sequence, place, body.points)
     expected = _read_expected(if_match, if_none_match)
-    change = Change("put", points, expected, body.operation_id, account.id)
+    sources = None
+    if body.sources is not None:
+        sources = [source and source.model_dump(mode="json", exclude_defaults=True) for source in body.sources]
+    change = Change("put", points, expected, body.operation_id, account.id, sources)
     return _describe_made(session, place, _change(session, account, guarding, place, change, response))
 
 
@@ -188,9 +193,34 @@ def restore_annotation(
 ) -> AnnotationOut:
     """Make an earlier revision the current one again, as a new revision."""
     row = service.get_annotation(session, place, deleted_too=True)
-    points = service.get_past_points(session, row, revision)
-    change = Change("restore", points, read_if_match(if_match), body.operation_id, account.id)
+    past = service.get_past(session, row, revision)
+    expected = read_if_match(if_match)
+    change = Change("restore", past.points, expected, body.operation_id, account.id, past.sources)
     return _describe_made(session, place, _change(session, account, guarding, place, change, response))
+
+
+@router.get("/key-frames")
+def list_key_frames(
+    sequence: SequenceDep, session: SessionDep, account: CurrentAccount, guarding: GuardsDep, replica: ReplicaDep
+) -> KeyFrames:
+    """Hands that people made key frames: between two of them the annotator proposes the rest."""
+    hidden = guards.find_hidden(guarding, session, account, sequence.id, replica)
+    rows = key_frames.list_key_frames(session, sequence.id, replica, hidden)
+    return KeyFrames(items=[KeyFrame.model_validate(row) for row in rows])
+
+
+@router.put("/key-frames/{camera}/{frame}/{hand}", status_code=204)
+def add_key_frame(place: PlaceDep, session: SessionDep, account: CurrentAccount, guarding: GuardsDep) -> None:
+    """Make the hand a key frame; who may mark it may do this. Twice does no harm."""
+    guards.check_change(guarding, session, account, place)
+    key_frames.add_key_frame(session, place, account.id)
+
+
+@router.delete("/key-frames/{camera}/{frame}/{hand}", status_code=204)
+def remove_key_frame(place: PlaceDep, session: SessionDep, account: CurrentAccount, guarding: GuardsDep) -> None:
+    """The hand is a key frame no more; its joints stay. Twice does no harm."""
+    guards.check_change(guarding, session, account, place)
+    key_frames.remove_key_frame(session, place)
 
 
 def _read_expected(if_match: str | None, if_none_match: str | None) -> int | None:
@@ -230,6 +260,7 @@ def _describe_made(session: Session, place: Place, made: AnnotationRevisionRow) 
             "camera": place.camera,
             "hand": place.hand,
             "points": made.points,
+            "sources": made.sources,
             "revision": made.revision,
             "updated_at": made.created_at,
             "author": find_names(session, [made.author_id]).get(made.author_id),
@@ -246,6 +277,7 @@ def _describe(session: Session, rows: Sequence[AnnotationRow]) -> list[Annotatio
                 "camera": row.camera,
                 "hand": row.hand,
                 "points": row.points,
+                "sources": row.sources,
                 "revision": row.revision,
                 "updated_at": row.updated_at,
                 "author": names.get(row.author_id),
@@ -261,6 +293,7 @@ def _describe_revision(item: AnnotationRevisionRow, names: dict[uuid.UUID | None
             "revision": item.revision,
             "act": item.act,
             "points": item.points,
+            "sources": item.sources,
             "created_at": item.created_at,
             "author": names.get(item.author_id),
             "operation_id": item.operation_id,

@@ -6,7 +6,7 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from server.annotations.models import Act
 from server.errors import ErrorBody
@@ -26,6 +26,37 @@ Points = Annotated[
 ]
 
 
+def _check_label(text: str) -> str:
+    if not text.isprintable():
+        raise ValueError("it needs printable characters")
+    return text
+
+
+SourceText = Annotated[str, Field(max_length=200), AfterValidator(_check_label)]
+
+
+class JointSourceOut(BaseModel):
+    """What somebody accepted for a joint instead of placing it."""
+
+    model_config = ConfigDict(title="JointSource", extra="forbid")
+
+    kind: Literal["track", "fit", "triangulation", "interpolation", "copy", "import"]
+    label: SourceText = Field(default="", description="For people.", examples=["Track 2", "model fit of 7 joints"])
+    track_id: uuid.UUID | None = None
+    model: SourceText = Field(default="", description="The hand model behind it.")
+
+
+Sources = Annotated[
+    list[JointSourceOut | None],
+    Field(
+        min_length=21,
+        max_length=21,
+        description="Of each joint what a person accepted there, which is otherwise no label; null: placed by hand, or "
+        "not placed.",
+    ),
+]
+
+
 class AnnotationOut(BaseModel):
     """One hand in one image."""
 
@@ -35,6 +66,7 @@ class AnnotationOut(BaseModel):
     camera: str
     hand: Hand
     points: Points
+    sources: Sources | None = Field(description="Null: never noted.")
     revision: int
     updated_at: datetime
     author: str | None
@@ -46,6 +78,9 @@ class AnnotationPut(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     points: Points
+    sources: Sources | None = Field(
+        default=None, description="Left out: joints that stay keep theirs, the others count as placed by hand."
+    )
     operation_id: uuid.UUID = Field(description="Made by the client, new for each change; a repeated one does nothing.")
 
 
@@ -63,6 +98,7 @@ class AnnotationRevision(BaseModel):
     revision: int
     act: Act
     points: Points | None = Field(description="Null: it was deleted.")
+    sources: Sources | None
     created_at: datetime
     author: str | None
     operation_id: uuid.UUID
@@ -74,6 +110,22 @@ class AnnotationConflict(ErrorBody):
     theirs: AnnotationOut | None = Field(description="How it is now; null when it is deleted or was never made.")
 
 
+class KeyFrame(BaseModel):
+    """One hand in one image; between it and the next one a machine may propose the rest."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    frame: int
+    camera: str
+    hand: Hand
+
+
+class KeyFrames(BaseModel):
+    """All key frames of a recording or a blind replica, by frame."""
+
+    items: list[KeyFrame]
+
+
 class AnnotationItem(BaseModel):
     """An entry of `annotations.json`."""
 
@@ -81,6 +133,7 @@ class AnnotationItem(BaseModel):
     camera: str
     hand: Hand
     points: Points
+    sources: Sources | None = None
 
 
 class AnnotationFile(BaseModel):

@@ -8,11 +8,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from sqlalchemy import and_, distinct, func, not_, null, select, tuple_
+from sqlalchemy import Label, and_, case, distinct, func, not_, null, select, tuple_
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from server.annotations.models import Act, AnnotationRevisionRow, AnnotationRow
+from server.annotations.sources import (
+    JOINT_COUNT,
+    carry_sources,
+    count_decided,
+    imported_sources,
+    read_sources,
+    write_sources,
+)
 from server.database import utc_now
 from server.database.paging import read_cursor, write_cursor
 from server.errors import ConflictError, InvalidError, NotFoundError
@@ -56,6 +64,7 @@ class Change:
         expected: Revision that is changed; None: there must be none yet.
         operation_id: The client's.
         account_id: Who.
+        sources: Of each joint what was accepted there; None: as `carry_sources` has it.
     """
 
     act: Act
@@ -63,6 +72,7 @@ class Change:
     expected: int | None
     operation_id: uuid.UUID
     account_id: uuid.UUID
+    sources: list[Any] | None = None
 
 
 class StaleAnnotationError(ConflictError):
@@ -166,7 +176,7 @@ def _find_operation(
 
 
 def _write(session: Session, row: AnnotationRow, change: Change) -> AnnotationRevisionRow:
-    row.points = change.points
+    set_points(row, change.points, change.sources)
     row.revision += 1
     row.updated_at = utc_now()
     row.author_id = change.account_id
@@ -176,6 +186,7 @@ def _write(session: Session, row: AnnotationRow, change: Change) -> AnnotationRe
         operation_id=change.operation_id,
         act=change.act,
         points=change.points,
+        sources=row.sources,
         created_at=row.updated_at,
         author_id=change.account_id,
     )
@@ -184,14 +195,24 @@ def _write(session: Session, row: AnnotationRow, change: Change) -> AnnotationRe
     return made
 
 
+def set_points(row: AnnotationRow, points: list[Any] | None, sources: list[Any] | None) -> None:
+    """New joints, with where they came from and how many are decided."""
+    if points is None:
+        row.sources = None
+    else:
+        row.sources = carry_sources(row.sources, row.points, points) if sources is None else sources
+    row.points = points
+    row.decided = count_decided(points)
+
+
 def list_history(session: Session, row: AnnotationRow) -> Sequence[AnnotationRevisionRow]:
     """Every revision of an annotation, newest first."""
     query = select(AnnotationRevisionRow).where(AnnotationRevisionRow.annotation_id == row.id)
     return session.scalars(query.order_by(AnnotationRevisionRow.revision.desc())).all()
 
 
-def get_past_points(session: Session, row: AnnotationRow, revision: int) -> list[Any]:
-    """Points of an earlier revision."""
+def get_past(session: Session, row: AnnotationRow, revision: int) -> AnnotationRevisionRow:
+    """An earlier revision that has points."""
     query = select(AnnotationRevisionRow).where(
         AnnotationRevisionRow.annotation_id == row.id, AnnotationRevisionRow.revision == revision
     )
@@ -200,7 +221,7 @@ def get_past_points(session: Session, row: AnnotationRow, revision: int) -> list
         raise NotFoundError(f"There is no revision {revision}; they go from 1 to {row.revision}.")
     if past.points is None:
         raise InvalidError(f"Revision {revision} is a deletion. Delete the annotation instead of restoring it.")
-    return past.points
+    return past
 
 
 def list_annotations(
@@ -253,7 +274,12 @@ def load_annotations(
     """All annotations of a recording, or of a blind replica, as they are now."""
     rows, _ = list_annotations(session, sequence_id, replica=replica, hidden=hidden)
     return Annotations(
-        tuple(Annotation(row.frame, row.camera, row.hand, np.array(row.points, dtype=np.float64)) for row in rows)
+        tuple(
+            Annotation(
+                row.frame, row.camera, row.hand, np.array(row.points, dtype=np.float64), read_sources(row.sources)
+            )
+            for row in rows
+        )
     )
 
 
@@ -274,17 +300,39 @@ def add_imported_annotations(
         row = AnnotationRow(id=uuid.uuid4(), **vars(place), points=None, revision=0)
         session.add(row)
         session.flush()
-        _write(session, row, Change("import", points, None, uuid.uuid4(), account_id))
+        sources = write_sources(item.sources) or imported_sources(points, "the recording's own annotations")
+        _write(session, row, Change("import", points, None, uuid.uuid4(), account_id, sources))
     return len(annotations.items)
 
 
 def find_annotated_frames(session: Session, ids: Sequence[uuid.UUID]) -> dict[uuid.UUID, dict[str, Any]]:
-    """How many frames of some recordings are annotated."""
-    query = (
-        select(AnnotationRow.sequence_id, func.count(distinct(AnnotationRow.frame)))
-        .where(
-            and_(AnnotationRow.sequence_id.in_(ids), AnnotationRow.replica == "", AnnotationRow.points.is_not(null()))
-        )
-        .group_by(AnnotationRow.sequence_id)
+    """How many frames of some recordings are annotated, and how many of those to the end (`done_frames`)."""
+    marked = (
+        select(AnnotationRow.sequence_id, AnnotationRow.frame, *measure_frame())
+        .where(AnnotationRow.sequence_id.in_(ids), AnnotationRow.replica == "", AnnotationRow.decided > 0)
+        .group_by(AnnotationRow.sequence_id, AnnotationRow.frame)
+        .subquery()
     )
-    return {id_: {"annotated_frames": count} for id_, count in session.execute(query)}
+    query = select(marked.c.sequence_id, marked.c.hands, marked.c.least, func.count()).group_by(
+        marked.c.sequence_id, marked.c.hands, marked.c.least
+    )
+    recorded = session.execute(select(SequenceRow.id, SequenceRow.hands).where(SequenceRow.id.in_(ids)))
+    asked = {id_: len(hands) or 1 for id_, hands in recorded}
+    facts: dict[uuid.UUID, dict[str, Any]] = {}
+    for id_, hands, least, count in session.execute(query):
+        found = facts.setdefault(id_, {"annotated_frames": 0, "done_frames": 0})
+        found["annotated_frames"] += count
+        if is_frame_done(hands, least, asked[id_]):
+            found["done_frames"] += count
+    return facts
+
+
+def measure_frame() -> tuple[Label[int], Label[int]]:
+    """Of the annotations of one frame: hands decided whole in some camera, joints decided of the least done."""
+    whole = case((AnnotationRow.decided == JOINT_COUNT, AnnotationRow.hand))
+    return func.count(distinct(whole)).label("hands"), func.min(AnnotationRow.decided).label("least")
+
+
+def is_frame_done(hands: int, least: int, asked: int) -> bool:
+    """Every hand asked for is decided whole in some camera, and nothing that was begun is left half done."""
+    return hands >= asked and least == JOINT_COUNT

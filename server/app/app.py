@@ -15,7 +15,15 @@ from server.app.browser_app import BrowserApp
 from server.app.door import Door
 from server.app.error_handler import install_error_handler
 from server.app.guard import Guard
-from server.app.parts import LIFESPANS, PAGE_ROUTERS, PLACE_GUARDS, ROUTERS, SCAN_FACTS, SEQUENCE_FACTS
+from server.app.parts import (
+    LIFESPANS,
+    PAGE_ROUTERS,
+    PLACE_GUARDS,
+    ROUTERS,
+    SCAN_FACTS,
+    SEQUENCE_FACTS,
+    SIGHT_GUARDS,
+)
 from server.database import Database
 from server.database.migrate import upgrade
 from server.errors import error_responses
@@ -44,6 +52,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.settings = settings
     app.state.failed_tries = FailedTries()
     app.state.place_guards = PLACE_GUARDS
+    app.state.sight_guards = SIGHT_GUARDS
     app.state.sequence_facts = SEQUENCE_FACTS
     app.state.scan_facts = SCAN_FACTS
     install_error_handler(app)

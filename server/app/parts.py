@@ -34,9 +34,10 @@ from server.sequences.facts import FactFinder
 from server.suggestions import routes as suggestions
 from server.suggestions import triangulation_routes
 from server.teams import routes as teams
-from server.teams.guard import ASSIGNMENTS
+from server.teams.guard import ASSIGNMENTS, check_sees_tracks
 from server.tracks import routes as tracks
 from server.tracks.facts import find_best_tracks
+from server.tracks.guard import SightGuard
 from server.training_sets import routes as training_sets
 from server.viewer import routes as viewer
 
@@ -86,3 +87,6 @@ SCAN_FACTS: tuple[ScanFactFinder, ...] = (find_newest,)
 
 PLACE_GUARDS: tuple[PlaceGuard, ...] = (ASSIGNMENTS,)
 """What rooms above the annotations forbid at a place."""
+
+SIGHT_GUARDS: tuple[SightGuard, ...] = (check_sees_tracks,)
+"""What rooms above the tracks forbid to look at."""

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import uuid
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
+from sqlalchemy.orm import Session
 
+from server.accounts.service import CurrentAccount
 from server.database import DatabaseDep
 from server.errors import InvalidError, error_responses
 from server.evaluations import service
@@ -15,19 +18,28 @@ from server.evaluations.judge import JudgeDep
 from server.evaluations.reports import write_html_report
 from server.evaluations.schemas import Comparison, EvaluationQuery, Hand
 from server.storage import StorageDep
+from server.tracks.guard import SeenTrack, SightDep, check_sight
 
 router = APIRouter(tags=["evaluations"], responses=error_responses(404))
 
 QueryDep = Annotated[EvaluationQuery, Query()]
+
+
+def get_sight_check(account: CurrentAccount, guards: SightDep) -> Callable[[Session, uuid.UUID], None]:
+    """Raises at a recording in which whoever asks must not see tracks."""
+    return lambda session, sequence_id: check_sight(guards, session, account, sequence_id)
+
+
+SightCheck = Annotated[Callable[[Session, uuid.UUID], None], Depends(get_sight_check)]
 IMMUTABLE = "private, max-age=31536000, immutable"
 MEDIA_TYPES = {"html": "text/html; charset=utf-8", "csv": "text/csv; charset=utf-8", "json": "application/json"}
 REPORT_POLICY = "sandbox; default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 
 
 @router.get("/tracks/{track_id}/evaluation")
-def get_track_evaluation(track_id: uuid.UUID, database: DatabaseDep, judge: JudgeDep) -> dict[str, Any]:
+def get_track_evaluation(track: SeenTrack, database: DatabaseDep, judge: JudgeDep) -> dict[str, Any]:
     """Errors of a track against the annotations as they are now, px, for each joint and frame."""
-    return service.evaluate(database, judge, track_id)
+    return service.evaluate(database, judge, track)
 
 
 @router.get(
@@ -39,7 +51,7 @@ def get_track_evaluation(track_id: uuid.UUID, database: DatabaseDep, judge: Judg
     },
 )
 def get_evaluation_picture(
-    track_id: uuid.UUID,
+    track: SeenTrack,
     labels: Annotated[str, Path(pattern="^(now-[0-9]{1,15}|snapshot-[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12})$")],
     camera: Annotated[str, Path(max_length=64)],
     frame: Annotated[int, Path(ge=0, le=10**9)],
@@ -54,14 +66,14 @@ def get_evaluation_picture(
     headers = {"Cache-Control": IMMUTABLE, "ETag": tag}
     if tag in request.headers.get("if-none-match", ""):
         return Response(status_code=304, headers=headers)
-    data = service.draw_picture(database, storage, judge, track_id, labels, (camera, frame, hand))
+    data = service.draw_picture(database, storage, judge, track, labels, (camera, frame, hand))
     return Response(data, media_type="image/jpeg", headers=headers)
 
 
 @router.get("/evaluations")
-def compare_tracks(query: QueryDep, database: DatabaseDep, judge: JudgeDep) -> Comparison:
+def compare_tracks(query: QueryDep, database: DatabaseDep, judge: JudgeDep, check: SightCheck) -> Comparison:
     """Tracks judged by annotations, side by side: tables, curves, worst frames, differences against one of them."""
-    return service.compare(database, judge, query)[0]
+    return service.compare(database, judge, query, check)[0]
 
 
 @router.get(
@@ -70,12 +82,17 @@ def compare_tracks(query: QueryDep, database: DatabaseDep, judge: JudgeDep) -> C
     responses={200: {"content": {kind.partition(";")[0]: {} for kind in MEDIA_TYPES.values()}}},
 )
 def get_report(
-    kind: Literal["html", "csv", "json"], query: QueryDep, database: DatabaseDep, storage: StorageDep, judge: JudgeDep
+    kind: Literal["html", "csv", "json"],
+    query: QueryDep,
+    database: DatabaseDep,
+    storage: StorageDep,
+    judge: JudgeDep,
+    check: SightCheck,
 ) -> Response:
     """The same as a file: a page that needs nothing else, a table of every joint, or the numbers as JSON."""
     from tracker import write_csv
 
-    comparison, judged = service.compare(database, judge, query)
+    comparison, judged = service.compare(database, judge, query, check)
     if not judged:
         raise InvalidError("A report needs at least one track: give `track`, `sequence` or `project`.")
     if kind == "html":

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
+
+from sqlalchemy.orm import Session
 
 from server.database import Database, utc_now
 from server.errors import NotFoundError
@@ -14,7 +17,6 @@ from server.evaluations.labels import LabelsId, find_current_labels, find_snapsh
 from server.evaluations.schemas import Comparison, EvaluationQuery
 from server.storage import Storage
 from server.tracks.models import TrackRow
-from server.tracks.service import get_track
 
 if TYPE_CHECKING:
     from tracker import JudgedTrack
@@ -22,27 +24,30 @@ if TYPE_CHECKING:
 VISIBILITIES = {"occluded": 1, "visible": 2}
 
 
-def evaluate(database: Database, judge: Judge, track_id: uuid.UUID) -> dict[str, Any]:
+def evaluate(database: Database, judge: Judge, row: TrackRow) -> dict[str, Any]:
     """Evaluate a track against the annotations of its recording; its mean error is kept with its row."""
     with database.reading() as session:
-        row = get_track(session, track_id)
         labels = find_current_labels(session, row.sequence_id)
-    result = judge.find(track_id, labels).evaluation.to_json()
+    result = judge.find(row.id, labels).evaluation.to_json()
     error_px = result["joint_error_px"].get("mean") if result["evaluated"] else None
     if error_px != row.error_px:
         with database.writing() as session:
-            track = session.get(TrackRow, track_id)
+            track = session.get(TrackRow, row.id)
             assert track is not None
             track.error_px = error_px
     return result
 
 
-def compare(database: Database, judge: Judge, query: EvaluationQuery) -> tuple[Comparison, list[JudgedTrack]]:
-    """The comparison that was asked for, and the tracks in it."""
+def compare(
+    database: Database, judge: Judge, query: EvaluationQuery, check: Callable[[Session, uuid.UUID], None]
+) -> tuple[Comparison, list[JudgedTrack]]:
+    """The comparison that was asked for, and the tracks in it; `check` raises at a recording that must not be seen."""
     from tracker import compare_tracks
 
     with database.reading() as session:
         chosen = choose_tracks(session, query)
+        for sequence_id in dict.fromkeys(one.sequence.id for one in chosen):
+            check(session, sequence_id)
     judged = [_judge(judge, one, query) for one in chosen]
     reference = query.reference or next((one.track.id for one in chosen), None)
     document = compare_tracks(judged, reference=None if reference is None else str(reference), within_px=query.within)
@@ -89,7 +94,7 @@ def draw_picture(
     database: Database,
     storage: Storage,
     judge: Judge,
-    track_id: uuid.UUID,
+    track: TrackRow,
     labels_key: str,
     place: tuple[str, int, str],
 ) -> bytes:
@@ -97,15 +102,14 @@ def draw_picture(
     from tracker import draw_item, encode_jpeg, load_sequence
 
     with database.reading() as session:
-        sequence_id = get_track(session, track_id).sequence_id
-        labels = _find_labels(session, sequence_id, labels_key)
-    evaluation = judge.find(track_id, labels).evaluation
+        labels = _find_labels(session, track.sequence_id, labels_key)
+    evaluation = judge.find(track.id, labels).evaluation
     camera, frame, hand = place
     keys = zip(evaluation.camera, evaluation.frame.tolist(), evaluation.hand, strict=True)
     item = next((number for number, key in enumerate(keys) if key == place), None)
     if item is None:
         raise NotFoundError(f"The {hand} hand in frame {frame} of {camera} is not both annotated and tracked.")
-    return encode_jpeg(draw_item(load_sequence(storage.folder("sequences", sequence_id)), evaluation, item))
+    return encode_jpeg(draw_item(load_sequence(storage.folder("sequences", track.sequence_id)), evaluation, item))
 
 
 def _find_labels(session: Any, sequence_id: uuid.UUID, key: str) -> LabelsId:

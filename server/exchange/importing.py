@@ -19,6 +19,7 @@ from server.annotations.bulk import BulkChange, Key, change_annotations, find_an
 from server.annotations.guards import PlaceGuard, check_change
 from server.annotations.models import AnnotationRow
 from server.annotations.service import Place, check_points
+from server.annotations.sources import imported_sources, write_sources
 from server.errors import ConflictError, ForbiddenError, InvalidError, NotFoundError
 from server.exchange.comparison import HandChange, compare_hands
 from server.exchange.label_sets import open_label_set
@@ -26,7 +27,7 @@ from server.exchange.models import SnapshotRow
 from server.exchange.snapshots import create_snapshot, hold_sequences
 from server.sequences.models import SequenceRow
 from server.storage import Storage
-from tracker import Annotation, Annotations, ImportedLabels, ImportHints, import_labels, read_label_files
+from tracker import Annotation, ImportedLabels, ImportHints, import_labels, read_label_files
 
 Policy = Literal["keep", "replace"]
 MAX_TOLD = 20
@@ -60,6 +61,7 @@ class ImportPlan:
         reasons: Why not, in sentences.
         problems: Labels that cannot be stored.
         changes: New points of each place that is new or in conflict.
+        sources: Where they came from, as the file says or because they are imported.
         revisions: Of the places in the file, to know whether somebody changed one meanwhile.
     """
 
@@ -71,6 +73,7 @@ class ImportPlan:
     reasons: list[str] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     changes: dict[Key, list[Any]] = field(default_factory=dict)
+    sources: dict[Key, list[Any]] = field(default_factory=dict)
     revisions: list[list[Any]] = field(default_factory=list)
 
 
@@ -117,19 +120,19 @@ def plan_import(
 ) -> list[ImportPlan]:
     """What would happen to each recording."""
     held = held if held is not None else {row.id: find_annotations(session, row.id) for row in rows}
-    return [_plan(session, row, labels.found.annotations[str(row.id)], account, guards, held[row.id]) for row in rows]
+    return [_plan(session, row, labels, account, guards, held[row.id]) for row in rows]
 
 
 def _plan(
     session: Session,
     sequence: SequenceRow,
-    annotations: Annotations,
+    labels: ReadLabels,
     account: Account,
     guards: Sequence[PlaceGuard],
     held: dict[Key, AnnotationRow],
 ) -> ImportPlan:
     plan = ImportPlan(sequence)
-    for item in annotations.items:
+    for item in labels.found.annotations[str(sequence.id)].items:
         key: Key = item.key
         place = Place(sequence.id, item.camera, item.frame, item.hand)
         try:
@@ -150,6 +153,7 @@ def _plan(
                 plan.reasons.append(error.detail)
             continue
         plan.changes[key] = points
+        plan.sources[key] = write_sources(item.sources) or imported_sources(points, labels.format)
         if row is None or row.points is None:
             plan.new.append(key)
             continue
@@ -220,7 +224,8 @@ def _apply(
     if keys:
         before, _ = create_snapshot(session, storage, plan.sequence, f"Before an import of {labels.format}", account.id)
         changes = [
-            BulkChange(Place(plan.sequence.id, key[1], key[0], key[2]), "import", plan.changes[key]) for key in keys
+            BulkChange(Place(plan.sequence.id, key[1], key[0], key[2]), "import", plan.changes[key], plan.sources[key])
+            for key in keys
         ]
         change_annotations(session, held, changes, account.id)
         record_act(

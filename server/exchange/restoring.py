@@ -13,6 +13,7 @@ from server.accounts.models import Account
 from server.annotations.bulk import BulkChange, change_annotations, find_annotations
 from server.annotations.guards import PlaceGuard, check_change
 from server.annotations.service import Place
+from server.annotations.sources import write_sources
 from server.exchange.models import SnapshotRow
 from server.exchange.snapshots import create_snapshot, read_snapshot
 from server.sequences.models import SequenceRow
@@ -43,7 +44,8 @@ def restore_snapshot(
     guards: Sequence[PlaceGuard],
 ) -> Restored:
     """All of it or nothing: a place that is locked refuses the whole."""
-    wanted = {item.key: item.to_json()["points"] for item in read_snapshot(storage, snapshot).items}
+    kept = {item.key: item for item in read_snapshot(storage, snapshot).items}
+    wanted = {key: item.to_json()["points"] for key, item in kept.items()}
     before, _ = create_snapshot(
         session, storage, sequence, f"Before version {snapshot.version} was restored", account.id
     )
@@ -55,7 +57,10 @@ def restore_snapshot(
             frame, camera, hand = key
             place = Place(sequence.id, camera, frame, hand)
             check_change(guards, session, account, place)
-            changes.append(BulkChange(place, "restore" if key in wanted else "delete", wanted.get(key)))
+            if key in kept:
+                changes.append(BulkChange(place, "restore", wanted[key], write_sources(kept[key].sources)))
+            else:
+                changes.append(BulkChange(place, "delete", None))
     change_annotations(session, held, changes, account.id)
     deleted = sum(change.points is None for change in changes)
     record_act(

@@ -14,6 +14,7 @@ from sqlalchemy.orm import Session
 
 from server.accounts.audit import record_act
 from server.annotations.service import load_annotations
+from server.annotations.sources import read_sources
 from server.database.paging import read_cursor, write_cursor
 from server.errors import ConflictError, NotFoundError
 from server.exchange.models import SnapshotRow
@@ -145,7 +146,13 @@ def read_snapshot(storage: Storage, row: SnapshotRow) -> Annotations:
     document = json.loads(read_snapshot_bytes(storage, row))
     return Annotations(
         tuple(
-            Annotation(item["frame"], item["camera"], item["hand"], np.array(item["points"], dtype=np.float64))
+            Annotation(
+                item["frame"],
+                item["camera"],
+                item["hand"],
+                np.array(item["points"], dtype=np.float64),
+                read_sources(item.get("sources")),
+            )
             for item in document["items"]
         )
     )

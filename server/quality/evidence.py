@@ -57,6 +57,6 @@ def check_residuals(labels: Sequence[Label], tracked: dict[tuple[str, int, str],
         if np.isfinite(off).any() and np.nanmax(off) > 1:
             joint = int(np.nanargmax(off))
             joints = tuple(int(j) for j in np.flatnonzero(off > 1))
-            usually = f"usually it is {usual[joint]:.0f} px"
+            usually = f"usually it is {usual[joint]:.1f} px"
             reason = f"The {joint_name(joint)} is {distance[joint]:.0f} px from the track; {usually}."
             yield Finding(label, "residual", min(10.0, float(off[joint])), joints, reason)

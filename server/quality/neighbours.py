@@ -23,6 +23,10 @@ REACH_FRAMES = 15
 """Annotated frames farther apart say nothing about each other."""
 
 
+STILL_FRAMES = 3
+"""Annotated frames farther apart than this may well differ by a motion: a joint must be the farther off."""
+
+
 def check_handedness(labels: Sequence[Label], hands: Sequence[str]) -> Iterator[Finding]:
     """Labels nearer to the other hand in the neighbouring frames than to their own."""
     tracks = _by_hand(labels)
@@ -52,7 +56,9 @@ def check_jumps(labels: Sequence[Label]) -> Iterator[Finding]:
             if not np.isfinite(jump).any():
                 continue
             typical = float(np.nanmedian(jump))
-            limit = max(8.0, 0.1 * label.size_px, 5.0 * typical)
+            others = [track[other] for other in (place - 1, place + 1) if 0 <= other < len(track)]
+            apart = min(abs(label.frame - other.frame) for other in others)
+            limit = max(8.0, 0.1 * label.size_px, 5.0 * typical) * max(1.0, apart / STILL_FRAMES)
             beside = [jumps[other] for other in (place - 1, place + 1) if 0 <= other < len(track)]
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", RuntimeWarning)

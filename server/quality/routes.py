@@ -9,8 +9,9 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from server.accounts.service import CurrentAccount
+from server.annotations.guards import GuardsDep, find_hidden
 from server.annotations.routes import PlaceDep
-from server.annotations.service import list_annotations
+from server.annotations.service import Place, list_annotations
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, read_cursor, write_cursor
 from server.errors import error_responses
@@ -29,6 +30,8 @@ def list_flags(
     sequence_id: uuid.UUID,
     database: DatabaseDep,
     finder: FlagFinderDep,
+    account: CurrentAccount,
+    guards: GuardsDep,
     kind: Annotated[Kind | None, Query(description="Only these.")] = None,
     dismissed: Annotated[bool, Query(description="Those that were put away instead of the open ones.")] = False,
     cursor: Cursor = None,
@@ -38,11 +41,13 @@ def list_flags(
     with database.reading() as session:
         sequence = get_sequence(session, sequence_id)
         rows, _ = list_annotations(session, sequence_id)
+        hidden = find_hidden(guards, session, account, sequence_id)
         put_away = service.find_dismissed(session, sequence_id)
         best = find_best_tracks(session, [sequence_id]).get(sequence_id)
         session.expunge_all()
     track_id = best["best_track"]["id"] if best else None
     flags = finder.find(sequence_id, sequence.content_key, sequence.hands, rows, track_id)
+    flags = [flag for flag in flags if not any(_place(sequence_id, flag) in places for places in hidden)]
     is_away = {id(flag): (flag.label.id, flag.label.revision, flag.kind) in put_away for flag in flags}
     counts = Counter(flag.kind for flag in flags if not is_away[id(flag)])
     wanted = [flag for flag in flags if is_away[id(flag)] == dismissed and kind in (None, flag.kind)]
@@ -70,6 +75,10 @@ def restore_flag(
 ) -> None:
     """Bring a flag back that was put away."""
     service.restore(session, place, kind, revision)
+
+
+def _place(sequence_id: uuid.UUID, flag: Finding) -> Place:
+    return Place(sequence_id, flag.label.camera, flag.label.frame, flag.label.hand)
 
 
 def _order(flag: Finding) -> tuple[int, str, str]:

@@ -34,7 +34,7 @@ def describe_sequences(
     for find in finders if ids else ():
         for id_, found in find(session, ids).items():
             facts[id_] |= found
-    fields = SequenceOut.model_fields.keys() - {"annotated_frames", "best_track"}
+    fields = SequenceOut.model_fields.keys() - {"annotated_frames", "done_frames", "best_track"}
     return [
         SequenceOut.model_validate({field: getattr(row, field) for field in fields} | facts[row.id]) for row in rows
     ]

@@ -58,7 +58,8 @@ class SequenceOut(BaseModel):
     revision: int
     report: dict[str, Any] | None = Field(description="What the import found.")
     content_key: str = Field(description="Part of the address of every image; another key means other files.")
-    annotated_frames: int = 0
+    annotated_frames: int = Field(default=0, description="Frames with at least one joint.")
+    done_frames: int = Field(default=0, description="Frames in which every joint of every hand of it is decided.")
     best_track: BestTrack | None = None
 
 

@@ -88,6 +88,7 @@ def describe_assignments(session: Session, rows: Sequence[AssignmentRow]) -> lis
             frame_last=row.frame_last,
             frames=progress[row.id].frames,
             frames_done=progress[row.id].done,
+            frames_partial=progress[row.id].partial,
             next_frame=progress[row.id].next_frame,
             state=row.state,
             note=row.note,

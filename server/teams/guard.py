@@ -118,6 +118,15 @@ def check_sees_set(session: Session, account: Account, replicas: ReplicaSetRow) 
         )
 
 
+def check_sees_tracks(session: Session, account: Account, sequence_id: uuid.UUID) -> None:
+    """Raise when the account marks frames of the recording blindly: tracks and evaluations show where joints are."""
+    if names := [replicas.name for replicas in _find_blind_sets(session, account, sequence_id)]:
+        raise ForbiddenError(
+            f"You mark frames of this recording blindly ({', '.join(sorted(set(names)))}). Its tracks and evaluations "
+            "are shown to you when your work is accepted."
+        )
+
+
 def _get_replica(
     session: Session, sequence_id: uuid.UUID, replica: str, hold: bool = False
 ) -> tuple[AssignmentRow, ReplicaSetRow]:
@@ -142,6 +151,10 @@ def _get_replica(
 
 
 def _find_blind(session: Session, account: Account, sequence_id: uuid.UUID) -> list[HiddenPlaces]:
+    return [_places(replicas) for replicas in _find_blind_sets(session, account, sequence_id)]
+
+
+def _find_blind_sets(session: Session, account: Account, sequence_id: uuid.UUID) -> Sequence[ReplicaSetRow]:
     query = (
         select(ReplicaSetRow)
         .join(AssignmentRow, AssignmentRow.replica_set_id == ReplicaSetRow.id)
@@ -155,7 +168,7 @@ def _find_blind(session: Session, account: Account, sequence_id: uuid.UUID) -> l
             ProjectRow.archived_at.is_(None),
         )
     )
-    return [_places(replicas) for replicas in session.scalars(query)]
+    return session.scalars(query).all()
 
 
 def _places(replicas: ReplicaSetRow) -> HiddenPlaces:

@@ -6,62 +6,87 @@ import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sqlalchemy import and_, null, select
+from sqlalchemy import and_, select
 from sqlalchemy.orm import Session
 
 from server.annotations.models import AnnotationRow
+from server.annotations.service import is_frame_done, measure_frame
+from server.annotations.sources import JOINT_COUNT
+from server.sequences.models import SequenceRow
 from server.teams.models import AssignmentRow, ReplicaSetRow
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Frames of an assignment: how many, how many of them are done, the first that is not."""
+    """Frames of an assignment.
+
+    Attributes:
+        frames: How many.
+        done: Those in which every joint that is asked for is decided: placed, or said to be not in the image.
+        partial: Those that were begun and are not done.
+        next_frame: The first that is not done.
+    """
 
     frames: int
     done: int
+    partial: int
     next_frame: int | None
 
 
 def find_progress(
     session: Session, rows: Sequence[AssignmentRow], sets: dict[uuid.UUID, ReplicaSetRow]
 ) -> dict[uuid.UUID, Progress]:
-    """Progress of some assignments by their ids. A frame of a range is done when somebody marked a hand in it, one of a
-    replica set when every hand is marked in every camera."""
+    """Progress of some assignments by their ids.
+
+    Of a range each hand of the recording is asked for in one camera at least, and nothing begun may stay half done; of
+    a replica set every hand in every camera.
+    """
+    is_done: dict[uuid.UUID, dict[int, bool]] = {row.id: {} for row in rows}
+    asked = _count_hands(session, rows)
     ranges = [row.id for row in rows if row.replica_set_id is None]
-    marked: dict[uuid.UUID, dict[int, int]] = {row.id: {} for row in rows}
     query = (
-        select(AssignmentRow.id, AnnotationRow.frame)
+        select(AssignmentRow.id, AnnotationRow.frame, *measure_frame())
         .join(
             AnnotationRow,
             and_(
                 AnnotationRow.sequence_id == AssignmentRow.sequence_id,
                 AnnotationRow.replica == "",
                 AnnotationRow.frame.between(AssignmentRow.frame_first, AssignmentRow.frame_last),
-                AnnotationRow.points.is_not(null()),
+                AnnotationRow.decided > 0,
             ),
         )
         .where(AssignmentRow.id.in_(ranges))
-        .distinct()
+        .group_by(AssignmentRow.id, AnnotationRow.frame)
     )
-    for id_, frame in session.execute(query) if ranges else ():
-        marked[id_][frame] = 1
-    replicas = {str(row.id): row.id for row in rows if row.replica_set_id is not None}
-    query = select(AnnotationRow.replica, AnnotationRow.frame).where(
+    for id_, frame, hands, least in session.execute(query) if ranges else ():
+        is_done[id_][frame] = is_frame_done(hands, least, asked[id_])
+    replicas = {str(row.id): row for row in rows if row.replica_set_id is not None}
+    query = select(AnnotationRow.replica, AnnotationRow.frame, AnnotationRow.decided).where(
         AnnotationRow.sequence_id.in_({row.sequence_id for row in rows}),
         AnnotationRow.replica.in_(replicas),
-        AnnotationRow.points.is_not(null()),
+        AnnotationRow.decided > 0,
     )
-    for replica, frame in session.execute(query) if replicas else ():
-        frames = marked[replicas[replica]]
-        frames[frame] = frames.get(frame, 0) + 1
-    return {
-        row.id: _measure(row, sets.get(row.replica_set_id) if row.replica_set_id else None, marked[row.id])
-        for row in rows
-    }
+    whole: dict[tuple[uuid.UUID, int], int] = {}
+    for replica, frame, decided in session.execute(query) if replicas else ():
+        row = replicas[replica]
+        replica_set = sets[row.replica_set_id] if row.replica_set_id else None
+        key = (row.id, frame)
+        whole[key] = whole.get(key, 0) + (decided == JOINT_COUNT)
+        needed = len(replica_set.cameras) * len(replica_set.hands) if replica_set else 1
+        is_done[row.id][frame] = whole[key] >= needed
+    return {row.id: _measure(row, sets.get(row.replica_set_id or row.id), is_done[row.id]) for row in rows}
 
 
-def _measure(row: AssignmentRow, replicas: ReplicaSetRow | None, marked: dict[int, int]) -> Progress:
+def _count_hands(session: Session, rows: Sequence[AssignmentRow]) -> dict[uuid.UUID, int]:
+    """Hands that a frame is asked for, by assignment."""
+    ids = {row.sequence_id for row in rows}
+    found = session.execute(select(SequenceRow.id, SequenceRow.hands).where(SequenceRow.id.in_(ids)))
+    hands = {id_: len(names) or 1 for id_, names in found}
+    return {row.id: hands[row.sequence_id] for row in rows}
+
+
+def _measure(row: AssignmentRow, replicas: ReplicaSetRow | None, is_done: dict[int, bool]) -> Progress:
     wanted = range(row.frame_first, row.frame_last + 1) if replicas is None else sorted(replicas.frames)
-    needed = 1 if replicas is None else len(replicas.cameras) * len(replicas.hands)
-    missing = [frame for frame in wanted if marked.get(frame, 0) < needed]
-    return Progress(len(wanted), len(wanted) - len(missing), missing[0] if missing else None)
+    missing = [frame for frame in wanted if not is_done.get(frame, False)]
+    partial = sum(frame in is_done for frame in missing)
+    return Progress(len(wanted), len(wanted) - len(missing), partial, missing[0] if missing else None)

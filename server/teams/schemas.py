@@ -113,7 +113,11 @@ class AssignmentOut(BaseModel):
     frame_first: int
     frame_last: int
     frames: int = Field(description="How many frames are to be marked.")
-    frames_done: int = Field(description="Frames with joints; of a replica set, with every hand in every camera.")
+    frames_done: int = Field(
+        description="Frames in which every joint asked for is decided: of a range each hand of the recording, of a "
+        "replica set every hand in every camera."
+    )
+    frames_partial: int = Field(description="Frames that were begun and are not done.")
     next_frame: int | None = Field(description="The first one that is not done.")
     state: AssignmentState
     note: str

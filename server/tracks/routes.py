@@ -11,12 +11,13 @@ from starlette.requests import HTTPConnection
 
 from server.accounts.audit import record_act
 from server.accounts.service import LeadAccount
-from server.database import DatabaseDep, SessionDep
+from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import NotFoundError, error_responses
 from server.storage import StorageDep
 from server.tracks import service
 from server.tracks.exports import MEDIA_TYPES, find_export
+from server.tracks.guard import SeenTrack
 from server.tracks.overlay import Overlays
 from server.tracks.schemas import FrameEnergy, TrackFrames, TrackJoints, TrackOut
 
@@ -69,32 +70,27 @@ def restore_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -
 
 
 @router.get("/tracks/{track_id}/frames", responses=error_responses(404))
-def get_track_frames(track_id: uuid.UUID, session: SessionDep, storage: StorageDep) -> TrackFrames:
+def get_track_frames(track: SeenTrack, storage: StorageDep) -> TrackFrames:
     """Status, timing and quality of every frame, as columns."""
-    service.get_track(session, track_id)
-    return TrackFrames.model_validate(service.read_columns(storage.folder("tracks", track_id)))
+    return TrackFrames.model_validate(service.read_columns(storage.folder("tracks", track.id)))
 
 
 @router.get("/tracks/{track_id}/frames/{frame}/energy", responses=error_responses(404))
-def get_frame_energy(track_id: uuid.UUID, frame: int, session: SessionDep, storage: StorageDep) -> FrameEnergy:
+def get_frame_energy(track: SeenTrack, frame: int, storage: StorageDep) -> FrameEnergy:
     """Energy of one frame's fit by term and iteration."""
-    service.get_track(session, track_id)
-    return FrameEnergy.model_validate(service.read_energy(storage.folder("tracks", track_id), frame))
+    return FrameEnergy.model_validate(service.read_energy(storage.folder("tracks", track.id), frame))
 
 
 @router.get("/tracks/{track_id}/joints", responses=error_responses(404))
-def get_track_joints(
-    track_id: uuid.UUID, session: SessionDep, storage: StorageDep, camera: str | None = None
-) -> TrackJoints:
+def get_track_joints(track: SeenTrack, storage: StorageDep, camera: str | None = None) -> TrackJoints:
     """Joints of every frame as seen by one camera, the first if none is named."""
     from tracker import load_sequence
 
-    track = service.get_track(session, track_id)
     cameras = [c.id for c in load_sequence(storage.folder("sequences", track.sequence_id)).cameras]
     if camera is not None and camera not in cameras:
         raise NotFoundError(f"The recording has no camera {camera!r}; it has {', '.join(cameras)}.")
     index = 0 if camera is None else cameras.index(camera)
-    names, frames, points = service.read_joints(storage.folder("tracks", track_id), index)
+    names, frames, points = service.read_joints(storage.folder("tracks", track.id), index)
     return TrackJoints(joint_names=names, frames=frames, points=points)
 
 
@@ -104,12 +100,10 @@ def get_track_joints(
     responses={200: {"content": {"image/png": {}}}} | error_responses(404),
 )
 def get_track_overlay(
-    track_id: uuid.UUID, camera: str, frame: int, database: DatabaseDep, storage: StorageDep, overlays: OverlaysDep
+    track: SeenTrack, camera: str, frame: int, storage: StorageDep, overlays: OverlaysDep
 ) -> FileResponse:
     """The meshes of one frame as the camera sees them, on transparent ground. Neither a track nor this changes ever."""
-    with database.reading() as session:
-        track = service.get_track(session, track_id)
-    folder = storage.folder("tracks", track_id)
+    folder = storage.folder("tracks", track.id)
     path = overlays.find(folder, storage.folder("sequences", track.sequence_id), frame, camera)
     return FileResponse(path, media_type="image/png", headers={"Cache-Control": IMMUTABLE})
 
@@ -120,11 +114,10 @@ def get_track_overlay(
     responses={200: {"content": {"application/octet-stream": {}}}} | error_responses(404),
 )
 def download_track_file(
-    track_id: uuid.UUID, name: Literal["track.npz", "summary.json"], session: SessionDep, storage: StorageDep
+    track: SeenTrack, name: Literal["track.npz", "summary.json"], storage: StorageDep
 ) -> FileResponse:
     """A file of the track."""
-    track = service.get_track(session, track_id)
-    path = storage.folder("tracks", track_id) / name
+    path = storage.folder("tracks", track.id) / name
     if not path.is_file():
         raise NotFoundError(f"The file {name} of this track is gone from the data folder.")
     return FileResponse(path, media_type="application/octet-stream", filename=f"{track.name.replace(' ', '_')}-{name}")
@@ -135,13 +128,9 @@ def download_track_file(
     response_class=FileResponse,
     responses={200: {"content": {kind: {} for kind in sorted(set(MEDIA_TYPES.values()))}}} | error_responses(404),
 )
-def export_track(
-    track_id: uuid.UUID, kind: Literal["npz", "csv", "glb", "mano"], database: DatabaseDep, storage: StorageDep
-) -> FileResponse:
+def export_track(track: SeenTrack, kind: Literal["npz", "csv", "glb", "mano"], storage: StorageDep) -> FileResponse:
     """The track for other programs: npz, CSV of its joints, glTF animation (GLB) or MANO-style parameters (npz)."""
-    with database.reading() as session:
-        track = service.get_track(session, track_id)
-    folder = storage.folder("tracks", track_id)
+    folder = storage.folder("tracks", track.id)
     path = find_export(folder, storage.folder("sequences", track.sequence_id), kind)
     name = path.name.partition("-")[2]
     return FileResponse(path, media_type=MEDIA_TYPES[kind], filename=f"{track.name.replace(' ', '_')}-{name}")

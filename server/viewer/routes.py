@@ -12,10 +12,11 @@ from fastapi.responses import RedirectResponse
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
+from server.accounts.service import CurrentAccount
 from server.database import DatabaseDep
 from server.errors import StudioError, error_responses
 from server.storage import StorageDep
-from server.tracks.service import get_track
+from server.tracks.guard import SightDep, get_seen_track
 from server.viewer import proxy
 from server.viewer.schemas import Show, ViewerSessionChange, ViewerSessionCreate, ViewerSessionOut
 from server.viewer.sessions import OpenSession, ViewerSessions
@@ -44,11 +45,15 @@ SessionsDep = Annotated[ViewerSessions, Depends(get_sessions)]
 
 @router.post("/viewer-sessions", status_code=201, responses=error_responses(404, 500))
 def create_viewer_session(
-    body: ViewerSessionCreate, database: DatabaseDep, storage: StorageDep, sessions: SessionsDep
+    body: ViewerSessionCreate,
+    database: DatabaseDep,
+    storage: StorageDep,
+    sessions: SessionsDep,
+    account: CurrentAccount,
+    guards: SightDep,
 ) -> ViewerSessionOut:
     """Open a track in 3D."""
-    with database.reading() as session:
-        track = get_track(session, body.track_id)
+    track = get_seen_track(body.track_id, database, account, guards)
     recording, folder = storage.folder("sequences", track.sequence_id), storage.folder("tracks", track.id)
     return _out(*sessions.open(track.id, recording, folder, body.frame, _changes(body.show)))
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.document import Node, load_json
+from tracker.capture.joint_source import JointSources, parse_source
 from tracker.errors import AnnotationError
 
 _FINGERS = ("index", "middle", "ring", "little")
@@ -35,12 +36,14 @@ class Annotation:
         hand: `right` or `left`.
         points: (21, 3) float64, in the order of HAND_JOINTS, of x, y (px, pixel centres are integers)
             and v as in COCO: 0 absent, 1 occluded, 2 visible.
+        sources: Of each joint what somebody accepted there (None: placed by hand); None when nobody noted it.
     """
 
     frame: int
     camera: str
     hand: str
     points: npt.NDArray[np.float64]
+    sources: JointSources | None = None
 
     @property
     def key(self) -> tuple[int, str, str]:
@@ -50,7 +53,10 @@ class Annotation:
     def to_json(self) -> dict:
         """Its entry in `annotations.json`."""
         points = [[float(x), float(y), int(v) if v in (0, 1, 2) else float(v)] for x, y, v in self.points]
-        return {"frame": self.frame, "camera": self.camera, "hand": self.hand, "points": points}
+        document = {"frame": self.frame, "camera": self.camera, "hand": self.hand, "points": points}
+        if self.sources is not None:
+            document["sources"] = [None if source is None else source.to_json() for source in self.sources]
+        return document
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,4 +132,14 @@ def _parse_item(node: Node, order: list[int]) -> Annotation:
         if points[i, 2] not in (0, 1, 2):
             cells[2].fail("0 (absent), 1 (occluded) or 2 (visible)")
     frame = node.get("frame").integer(0, 10**9)
-    return Annotation(frame, node.get("camera").text(64), node.get("hand").choice("right", "left"), points[order])
+    sources = _parse_sources(node.get("sources"), order) if node.has("sources") else None
+    camera, hand = node.get("camera").text(64), node.get("hand").choice("right", "left")
+    return Annotation(frame, camera, hand, points[order], sources)
+
+
+def _parse_sources(node: Node, order: list[int]) -> JointSources:
+    found = [parse_source(item) for item in node.items(21)]
+    if len(found) != 21:
+        needed = "needed 21, null where a joint was placed by hand"
+        raise AnnotationError(f"{node.file}: {node.where} has {len(found)} entries; {needed}.")
+    return tuple(found[i] for i in order)

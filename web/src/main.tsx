@@ -38,7 +38,7 @@ if (root) {
         defaultColorScheme="dark"
         colorSchemeManager={localStorageColorSchemeManager({ key: "handloom/colours" })}
       >
-        <Notifications position="top-right" limit={5} />
+        <Notifications position="bottom-center" limit={4} style={{ bottom: 112 }} />
         <QueryClientProvider client={queries}>
           <Gate>
             <RouterProvider router={router} />

@@ -74,6 +74,6 @@ def test_sqlite_keeps_every_commit_and_checks_references(tmp_path: Path) -> None
 def test_a_reference_to_nothing_is_refused(database: Database) -> None:
     with pytest.raises(Exception, match=r"(?i)foreign key"), database.writing() as session:
         session.execute(
-            text("INSERT INTO annotation_revisions VALUES (:a, :b, 1, :c, 'put', NULL, :d, NULL)"),
+            text("INSERT INTO annotation_revisions VALUES (:a, :b, 1, :c, 'put', NULL, :d, NULL, NULL)"),
             {"a": uuid.uuid4().hex, "b": uuid.uuid4().hex, "c": uuid.uuid4().hex, "d": datetime.now(UTC).isoformat()},
         )

@@ -184,3 +184,51 @@ def test_the_report_returns_the_noise_of_each_annotator(studio, join, lead, add_
     assert not any(word in page.text for word in ("<script", "http", "src="))
     assert "sandbox" in page.headers["content-security-policy"]
     assert json.dumps(report)
+
+
+def test_tracks_and_evaluations_are_closed_to_who_marks_blindly_until_it_is_accepted(
+    lead, ann, bob, reviewer, tracked
+) -> None:
+    project = lead.make("/projects", name="Tracked")
+    sequence, track = str(tracked.sequence_id), str(tracked.track_id)
+    lead.send("PUT", f"/projects/{project['id']}/sequences/{sequence}")
+    body = {"name": "Week 1", "sequence_id": sequence, "frames": [2], "cameras": ["cam0"], "hands": ["right"]}
+    made = lead.make(f"/projects/{project['id']}/replica-sets", **body, account_ids=[ann.id, lead.id])
+    paths = [
+        f"/tracks/{track}/frames",
+        f"/tracks/{track}/frames/2/energy",
+        f"/tracks/{track}/joints",
+        f"/tracks/{track}/cameras/cam0/frames/2/overlay.png",
+        f"/tracks/{track}/files/track.npz",
+        f"/tracks/{track}/export/csv",
+        f"/tracks/{track}/evaluation",
+        f"/tracks/{track}/evaluation/now-0/cam0/2/right.jpg",
+        f"/evaluations?track={track}",
+        f"/evaluations?sequence={sequence}",
+        f"/evaluations?project={project['id']}",
+        f"/evaluations/report.csv?track={track}",
+    ]
+    for path in paths:
+        answer = ann.send("GET", path)
+        assert answer.status_code == 403, path
+        assert "Week 1" in answer.json()["detail"]
+        assert bob.send("GET", path).status_code != 403, "who does not mark it sees it"
+    assert ann.send("POST", "/viewer-sessions", {"track_id": track, "frame": 0}).status_code == 403
+    mine = assignments_of(ann, made)
+    ann.act(mine, "submit")
+    assert ann.send("GET", paths[0]).status_code == 403, "it may come back"
+    reviewer.act(mine, "accept")
+    assert ann.send("GET", paths[0]).status_code == 200
+
+
+def test_key_frames_of_a_blind_replica_are_its_annotators(project, ann, bob) -> None:
+    made = project.replicate([ann, bob], [2, 5])
+    mine = assignments_of(ann, made)
+    path = f"/sequences/{project.sequence}/key-frames"
+    place = f"{path}/cam0/2/right"
+    assert ann.send("PUT", place).status_code == 403, "not among everybody's while it is marked blindly"
+    assert ann.send("PUT", place, params={"replica": mine["id"]}).status_code == 204
+    assert bob.send("PUT", place, params={"replica": mine["id"]}).status_code == 403
+    assert bob.send("GET", path, params={"replica": mine["id"]}).status_code == 403
+    assert len(ann.get(path, replica=mine["id"])["items"]) == 1
+    assert ann.get(path)["items"] == []

@@ -1,10 +1,10 @@
 import { useQuery } from "@tanstack/react-query";
-import { parseKey } from "../model/pose";
+import { kept, parseKey } from "../model/pose";
 import type { PendingSave } from "../state/journal";
 import type { Outcome } from "../state/saveQueue";
 import { ApiError, request, requestWithHeaders } from "./client";
 import { fetchAll } from "./recordings";
-import type { Annotation, AnnotationRevision, Page } from "./types";
+import type { Annotation, AnnotationRevision, Page, Side } from "./types";
 
 export const annotationKeys = { of: (recording: string) => ["annotations", recording] as const };
 
@@ -35,7 +35,11 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
       await requestWithHeaders("DELETE", path, { headers, whenOut: "fail", query: { operation_id: save.operationId, replica } });
       return { kind: "saved", revision: null };
     }
-    const body = { points: save.points, operation_id: save.operationId };
+    const body = {
+      points: save.points.map(([x, y, v]) => [x, y, v]),
+      sources: save.points.map(([, , , from]) => from ?? null),
+      operation_id: save.operationId,
+    };
     const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers, whenOut: "fail", query: { replica } });
     return { kind: "saved", revision: revisionOf(answer.headers) ?? answer.data.revision };
   } catch (failure) {
@@ -44,12 +48,26 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
     if (failure.status === 401) return { kind: "held" };
     if (failure.status === 409 || failure.status === 412) {
       const theirs = failure.body["theirs"] as Annotation | null | undefined;
-      return { kind: "conflict", theirs: { points: theirs?.points ?? null, revision: theirs?.revision ?? null } };
+      return { kind: "conflict", theirs: { points: theirs ? kept(theirs.points, theirs.sources) : null, revision: theirs?.revision ?? null, author: theirs?.author ?? null } };
     }
     if (failure.status === 404 && save.points === null) return { kind: "saved", revision: null };
     return { kind: "refused", reason: failure.detail };
   }
 }
+
+interface PlaceOf {
+  readonly camera: string;
+  readonly frame: number;
+  readonly hand: Side;
+}
+
+/** Hands that people made key frames, of everybody or of one blind replica. */
+export const fetchKeyFrames = async (recording: string, replica?: string | null): Promise<PlaceOf[]> =>
+  (await request<{ items: PlaceOf[] }>("GET", `/sequences/${recording}/key-frames`, { query: { replica } })).items;
+
+export const sendKeyFrame = async (recording: string, { camera, frame, hand }: PlaceOf, isKey: boolean, replica?: string | null): Promise<void> => {
+  await request<null>(isKey ? "PUT" : "DELETE", `/sequences/${recording}/key-frames/${encodeURIComponent(camera)}/${frame}/${hand}`, { query: { replica } });
+};
 
 /** Every revision of a hand, newest first; empty when nobody ever marked it. */
 export const useAnnotationHistory = (recording: string, key: string, savedAt: number | null, replica: string | null) =>

@@ -2208,6 +2208,50 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sequences/{sequence_id}/key-frames": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Key Frames
+         * @description Hands that people made key frames: between two of them the annotator proposes the rest.
+         */
+        get: operations["list_key_frames"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sequences/{sequence_id}/key-frames/{camera}/{frame}/{hand}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Add Key Frame
+         * @description Make the hand a key frame; who may mark it may do this. Twice does no harm.
+         */
+        put: operations["add_key_frame"];
+        post?: never;
+        /**
+         * Remove Key Frame
+         * @description The hand is a key frame no more; its joints stay. Twice does no harm.
+         */
+        delete: operations["remove_key_frame"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sequences/{sequence_id}/labels/check": {
         parameters: {
             query?: never;
@@ -3209,6 +3253,8 @@ export interface components {
                 number,
                 0 | 1 | 2
             ][];
+            /** Sources */
+            sources?: (components["schemas"]["JointSourceOut"] | null)[] | null;
         };
         /**
          * Annotation
@@ -3238,6 +3284,11 @@ export interface components {
             /** Revision */
             revision: number;
             /**
+             * Sources
+             * @description Null: never noted.
+             */
+            sources: (components["schemas"]["JointSourceOut"] | null)[] | null;
+            /**
              * Updated At
              * Format: date-time
              */
@@ -3263,6 +3314,11 @@ export interface components {
                 number,
                 0 | 1 | 2
             ][];
+            /**
+             * Sources
+             * @description Left out: joints that stay keep theirs, the others count as placed by hand.
+             */
+            sources?: (components["schemas"]["JointSourceOut"] | null)[] | null;
         };
         /**
          * AnnotationRestore
@@ -3308,6 +3364,8 @@ export interface components {
             ][] | null;
             /** Revision */
             revision: number;
+            /** Sources */
+            sources: (components["schemas"]["JointSourceOut"] | null)[] | null;
         };
         /**
          * AssignmentMake
@@ -3362,9 +3420,14 @@ export interface components {
             frames: number;
             /**
              * Frames Done
-             * @description Frames with joints; of a replica set, with every hand in every camera.
+             * @description Frames in which every joint asked for is decided: of a range each hand of the recording, of a replica set every hand in every camera.
              */
             frames_done: number;
+            /**
+             * Frames Partial
+             * @description Frames that were begun and are not done.
+             */
+            frames_partial: number;
             /**
              * Id
              * Format: uuid
@@ -4809,6 +4872,33 @@ export interface components {
             name: string;
         };
         /**
+         * JointSource
+         * @description What somebody accepted for a joint instead of placing it.
+         */
+        JointSourceOut: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import";
+            /**
+             * Label
+             * @description For people.
+             * @default
+             * @example Track 2
+             * @example model fit of 7 joints
+             */
+            label: string;
+            /**
+             * Model
+             * @description The hand model behind it.
+             * @default
+             */
+            model: string;
+            /** Track Id */
+            track_id?: string | null;
+        };
+        /**
          * JudgedTrackOut
          * @description A track with its errors.
          */
@@ -4898,6 +4988,29 @@ export interface components {
             within: number | null;
             /** Worst */
             worst: components["schemas"]["WorstFrame"][];
+        };
+        /**
+         * KeyFrame
+         * @description One hand in one image; between it and the next one a machine may propose the rest.
+         */
+        KeyFrame: {
+            /** Camera */
+            camera: string;
+            /** Frame */
+            frame: number;
+            /**
+             * Hand
+             * @enum {string}
+             */
+            hand: "right" | "left";
+        };
+        /**
+         * KeyFrames
+         * @description All key frames of a recording or a blind replica, by frame.
+         */
+        KeyFrames: {
+            /** Items */
+            items: components["schemas"]["KeyFrame"][];
         };
         /**
          * LabelComparison
@@ -6558,6 +6671,7 @@ export interface components {
         SequenceOut: {
             /**
              * Annotated Frames
+             * @description Frames with at least one joint.
              * @default 0
              */
             annotated_frames: number;
@@ -6574,6 +6688,12 @@ export interface components {
              * Format: date-time
              */
             created_at: string;
+            /**
+             * Done Frames
+             * @description Frames in which every joint of every hand of it is decided.
+             * @default 0
+             */
+            done_frames: number;
             /** Fps */
             fps: number;
             /** Frame Count */
@@ -16777,6 +16897,218 @@ export interface operations {
             };
         };
     };
+    list_key_frames: {
+        parameters: {
+            query?: {
+                /** @description The assignment of a blind replica; none for the annotations of everybody. */
+                replica?: string | null;
+            };
+            header?: never;
+            path: {
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeyFrames"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    add_key_frame: {
+        parameters: {
+            query?: {
+                /** @description The assignment of a blind replica; none for the annotations of everybody. */
+                replica?: string | null;
+            };
+            header?: never;
+            path: {
+                camera: string;
+                frame: number;
+                hand: "right" | "left";
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    remove_key_frame: {
+        parameters: {
+            query?: {
+                /** @description The assignment of a blind replica; none for the annotations of everybody. */
+                replica?: string | null;
+            };
+            header?: never;
+            path: {
+                camera: string;
+                frame: number;
+                hand: "right" | "left";
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     check_recording_labels: {
         parameters: {
             query?: never;
@@ -18467,9 +18799,9 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                track_id: string;
                 camera: string;
                 frame: number;
+                track_id: string;
             };
             cookie?: never;
         };
@@ -18605,11 +18937,11 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                track_id: string;
                 labels: string;
                 camera: string;
                 frame: number;
                 hand: "right" | "left";
+                track_id: string;
             };
             cookie?: never;
         };
@@ -18683,8 +19015,8 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                track_id: string;
                 kind: "npz" | "csv" | "glb" | "mano";
+                track_id: string;
             };
             cookie?: never;
         };
@@ -18753,8 +19085,8 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                track_id: string;
                 name: "track.npz" | "summary.json";
+                track_id: string;
             };
             cookie?: never;
         };
@@ -18888,8 +19220,8 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                track_id: string;
                 frame: number;
+                track_id: string;
             };
             cookie?: never;
         };

@@ -6,7 +6,7 @@ import type { Page, WireSuggestion } from "./types";
 
 const pathOf = (recording: string, camera: string, frame: number): string => `/sequences/${recording}/suggestions/${encodeURIComponent(camera)}/${frame}`;
 
-const fromServer = ({ source, label, camera, frame, hand, joints }: WireSuggestion): Suggestion => ({ source, label, place: { camera, frame, hand }, joints });
+const fromServer = ({ source, label, camera, frame, hand, joints, track_id: trackId, model }: WireSuggestion): Suggestion => ({ source, label, place: { camera, frame, hand }, trackId, model, joints });
 
 /** The hands of an image as a track has them (the recording's best one if none is named); none where it was lost. */
 export async function fetchTrackSuggestions(recording: string, camera: string, frame: number, track: string | undefined, signal: AbortSignal): Promise<Suggestion[]> {

@@ -10,6 +10,8 @@ type Schemas = components["schemas"];
 export type Side = Schemas["AnnotationOut"]["hand"];
 export type Camera = Schemas["SequenceCamera"];
 export type Annotation = Schemas["AnnotationOut"];
+/** What a person accepted for a joint instead of placing it. */
+export type JointSource = Pick<Schemas["JointSourceOut"], "kind"> & Partial<Schemas["JointSourceOut"]>;
 /** What one save made of it. */
 export type AnnotationRevision = Schemas["AnnotationRevision"];
 /** Image pixels, (0, 0) at the centre of the top-left pixel; v is 0 absent, 1 occluded, 2 visible. */

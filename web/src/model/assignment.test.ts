@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import type { Assignment, Me, ReplicaSet } from "../api/teams";
-import { assignmentAt, lockReason, progressOf } from "./assignment";
+import { assignmentAt, describeUnfinished, lockReason, progressOf } from "./assignment";
 import { emptyPose, keyText, type Pose } from "./pose";
 
 const given = (change: Partial<Assignment>): Assignment =>
@@ -27,9 +27,15 @@ test("what the server refuses is locked here too", () => {
   expect(lockReason(given({ replica_set_id: "s" }), me("ann"), { hands: ["right"] } as ReplicaSet, "left")).toContain("not asked");
 });
 
-test("a frame is done with a hand, or with every hand in every camera of a replica set", () => {
-  const poses = { [keyText({ camera: "cam0", frame: 2, hand: "right" })]: placed, [keyText({ camera: "cam0", frame: 3, hand: "left" })]: emptyPose() };
-  expect(progressOf(given({}), undefined, poses)).toEqual({ done: 1, total: 4, next: 3, partial: [2] });
+const whole: Pose = emptyPose().map((_, index) => ({ x: index - 1, y: -1, v: index === 3 ? 0 : 2 }));
+
+test("a frame is done when every joint asked for is decided, and one that was only begun is told apart", () => {
+  const at = (frame: number, hand: "right" | "left"): string => keyText({ camera: "cam0", frame, hand });
+  const poses = { [at(2, "right")]: placed, [at(3, "left")]: emptyPose(), [at(4, "right")]: whole, [at(5, "right")]: whole, [at(5, "left")]: placed };
+  expect(progressOf(given({}), undefined, poses, ["right"])).toEqual({ done: 1, total: 4, next: 2, partial: [2, 5] });
+  expect(progressOf(given({}), undefined, poses, ["right", "left"])).toEqual({ done: 0, total: 4, next: 2, partial: [2, 4, 5] });
   const replicas = { frames: [2, 5], cameras: ["cam0"], hands: ["right", "left"] } as unknown as ReplicaSet;
-  expect(progressOf(given({}), replicas, poses)).toEqual({ done: 0, total: 2, next: 2, partial: [2] });
+  expect(progressOf(given({}), replicas, poses, ["right"])).toEqual({ done: 0, total: 2, next: 2, partial: [2, 5] });
+  expect(progressOf(given({}), replicas, { ...poses, [at(5, "left")]: whole }, ["right"])).toEqual({ done: 1, total: 2, next: 2, partial: [2] });
+  expect(describeUnfinished({ done: 1, total: 4, next: 2, partial: [2, 3] })).toBe("1 frame is not begun. 2 frames have undecided joints, the first is 2.");
 });

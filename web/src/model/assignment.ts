@@ -3,7 +3,7 @@
 import type { Assignment, Me, ReplicaSet } from "../api/teams";
 import type { AnnotatorState } from "../state/annotator";
 import { JOINT_COUNT } from "./joints";
-import { decidedCount, parseKey, placedCount } from "./pose";
+import { decidedCount, parseKey } from "./pose";
 
 const ROLES = ["annotator", "reviewer", "lead", "admin"] as const;
 
@@ -29,35 +29,45 @@ export const submittedFrames = (assignments: readonly Assignment[], replicas: Re
 
 /** How far an assignment is. */
 export interface AssignmentProgress {
-  /** Frames in which a hand was marked (of a replica set: every hand in every camera). */
+  /** Frames in which every joint asked for is decided: placed, or said to be outside. */
   readonly done: number;
   readonly total: number;
   /** The first frame that is not done. */
   readonly next: number | null;
-  /** Frames in which joints of a hand that was begun are still undecided. */
+  /** Frames that were begun and are not done. */
   readonly partial: readonly number[];
 }
 
-/** As it is here, before the server has counted. */
-export function progressOf(assignment: Assignment, replicas: ReplicaSet | undefined, poses: AnnotatorState["poses"]): AssignmentProgress {
-  const marked = new Map<number, number>();
+/**
+ * As it is here, before the server has counted: of a range each hand of the recording in one camera at least, and
+ * nothing begun may stay half done; of a replica set every hand in every camera.
+ */
+export function progressOf(assignment: Assignment, replicas: ReplicaSet | undefined, poses: AnnotatorState["poses"], hands: readonly string[]): AssignmentProgress {
+  const whole = new Map<number, Set<string>>();
   const begun = new Set<number>();
+  const isHalf = new Set<number>();
   for (const [text, pose] of Object.entries(poses)) {
-    const { frame } = parseKey(text);
+    const { frame, hand, camera } = parseKey(text);
     const decided = decidedCount(pose);
-    if (decided > 0 && decided < JOINT_COUNT) begun.add(frame);
-    if (placedCount(pose) > 0) marked.set(frame, (marked.get(frame) ?? 0) + 1);
+    if (decided === 0) continue;
+    begun.add(frame);
+    if (decided < JOINT_COUNT) isHalf.add(frame);
+    else whole.set(frame, (whole.get(frame) ?? new Set()).add(replicas ? `${hand}|${camera}` : hand));
   }
-  const needed = replicas ? replicas.cameras.length * replicas.hands.length : 1;
+  const needed = replicas ? replicas.cameras.length * replicas.hands.length : hands.length || 1;
   const frames = framesOf(assignment, replicas);
-  const open = frames.filter((frame) => (marked.get(frame) ?? 0) < needed);
-  return { done: frames.length - open.length, total: frames.length, next: open[0] ?? null, partial: frames.filter((frame) => begun.has(frame)) };
+  const open = frames.filter((frame) => (whole.get(frame)?.size ?? 0) < needed || isHalf.has(frame));
+  return { done: frames.length - open.length, total: frames.length, next: open[0] ?? null, partial: open.filter((frame) => begun.has(frame)) };
 }
 
 /** What is missing for work to be submitted, in words; empty when nothing is. */
 export function describeUnfinished({ done, total, partial }: AssignmentProgress): string {
-  const frames = (count: number): string => (count === 1 ? "1 frame has" : `${count} frames have`);
-  const parts = [total > done ? `${frames(total - done)} no joints yet.` : "", partial.length > 0 ? `${frames(partial.length)} undecided joints, the first is ${partial[0]}.` : ""];
+  const frames = (count: number, one: string, more: string): string => (count === 1 ? `1 frame ${one}` : `${count} frames ${more}`);
+  const untouched = total - done - partial.length;
+  const parts = [
+    untouched > 0 ? `${frames(untouched, "is", "are")} not begun.` : "",
+    partial.length > 0 ? `${frames(partial.length, "has", "have")} undecided joints, the first is ${partial[0]}.` : "",
+  ];
   return parts.filter(Boolean).join(" ");
 }
 

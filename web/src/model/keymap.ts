@@ -67,6 +67,7 @@ export const KEYMAP = [
     ["joint.place", "Place the joint beside its neighbour, then move it with Shift and arrows", "Enter"],
     ["joint.occluded", "Occluded, or visible again", "Q"],
     ["joint.outside", "Outside the image, or back", "O"],
+    ["hand.outside", "The rest of the hand is outside the image", "Shift+O"],
     ["joint.clear", "Clear the joint", "X", "Delete", "Backspace"],
     ["hand.clear", "Clear the whole hand", "Shift+Delete"],
     ["hand.switch", "Other hand", "G"],

@@ -1,6 +1,6 @@
 /** One hand in one image: 21 points in image pixels. Human labels only; predictions have types of their own. */
 
-import type { Side, WirePoint } from "../api/types";
+import type { JointSource, Side, WirePoint } from "../api/types";
 import { JOINT_COUNT } from "./joints";
 
 /** As in COCO: 0 absent, 1 occluded, 2 visible. */
@@ -11,6 +11,8 @@ export interface JointPoint {
   readonly x: number;
   readonly y: number;
   readonly v: Visibility;
+  /** What the person accepted instead of placing the joint; left out: placed by hand. */
+  readonly from?: JointSource;
 }
 
 export type Pose = readonly JointPoint[];
@@ -87,10 +89,20 @@ export const samePose = (a: Pose | undefined, b: Pose | undefined): boolean =>
 /** Hundredths of a pixel are finer than any hand or eye. */
 const round = (value: number): number => Math.round(value * 100) / 100;
 
+/** A point as it waits to be sent: behind its state where it came from, if not from a hand. */
+export type KeptPoint = WirePoint | [...WirePoint, JointSource];
+
 export const toWire = (pose: Pose): WirePoint[] => pose.map(({ x, y, v }) => [round(x), round(y), v]);
 
-export const fromWire = (points: readonly (readonly number[])[]): Pose =>
-  points.map(([x = 0, y = 0, v = 0]) => ({ x, y, v: v >= 2 ? 2 : v >= 1 ? 1 : 0 }));
+export const toKept = (pose: Pose): KeptPoint[] => pose.map(({ x, y, v, from }) => (from ? [round(x), round(y), v, from] : [round(x), round(y), v]));
+
+export const kept = (points: readonly WirePoint[], sources: readonly (JointSource | null)[] | null | undefined): KeptPoint[] =>
+  points.map(([x, y, v], joint) => {
+    const from = sources?.[joint];
+    return from ? [x, y, v, from] : [x, y, v];
+  });
+
+export const fromWire = (points: readonly KeptPoint[]): Pose => points.map(([x, y, v, from]) => (from ? { x, y, v, from } : { x, y, v }));
 
 /** Which hand in which image. */
 export interface PoseKey {

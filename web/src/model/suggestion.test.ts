@@ -32,15 +32,15 @@ test("what somebody placed, or said is outside, is neither suggested again nor m
   const accepted = acceptHand(state, store.get()).poses[keyText(place)];
   expect(accepted?.[0]).toEqual({ x: 1, y: 2, v: 2 });
   expect(accepted?.[4]).toEqual({ x: -1, y: -1, v: 0 });
-  expect(accepted?.[1]).toEqual({ x: 50, y: 1, v: 1 });
-  expect(accepted?.[20]).toEqual({ x: 50, y: 20, v: 2 });
+  expect(accepted?.[1]).toEqual({ x: 50, y: 1, v: 1, from: { kind: "track", label: "track" } });
+  expect(accepted?.[20]).toEqual({ x: 50, y: 20, v: 2, from: { kind: "track", label: "track" } });
 });
 
 test("one joint at a time is accepted and the next open one follows", () => {
   const store = createSuggestionStore();
   suggest(store, [suggestion("fit", 7, 2)]);
   const once = acceptJoint(start(), store.get());
-  expect([once.joint, once.poses[keyText(place)]?.[0]]).toEqual([1, { x: 7, y: 0, v: 2 }]);
+  expect([once.joint, once.poses[keyText(place)]?.[0]]).toEqual([1, { x: 7, y: 0, v: 2, from: { kind: "fit", label: "fit" } }]);
   const twice = acceptJoint(once, store.get());
   expect(acceptJoint(twice, store.get())).toBe(twice);
 });

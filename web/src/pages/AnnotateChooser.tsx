@@ -2,12 +2,12 @@ import { SimpleGrid, Skeleton, Text, Title } from "@mantine/core";
 import { IconPencil } from "@tabler/icons-react";
 import { Link, Navigate } from "react-router";
 import { thumbnailUrl, useRecordings } from "../api/recordings";
-import { formatCount } from "../model/format";
 import { lastPlace } from "../state/lastPlace";
 import { EmptyState } from "./parts/EmptyState";
 import { Failure } from "./parts/Failure";
 import { ImportButton } from "./parts/ImportButton";
 import { useTitle } from "./parts/useTitle";
+import { workText } from "./parts/WorkProgress";
 import classes from "./AnnotateChooser.module.css";
 
 /** "Annotate" without a recording: back to the last one, or a choice. */
@@ -50,7 +50,7 @@ export default function AnnotateChooser() {
                 {recording.name}
               </Text>
               <Text size="sm" className="quiet">
-                {recording.annotated_frames} of {formatCount(recording.frame_count, "frame")} annotated
+                {workText(recording.done_frames, recording.annotated_frames - recording.done_frames, recording.frame_count)}
               </Text>
             </div>
           </Link>

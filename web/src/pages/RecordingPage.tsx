@@ -13,6 +13,7 @@ import type { Recording } from "../api/types";
 import { FrameStrip } from "../canvas/FrameStrip";
 import { annotationRows } from "../model/annotationRows";
 import { formatAgo, formatCount, formatDuration, formatNumber } from "../model/format";
+import { workText } from "./parts/WorkProgress";
 import { fromWire, keyText, type Pose } from "../model/pose";
 import { CameraPicture } from "./parts/CameraPicture";
 import { EditableName } from "./parts/EditableName";
@@ -174,7 +175,7 @@ export function RecordingPage() {
             <Title order={2}>Annotation</Title>
             <Group gap="md">
               <Text size="sm" className="quiet">
-                {recording.annotated_frames} of {formatCount(recording.frame_count, "frame")}; click a frame to annotate it
+                {workText(recording.done_frames, recording.annotated_frames - recording.done_frames, recording.frame_count)}; click a frame to annotate it
               </Text>
               <Button size="xs" variant="subtle" component={Link} to={`/recordings/${recording.id}/check`} leftSection={<IconFlag size={16} aria-hidden />}>
                 Label check

@@ -100,7 +100,7 @@ export function Shell() {
             </Link>
           ))}
         </nav>
-        <Group gap={4} ml="auto" wrap="nowrap">
+        <Group gap={4} ml="auto" wrap="nowrap" miw={0}>
           {!isLinked && (
             <Tooltip label="No live connection to the studio's server; trying again by itself">
               <Group gap={6} px="sm" c="var(--bad-text)" role="status" wrap="nowrap">

@@ -1,11 +1,11 @@
 /** What is not yet acknowledged by the server, kept where a reload or a crash does not reach it. */
 
-import type { WirePoint } from "../api/types";
+import type { KeptPoint } from "../model/pose";
 
 /** One save that the server has not acknowledged. `points` null deletes the annotation. */
 export interface PendingSave {
   readonly operationId: string;
-  readonly points: WirePoint[] | null;
+  readonly points: KeptPoint[] | null;
   /** Revision that the person saw when making it; null when there was no annotation. */
   readonly base: number | null;
   /** It has left at least once, so the server may have it although no answer came: it must not be replaced. */

@@ -1,34 +1,33 @@
-/** Key frames by hand: between two of them the machine proposes. Working notes of this person, kept in the browser. */
+/** Key frames: between two of them the machine proposes. Everybody who marks the recording has the same ones. */
 
 import { createStore, type Store } from "./store";
 
 /** Texts of `keyText`. */
 export type KeyFrames = ReadonlySet<string>;
 
-export function createKeyFrames(recording: string): Store<KeyFrames> {
-  const name = `handloom/key-frames/${recording}`;
-  const read = (): KeyFrames => {
-    try {
-      const found: unknown = JSON.parse(window.localStorage.getItem(name) ?? "[]");
-      return new Set(Array.isArray(found) ? found.filter((key): key is string => typeof key === "string") : []);
-    } catch {
-      return new Set();
-    }
-  };
-  const store = createStore<KeyFrames>(read());
-  store.watch((now) => {
-    try {
-      if (now.size === 0) window.localStorage.removeItem(name);
-      else window.localStorage.setItem(name, JSON.stringify([...now]));
-    } catch {
-      // Without storage they last as long as the page.
-    }
-  });
-  return store;
+export interface KeyFrameStore {
+  readonly store: Store<KeyFrames>;
+  /** Make it one, or none any more; taken back here when the server does not take it. */
+  toggle(key: string): void;
 }
 
-export function toggleKey(store: Store<KeyFrames>, key: string): void {
-  const next = new Set(store.get());
-  if (!next.delete(key)) next.add(key);
-  store.set(next, "person");
+export function createKeyFrames(found: Iterable<string>, send: (key: string, isKey: boolean) => Promise<void>, onFailure: (reason: Error) => void): KeyFrameStore {
+  const store = createStore<KeyFrames>(new Set(found));
+  const put = (key: string, isKey: boolean): void => {
+    const next = new Set(store.get());
+    if (isKey) next.add(key);
+    else next.delete(key);
+    store.set(next, "person");
+  };
+  return {
+    store,
+    toggle(key) {
+      const isKey = !store.get().has(key);
+      put(key, isKey);
+      send(key, isKey).catch((reason: Error) => {
+        put(key, !isKey);
+        onFailure(reason);
+      });
+    },
+  };
 }

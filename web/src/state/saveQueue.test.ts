@@ -1,5 +1,5 @@
 import { afterEach, expect, test, vi } from "vitest";
-import type { WirePoint } from "../api/types";
+import type { KeptPoint } from "../model/pose";
 import { createJournal, findWaiting, type Journal, type PendingSave } from "./journal";
 import { createSaveQueue, type Outcome } from "./saveQueue";
 
@@ -19,7 +19,7 @@ class MemoryStorage implements Storage {
 
 /** A server with revisions and idempotent operations, as the real one promises; `answer` may break the way back. */
 function aServer() {
-  const stored = new Map<string, { points: WirePoint[] | null; revision: number }>();
+  const stored = new Map<string, { points: KeptPoint[] | null; revision: number }>();
   const known = new Map<string, number>();
   const log: PendingSave[] = [];
   return {
@@ -46,7 +46,7 @@ function aServer() {
   };
 }
 
-const points = (x: number): WirePoint[] => [[x, x, 2]];
+const points = (x: number): KeptPoint[] => [[x, x, 2]];
 const settled = () => new Promise((resolve) => setTimeout(resolve, 5));
 const KEY = "0|right|cam0";
 

@@ -3,7 +3,7 @@
  * acknowledged, sent again when the server does not answer, held back when somebody else was faster.
  */
 
-import type { WirePoint } from "../api/types";
+import type { KeptPoint } from "../model/pose";
 import type { Journal, PendingSave } from "./journal";
 
 /** What the server did with a save. */
@@ -18,8 +18,10 @@ export type Outcome =
 
 /** The version that the server holds; points null when it was deleted. */
 export interface Theirs {
-  readonly points: WirePoint[] | null;
+  readonly points: KeptPoint[] | null;
   readonly revision: number | null;
+  /** Who made it, where it is there and known. */
+  readonly author?: string | null;
 }
 
 export type Send = (key: string, save: PendingSave) => Promise<Outcome>;
@@ -46,11 +48,11 @@ export interface SaveQueue {
    * when a save has overtaken the loading: load again. `isFinal` takes it as it is, because others may have deleted.
    */
   learn(revisions: ReadonlyMap<string, number>, isFinal?: boolean): boolean;
-  put(key: string, points: WirePoint[] | null): void;
+  put(key: string, points: KeptPoint[] | null): void;
   /** What waits, newest version by key. */
-  waiting(): ReadonlyMap<string, WirePoint[] | null>;
+  waiting(): ReadonlyMap<string, KeptPoint[] | null>;
   /** Settle a conflict with these points (null deletes); "theirs" drops what waits. */
-  settle(key: string, choice: WirePoint[] | null | "theirs"): void;
+  settle(key: string, choice: KeptPoint[] | null | "theirs"): void;
   /** Drop what the server refuses to take. */
   discard(key: string): void;
   /** Try everything now. */

@@ -1,10 +1,10 @@
 /** An open recording in the annotator: its store, with undo and saving watching it. */
 
 import type { Annotation, Recording, Side } from "../api/types";
-import { firstOpenJoint, fromWire, keyText, toWire, type Pose } from "../model/pose";
+import { firstOpenJoint, fromWire, kept, keyText, toKept, type Pose } from "../model/pose";
 import { changedKeys, type AnnotatorState } from "./annotator";
 import { startInterpolation } from "./interpolation";
-import { createKeyFrames, type KeyFrames } from "./keyFrames";
+import type { KeyFrameStore } from "./keyFrames";
 import type { SaveQueue } from "./saveQueue";
 import { createStore, type Store } from "./store";
 import { createSuggestionStore, type SuggestionStore } from "./suggestions";
@@ -16,7 +16,7 @@ export interface Session {
   readonly queue: SaveQueue;
   /** What machines propose: never saved, until a person accepts it. */
   readonly suggestions: SuggestionStore;
-  readonly keyFrames: Store<KeyFrames>;
+  readonly keyFrames: KeyFrameStore;
   close(): void;
 }
 
@@ -31,9 +31,9 @@ export const revisionsOf = (annotations: readonly Annotation[]): Map<string, num
   new Map(annotations.map((item) => [keyText(item), item.revision]));
 
 /** Annotations as loaded, with what still waits in the queue on top. */
-export function openSession(recording: Recording, annotations: readonly Annotation[], queue: SaveQueue, start: Start): Session {
+export function openSession(recording: Recording, annotations: readonly Annotation[], queue: SaveQueue, start: Start, keyFrames: KeyFrameStore): Session {
   const poses: Record<string, Pose> = {};
-  for (const item of annotations) poses[keyText(item)] = fromWire(item.points);
+  for (const item of annotations) poses[keyText(item)] = fromWire(kept(item.points, item.sources));
   for (const [key, points] of queue.waiting()) {
     if (points) poses[key] = fromWire(points);
     else delete poses[key];
@@ -53,13 +53,12 @@ export function openSession(recording: Recording, annotations: readonly Annotati
   });
   const undo = createUndoStack(store);
   const suggestions = createSuggestionStore();
-  const keyFrames = createKeyFrames(recording.id);
-  const stopInterpolation = startInterpolation(store, keyFrames, suggestions, cameras);
+  const stopInterpolation = startInterpolation(store, keyFrames.store, suggestions, cameras);
   const stopSaving = store.watch((now, before, origin) => {
     if (origin === "server") return;
     for (const key of changedKeys(now.poses, before.poses)) {
       const pose = now.poses[key];
-      queue.put(key, pose ? toWire(pose) : null);
+      queue.put(key, pose ? toKept(pose) : null);
     }
   });
   return {
@@ -83,12 +82,12 @@ export function settleConflict(session: Session, key: string, choice: "mine" | "
   const state = session.store.get();
   if (choice === "mine") {
     const mine = state.poses[key];
-    session.queue.settle(key, mine ? toWire(mine) : null);
+    session.queue.settle(key, mine ? toKept(mine) : null);
     return;
   }
   const pose = choice === "theirs" ? (theirs.points ? fromWire(theirs.points) : undefined) : choice;
   const { [key]: replaced, ...others } = state.poses;
   void replaced;
   session.store.set({ ...state, draft: null, poses: pose ? { ...others, [key]: pose } : others }, "server");
-  session.queue.settle(key, choice === "theirs" ? "theirs" : toWire(choice));
+  session.queue.settle(key, choice === "theirs" ? "theirs" : toKept(choice));
 }

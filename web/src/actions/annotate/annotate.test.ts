@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { emptyPose, statusOf } from "../../model/pose";
+import { emptyPose, statusOf, toWire } from "../../model/pose";
 import { activePose, type AnnotatorState } from "../../state/annotator";
 import { createStore } from "../../state/store";
 import { createUndoStack } from "../../state/undo";
@@ -72,7 +72,9 @@ test("clearing the only joint removes the annotation", () => {
 test("B brings the last annotated pose of the same hand, flags and all", () => {
   const before = cycleVisibility(placed(21), 3);
   const later = bringPose(goToFrame(before, 4));
-  expect(activePose(later)).toEqual(activePose(before));
+  expect(toWire(activePose(later))).toEqual(toWire(activePose(before)));
+  expect(activePose(later)[3]?.from).toEqual({ kind: "copy", label: "frame 0" });
+  expect(activePose(nudgeJoint(selectJoint(later, 3), { x: 1, y: 0 }))[3]?.from, "moved by hand").toBeUndefined();
   expect(bringPose(switchHand(goToFrame(before, 4))).poses).toBe(before.poses);
 });
 

@@ -1,4 +1,4 @@
-import { isEmpty, parseKey } from "../../model/pose";
+import { isEmpty, parseKey, statusOf, type Pose } from "../../model/pose";
 import { withActivePose, type Action, type AnnotatorState } from "../../state/annotator";
 
 /** Frames of this camera with an annotation of the given hand (or any), in order. */
@@ -10,9 +10,12 @@ export function annotatedFrames(state: AnnotatorState, hand?: string): number[] 
   return [...new Set(frames)].sort((a, b) => a - b);
 }
 
+/** The pose as another frame gets it: its joints say that nobody placed them there. */
+export const copyOf = (pose: Pose, frame: number): Pose => pose.map((point) => (statusOf(point) === "unset" ? point : { ...point, from: { kind: "copy", label: `frame ${frame}` } }));
+
 /** The pose of the last annotated frame before this one, flags and all. One step for undo. */
 export const bringPose: Action = (state) => {
   const from = annotatedFrames(state, state.hand).findLast((frame) => frame < state.frame);
   const pose = from === undefined ? undefined : state.poses[`${from}|${state.hand}|${state.camera}`];
-  return pose ? withActivePose(state, pose) : state;
+  return pose && from !== undefined ? withActivePose(state, copyOf(pose, from)) : state;
 };

@@ -14,7 +14,7 @@ export const dragJoint: Action<{ joint: number; to: Point }> = (state, { joint, 
 export const dragHand: Action<Point> = (state, { x, y }) => {
   const start = poseAt(state, activeKey(state));
   if (!start) return state;
-  return { ...state, draft: start.map((point) => (hasPlace(point) ? { ...point, x: point.x + x, y: point.y + y } : point)) };
+  return { ...state, draft: start.map((point) => (hasPlace(point) ? { x: point.x + x, y: point.y + y, v: point.v } : point)) };
 };
 
 /** The drag is over: keep what is drawn. */
@@ -28,5 +28,5 @@ export const nudgeJoint: Action<Point> = (state, { x, y }) => {
   const pose = activePose(state);
   const point = pose[state.joint];
   if (!isPlaced(point)) return state;
-  return withActivePose(state, withJoint(pose, state.joint, { ...point, x: point.x + x, y: point.y + y }));
+  return withActivePose(state, withJoint(pose, state.joint, { x: point.x + x, y: point.y + y, v: point.v }));
 };

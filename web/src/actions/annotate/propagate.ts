@@ -1,5 +1,6 @@
 import { isEmpty, keyText, type Pose } from "../../model/pose";
 import { activeKey, poseAt, type Action, type AnnotatorState } from "../../state/annotator";
+import { copyOf } from "./bring";
 import { goToFrame } from "./select";
 
 /** The frames after this one up to `last` (or the end) in which this hand has no annotation yet, up to the next that has one. */
@@ -15,7 +16,7 @@ export function openFramesAhead(state: AnnotatorState, last = state.frameCount -
 const carried = (state: AnnotatorState, pose: Pose, frames: readonly number[]): AnnotatorState => ({
   ...state,
   draft: null,
-  poses: { ...state.poses, ...Object.fromEntries(frames.map((frame) => [keyText({ ...activeKey(state), frame }), pose])) },
+  poses: { ...state.poses, ...Object.fromEntries(frames.map((frame) => [keyText({ ...activeKey(state), frame }), copyOf(pose, state.frame)])) },
 });
 
 /** Carry this pose on to the next frame and go there. A frame that has one already is only gone to. */

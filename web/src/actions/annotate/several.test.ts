@@ -10,6 +10,7 @@ import { createUndoStack } from "../../state/undo";
 import { acceptBetween } from "./acceptBetween";
 import { endDrag } from "./move";
 import { placeIn } from "./place";
+import { copyOf } from "./bring";
 import { openFramesAhead, propagateOn, propagateTo } from "./propagate";
 import { swapHands } from "./swap";
 import { turnHand } from "./turn";
@@ -45,7 +46,7 @@ test("a pose is carried up to the next annotated frame and never over it", () =>
   expect(Object.keys(all.poses).length).toBe(5);
   expect(all.poses[key(7)]).toBe(state.poses[key(7)]);
   const once = propagateOn(state);
-  expect([once.frame, once.poses[key(4)]]).toEqual([4, pose(1)]);
+  expect([once.frame, once.poses[key(4)]]).toEqual([4, copyOf(pose(1), 3)]);
   expect(propagateOn({ ...state, frame: 6 }).poses).toBe(state.poses);
 });
 
@@ -88,7 +89,7 @@ test("between key frames positions are proposed, follow their ends, and acceptin
   expect(here(3)[0]?.px).toEqual([4, 0]);
   annotator.set(acceptBetween(annotator.get(), [2, 6]), "person");
   expect([3, 4, 5].map((frame) => annotator.get().poses[key(frame)]?.[0]?.x)).toEqual([4, 99, 12]);
-  expect(annotator.get().poses[key(4)]?.[1]).toEqual({ x: 9, y: 2, v: 2 });
+  expect(annotator.get().poses[key(4)]?.[1]).toEqual({ x: 9, y: 2, v: 2, from: { kind: "interpolation", label: "key frames 2 and 6" } });
   expect(here(4).every((joint) => joint === null)).toBe(true);
   undo.undo();
   expect(Object.keys(annotator.get().poses).sort()).toEqual([key(2), key(4), key(6)].sort());

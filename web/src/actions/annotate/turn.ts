@@ -19,7 +19,7 @@ export const turnHand: Action<Turn> = (state, { about, angle, factor }) => {
     draft: start.map((point) => {
       if (!hasPlace(point)) return point;
       const [x, y] = [point.x - about.x, point.y - about.y];
-      return { ...point, x: about.x + cos * x - sin * y, y: about.y + sin * x + cos * y };
+      return { v: point.v, x: about.x + cos * x - sin * y, y: about.y + sin * x + cos * y };
     }),
   };
 };

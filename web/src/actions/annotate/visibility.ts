@@ -51,3 +51,10 @@ export const toggleOutside: Action = (state) => {
       return setStatus(state, state.joint, "outside");
   }
 };
+
+/** Whatever nobody has decided of the hand is not in the image: a hand that is not there at all takes one key. */
+export const restOutside: Action = (state) => {
+  const pose = activePose(state);
+  const rest = pose.map((point) => (statusOf(point) === "unset" ? withStatus(point, "outside") : point));
+  return pose.some((point) => statusOf(point) === "unset") ? withActivePose(state, rest) : state;
+};

@@ -1,4 +1,4 @@
-import { Button, Progress, Text, TextInput, Tooltip } from "@mantine/core";
+import { Button, Text, TextInput, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { IconEyeOff, IconMessage } from "@tabler/icons-react";
 import { useEffect, useState } from "react";
@@ -9,6 +9,7 @@ import { describeUnfinished, hasRole, lockReason, progressOf } from "../../model
 import { jointLabel } from "../../model/joints";
 import { useHint } from "../../state/keys";
 import { StateBadge } from "../projects/StateBadge";
+import { WorkProgress } from "../parts/WorkProgress";
 import { useActions, useAnnotating } from "./annotating";
 import classes from "./AssignmentBar.module.css";
 import { useAssignmentHere } from "./useAssignmentHere";
@@ -17,7 +18,7 @@ type Writing = "comment" | "return";
 
 /** The work that this frame belongs to: how far it is, and what comes next. Draws nothing where nobody was given anything. */
 export function AssignmentBar() {
-  const { state, saving, act, setLock } = useAnnotating();
+  const { recording, state, saving, act, setLock } = useAnnotating();
   const { me, assignment, replicas, blind, failure } = useAssignmentHere();
   const change = useTeamChange<Assignment>();
   const hint = useHint();
@@ -40,7 +41,7 @@ export function AssignmentBar() {
   }, [reason, setLock]);
   useEffect(() => setSure(false), [assignment?.id, state.frame]);
 
-  const progress = assignment && progressOf(assignment, replicas, state.poses);
+  const progress = assignment && progressOf(assignment, replicas, state.poses, recording.hands);
   const unfinished = progress ? describeUnfinished(progress) : "";
   const isMine = assignment !== undefined && assignment.account_id === me?.id;
   const isOpen = assignment?.state === "open" || assignment?.state === "returned";
@@ -109,9 +110,9 @@ export function AssignmentBar() {
           {!isMine && ` · ${assignment.account}`}
         </Link>
       </Tooltip>
-      <Progress value={(100 * progress.done) / progress.total} w={120} aria-label={`${progress.done} of ${progress.total} frames done`} />
+      <WorkProgress done={progress.done} partial={progress.partial.length} total={progress.total} w={120} />
       <Text size="xs" className="quiet" style={{ whiteSpace: "nowrap" }} data-testid="assignment-progress">
-        {progress.done} of {progress.total} done
+        {progress.done} of {progress.total} done{progress.partial.length > 0 && `, ${progress.partial.length} begun`}
       </Text>
       {writing ? (
         <Words

@@ -37,7 +37,7 @@ export function ConflictCard({ poseKey, mine, theirs, isHere, onGo, onSettle }: 
   return (
     <section className={classes.card} data-over-picture aria-label="Two versions" role="group">
       <Text fw={600} size="sm">
-        The {hand} hand of frame {frame} was {theirs.points ? "changed" : "deleted"} elsewhere
+        {theirs.points && theirs.author ? `${theirs.author} changed` : theirs.points ? "Somebody changed" : "Somebody deleted"} the {hand} hand of frame {frame}
       </Text>
       <Text size="xs" className="quiet">
         Camera {camera}; {joints.length} {joints.length === 1 ? "joint differs" : "joints differ"}. Both versions are safe until you choose.

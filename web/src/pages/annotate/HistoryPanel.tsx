@@ -4,19 +4,19 @@ import { useSearchParams } from "react-router";
 import { restorePose } from "../../actions/annotate/restore";
 import { useAnnotationHistory } from "../../api/annotations";
 import { formatAgo, formatCount } from "../../model/format";
-import { readHistory, type HistoryEntry } from "../../model/history";
+import { describeSources, readHistory, type HistoryEntry } from "../../model/history";
 import { jointLabel } from "../../model/joints";
 import { decidedCount, keyText } from "../../model/pose";
 import { activeKey } from "../../state/annotator";
 import { useAnnotating } from "./annotating";
 import classes from "./HistoryPanel.module.css";
 
-function describeChange({ isDeleted, changed, sameAs, pose }: HistoryEntry): string {
+function describeChange({ isDeleted, changed, sameAs, isNew }: HistoryEntry): string {
   if (isDeleted) return "cleared";
   if (sameAs !== null) return `as in revision ${sameAs} again`;
   const [only] = changed;
   if (changed.length === 1 && only !== undefined) return jointLabel(only);
-  return changed.length === decidedCount(pose) ? `${formatCount(changed.length, "joint")} marked` : `${formatCount(changed.length, "joint")} changed`;
+  return `${formatCount(changed.length, "joint")} ${isNew ? "marked" : "changed"}`;
 }
 
 /** Every version of the active hand: look at one as a ghost, make it the newest again. */
@@ -58,6 +58,7 @@ export function HistoryPanel() {
               <span className={classes.what}>{describeChange(entry)}</span>
               <span className={classes.who}>
                 {entry.author}, {formatAgo(entry.at)}
+                {describeSources(entry) !== "" && <span className={classes.from}>{describeSources(entry)}</span>}
               </span>
               <span className={classes.count}>{index === 0 ? "now" : `${decidedCount(entry.pose)}/21`}</span>
             </button>

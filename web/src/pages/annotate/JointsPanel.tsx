@@ -1,6 +1,7 @@
 import { ScrollArea, Tooltip } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { selectJoint, switchHand } from "../../actions/annotate/select";
+import { describeSource } from "../../model/history";
 import { HANDS, JOINTS, jointColor, jointLabel } from "../../model/joints";
 import { decidedCount, keyText, statusOf, type JointStatus } from "../../model/pose";
 import { useHint } from "../../state/keys";
@@ -56,6 +57,8 @@ export function JointsPanel() {
           const status = statusOf(pose[joint]);
           const isActive = joint === state.joint;
           const shown = isActive && status === "unset" ? "next" : STATUS[status].text;
+          const source = pose[joint]?.from;
+          const from = source && status !== "unset" ? `accepted: ${describeSource(source)}` : undefined;
           const startsFinger = joint > 0 && (joint - 1) % 4 === 0;
           return (
             <button
@@ -67,11 +70,13 @@ export function JointsPanel() {
               data-first={startsFinger}
               data-status={status}
               aria-current={isActive ? "step" : undefined}
-              aria-label={`${jointLabel(joint)}, ${STATUS[status].help}`}
+              aria-label={`${jointLabel(joint)}, ${STATUS[status].help}${from ? `, ${from}` : ""}`}
+              title={from}
               onClick={() => act(selectJoint, joint)}
             >
               <StatusMark status={status} color={jointColor(joint)} />
               <span className="one-line">{jointLabel(joint)}</span>
+              {from && <span className={classes.accepted} aria-hidden />}
               <JointError joint={joint} />
               <span className={classes.status} data-text={shown} aria-hidden />
             </button>

@@ -6,12 +6,11 @@ import { placeBeside } from "../../actions/annotate/place";
 import { propagateOn } from "../../actions/annotate/propagate";
 import { goToFrame, selectCamera, selectFinger, stepJoint, switchHand } from "../../actions/annotate/select";
 import { swapHands } from "../../actions/annotate/swap";
-import { toggleOccluded, toggleOutside } from "../../actions/annotate/visibility";
+import { restOutside, toggleOccluded, toggleOutside } from "../../actions/annotate/visibility";
 import type { Recording } from "../../api/types";
 import { keyFramesOf, spanAt } from "../../model/interpolation";
 import { isEmpty, keyText } from "../../model/pose";
 import { activeKey, poseAt, type Action, type AnnotatorState } from "../../state/annotator";
-import { toggleKey } from "../../state/keyFrames";
 import type { Session } from "../../state/session";
 import type { Actions, Annotating } from "./annotating";
 
@@ -63,6 +62,7 @@ export function annotateActions(session: Session, recording: Recording, act: Ann
     ...Object.fromEntries(Object.entries(NUDGES).map(([id, by]) => [id, () => act(nudgeJoint, by)])),
     "joint.occluded": simple(toggleOccluded),
     "joint.outside": simple(toggleOutside),
+    "hand.outside": simple(restOutside),
     "joint.clear": simple(clearJoint),
     "hand.clear": simple(clearHand),
     "hand.switch": simple(switchHand),
@@ -71,11 +71,11 @@ export function annotateActions(session: Session, recording: Recording, act: Ann
     "hand.swap": simple(swapHands),
     "key.mark": () => {
       const here = activeKey(store.get());
-      if (!isEmpty(poseAt(store.get(), here))) toggleKey(session.keyFrames, keyText(here));
+      if (!isEmpty(poseAt(store.get(), here))) session.keyFrames.toggle(keyText(here));
     },
     "key.accept": () => {
       const state = store.get();
-      const span = spanAt(keyFramesOf(session.keyFrames.get(), state.poses, activeKey(state)), state.frame);
+      const span = spanAt(keyFramesOf(session.keyFrames.store.get(), state.poses, activeKey(state)), state.frame);
       if (span) act(acceptBetween, span);
     },
     "drag.cancel": simple(cancelDrag),

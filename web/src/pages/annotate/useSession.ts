@@ -1,13 +1,15 @@
 import { useQueryClient } from "@tanstack/react-query";
 import { useCallback, useEffect, useState, useSyncExternalStore } from "react";
-import { annotationKeys, fetchAnnotations } from "../../api/annotations";
+import { notifications } from "@mantine/notifications";
+import { annotationKeys, fetchAnnotations, fetchKeyFrames, sendKeyFrame } from "../../api/annotations";
 import { ApiError } from "../../api/client";
 import { recordingKeys } from "../../api/recordings";
 import type { Recording } from "../../api/types";
 import type { AnnotatorState } from "../../state/annotator";
 import { queueOf, scopeOf } from "../../state/saving";
 import type { SaveStatus } from "../../state/saveQueue";
-import type { KeyFrames } from "../../state/keyFrames";
+import { createKeyFrames, type KeyFrames } from "../../state/keyFrames";
+import { keyText, parseKey } from "../../model/pose";
 import type { SuggestionsState } from "../../state/suggestions";
 import { openSession, revisionsOf, type Session, type Start } from "../../state/session";
 
@@ -32,11 +34,16 @@ export function useSession(recording: Recording | undefined, start: () => Start,
     const queue = queueOf(scopeOf(recording.id, replica));
     const open = async (): Promise<void> => {
       for (let tries = 0; tries < 3; tries += 1) {
-        const annotations = await fetchAnnotations(recording.id, replica);
+        const [annotations, keys] = await Promise.all([fetchAnnotations(recording.id, replica), fetchKeyFrames(recording.id, replica)]);
         if (isGone) return;
         // A save of an earlier visit may arrive while we load: then load again.
         if (!queue.learn(revisionsOf(annotations), tries === 2)) continue;
-        opened = openSession(recording, annotations, queue, start());
+        const keyFrames = createKeyFrames(
+          keys.map(keyText),
+          (key, isKey) => sendKeyFrame(recording.id, parseKey(key), isKey, replica),
+          (reason) => notifications.show({ color: "red", title: "The key frame was not kept", message: reason.message }),
+        );
+        opened = openSession(recording, annotations, queue, start(), keyFrames);
         setSession(opened);
         return;
       }
@@ -76,4 +83,4 @@ export const useSuggestions = (session: Session): SuggestionsState =>
   useSyncExternalStore(useCallback((tell) => session.suggestions.watch(tell), [session]), session.suggestions.get);
 
 export const useKeyFrames = (session: Session): KeyFrames =>
-  useSyncExternalStore(useCallback((tell) => session.keyFrames.watch(tell), [session]), session.keyFrames.get);
+  useSyncExternalStore(useCallback((tell) => session.keyFrames.store.watch(tell), [session]), session.keyFrames.store.get);

@@ -121,7 +121,7 @@ export default function EvaluationsPage() {
           </Menu>
         </Group>
       </Group>
-      <Filters choice={choice} cameras={data?.cameras ?? []} onChange={change} />
+      <Filters choice={choice} comparison={data} onChange={change} />
       {error ? (
         <Failure what="These tracks could not be evaluated" error={error} safe="Tracks and annotations are as they were." onRetry={() => void refetch()}>
           <Button variant="default" onClick={chooser.open}>

@@ -1,15 +1,17 @@
 import { Checkbox, Group, NumberInput, SegmentedControl, Select, Tooltip } from "@mantine/core";
-import type { EvaluationChoice } from "../../api/evaluations";
+import type { Comparison, EvaluationChoice } from "../../api/evaluations";
+import { LabelsPicker } from "./LabelsPicker";
 import classes from "./Evaluations.module.css";
 
 interface FiltersProps {
   choice: EvaluationChoice;
-  cameras: readonly string[];
+  comparison: Comparison | undefined;
   onChange: (part: Partial<EvaluationChoice>) => void;
 }
 
 /** Which joints count, for all tables and curves of the page and for its reports. */
-export function Filters({ choice, cameras, onChange }: FiltersProps) {
+export function Filters({ choice, comparison, onChange }: FiltersProps) {
+  const cameras = comparison?.cameras ?? [];
   return (
     <Group gap="md" className={classes.filters} role="group" aria-label="Which joints count">
       <SegmentedControl
@@ -49,6 +51,7 @@ export function Filters({ choice, cameras, onChange }: FiltersProps) {
         <Checkbox size="xs" label="Without the first frame" checked={choice.withoutStart} onChange={(event) => onChange({ withoutStart: event.currentTarget.checked })} />
       </Tooltip>
       <Group gap={8} ml="auto">
+        {comparison && <LabelsPicker comparison={comparison} snapshots={choice.snapshots} onChange={(snapshots) => onChange({ snapshots })} />}
         <NumberInput
           size="xs"
           w={128}

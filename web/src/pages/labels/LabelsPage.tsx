@@ -3,10 +3,10 @@ import { IconPencil } from "@tabler/icons-react";
 import { Link, useParams, useSearchParams } from "react-router";
 import { useSnapshots } from "../../api/labels";
 import { useRecording } from "../../api/recordings";
-import { formatCount } from "../../model/format";
 import { Failure } from "../parts/Failure";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { useTitle } from "../parts/useTitle";
+import { workText } from "../parts/WorkProgress";
 import { Comparison } from "./Comparison";
 import { ExportCard } from "./ExportCard";
 import { ImportCard } from "./ImportCard";
@@ -39,7 +39,7 @@ export function LabelsPage() {
           </Anchor>
           <Title order={1}>Labels</Title>
           <Text size="sm" className="quiet" mt={4}>
-            {recording.annotated_frames} of {formatCount(recording.frame_count, "frame")} marked
+            {workText(recording.done_frames, recording.annotated_frames - recording.done_frames, recording.frame_count)}
           </Text>
         </div>
         <Button variant="default" component={Link} to={`/recordings/${recording.id}/annotate`} leftSection={<IconPencil size={16} aria-hidden />}>

@@ -1,5 +1,5 @@
 import { Button, Group, Stack, Text, Title } from "@mantine/core";
-import { IconAlertTriangle, IconPlugConnectedX } from "@tabler/icons-react";
+import { IconAlertTriangle, IconLock, IconPlugConnectedX } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import { ApiError } from "../../api/client";
 
@@ -16,21 +16,22 @@ interface FailureProps {
 /** What happened, what is safe, and the next step. */
 export function Failure({ what, error, safe, onRetry, children }: FailureProps) {
   const isOffline = error instanceof ApiError && error.isOffline;
-  const Icon = isOffline ? IconPlugConnectedX : IconAlertTriangle;
+  const isForbidden = error instanceof ApiError && error.status === 403;
+  const Icon = isOffline ? IconPlugConnectedX : isForbidden ? IconLock : IconAlertTriangle;
   return (
     <Stack align="center" gap="sm" py={48} px="md" ta="center" role="alert">
-      <Icon size={40} stroke={1.5} color="var(--bad-text)" aria-hidden />
-      <Title order={2}>{what}</Title>
+      <Icon size={40} stroke={1.5} color={isForbidden ? "var(--text-quiet)" : "var(--bad-text)"} aria-hidden />
+      <Title order={2}>{isForbidden ? "This is not open to you now" : what}</Title>
       <Text maw={560} className="quiet" style={{ overflowWrap: "anywhere" }}>
         {error instanceof Error ? error.message : String(error)}
       </Text>
-      {safe && (
+      {safe && !isForbidden && (
         <Text maw={560} size="sm" className="quiet">
           {safe}
         </Text>
       )}
       <Group mt="sm" justify="center">
-        {onRetry && (
+        {onRetry && !isForbidden && (
           <Button variant="default" onClick={onRetry}>
             Try again
           </Button>

@@ -1,6 +1,8 @@
 import { Button, Group, Kbd, Modal, Stack, Text, Title } from "@mantine/core";
 import { IconKeyboard } from "@tabler/icons-react";
 import { Fragment } from "react";
+import { useLocation } from "react-router";
+import type { Scope } from "../../model/keymap";
 import { useCurrentKeymap } from "../../state/keys";
 import classes from "./KeyboardMap.module.css";
 
@@ -54,15 +56,28 @@ function Row({ keys, label }: { keys: readonly string[]; label: string }) {
   );
 }
 
+/** Whose keys a page answers, by its address. */
+function scopeOf(path: string): Scope | null {
+  if (path.endsWith("/annotate")) return "annotate";
+  const scopes: readonly (readonly [string, Scope])[] = [
+    ["/tracks/", "track"],
+    ["/curate", "curate"],
+    ["/scans/", "scan"],
+  ];
+  return scopes.find(([start]) => path.startsWith(start))?.[1] ?? null;
+}
+
 /** The keyboard map, made from the same table as the handlers. */
 export function KeyboardMap({ isOpen, onClose, onSettings }: { isOpen: boolean; onClose: () => void; onSettings: () => void }) {
   const map = useCurrentKeymap();
-  const groups = [...new Set(map.map((binding) => binding.group))];
+  const scope = scopeOf(useLocation().pathname);
+  const here = map.filter((binding) => binding.scope === scope);
+  const groups = [...new Set([...here, ...map].map((binding) => binding.group))];
   return (
     <Modal opened={isOpen} onClose={onClose} title={<Title order={2}>Keyboard map</Title>} size={1040}>
       <Group justify="space-between" mb="md">
         <Text size="sm" className="quiet">
-          Every key can be put elsewhere.
+          {scope ? "The keys of this page come first. " : ""}Every key can be put elsewhere.
         </Text>
         <Button variant="default" size="xs" leftSection={<IconKeyboard size={15} />} onClick={onSettings}>
           Change keys

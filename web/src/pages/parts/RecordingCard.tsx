@@ -1,4 +1,4 @@
-import { Group, Progress, Text, Tooltip } from "@mantine/core";
+import { Group, Text, Tooltip } from "@mantine/core";
 import { useState } from "react";
 import { Link } from "react-router";
 import type { Recording } from "../../api/types";
@@ -6,6 +6,7 @@ import { formatCount, formatNumber } from "../../model/format";
 import { HandBadge } from "./HandBadge";
 import { HoverPlay } from "./HoverPlay";
 import classes from "./RecordingCard.module.css";
+import { WorkProgress } from "./WorkProgress";
 
 /** What the best track is worth, in one line: error in px when there are annotations, else the depth residual. */
 export function trackWorth(track: Recording["best_track"]): string {
@@ -17,7 +18,8 @@ export function trackWorth(track: Recording["best_track"]): string {
 
 export function RecordingCard({ recording }: { recording: Recording }) {
   const [isPlaying, setPlaying] = useState(false);
-  const part = recording.frame_count > 0 ? recording.annotated_frames / recording.frame_count : 0;
+  const done = recording.done_frames;
+  const begun = recording.annotated_frames - done;
   return (
     <Link
       to={`/recordings/${recording.id}`}
@@ -44,10 +46,10 @@ export function RecordingCard({ recording }: { recording: Recording }) {
             ))}
           </Group>
         </Group>
-        <Progress value={part * 100} size={4} my={4} aria-label={`${recording.annotated_frames} of ${recording.frame_count} frames annotated`} />
+        <WorkProgress done={done} partial={begun} total={recording.frame_count} size={4} my={4} />
         <Group gap="sm" justify="space-between" wrap="nowrap" className="quiet">
           <Text size="xs" className="one-line">
-            {recording.annotated_frames === 0 ? "no annotations" : `${recording.annotated_frames} annotated`}
+            {recording.annotated_frames === 0 ? "no annotations" : `${done} annotated${begun > 0 ? `, ${begun} begun` : ""}`}
           </Text>
           <Text size="xs" className="one-line">
             {trackWorth(recording.best_track)}

@@ -1,9 +1,10 @@
-import { Button, Progress, Skeleton, Stack, Text, Title } from "@mantine/core";
+import { Button, Skeleton, Stack, Text, Title } from "@mantine/core";
 import { Link } from "react-router";
 import { assignmentAddress, useAssignments, useComments, type Assignment, type AssignmentState } from "../../api/teams";
 import { formatCount } from "../../model/format";
 import classes from "./projects.module.css";
 import { StateBadge } from "./StateBadge";
+import { WorkProgress, workText } from "../parts/WorkProgress";
 
 /** What came back goes first: somebody waits for it. */
 const ORDER: readonly AssignmentState[] = ["returned", "open", "submitted"];
@@ -47,12 +48,12 @@ function Work({ assignment }: { assignment: Assignment }) {
         )}
       </div>
       <div className={classes.progress}>
-        <Progress value={(100 * assignment.frames_done) / assignment.frames} aria-label={`${assignment.frames_done} of ${assignment.frames} frames done`} />
+        <WorkProgress done={assignment.frames_done} partial={assignment.frames_partial} total={assignment.frames} />
         <Text size="xs" className="quiet" mt={4}>
-          {assignment.frames_done} of {formatCount(assignment.frames, "frame")}
+          {workText(assignment.frames_done, assignment.frames_partial, assignment.frames)}
         </Text>
       </div>
-      <Button size="xs" variant={isToDo ? "filled" : "default"} component={Link} to={assignmentAddress(assignment, why?.frame ?? assignment.next_frame)}>
+      <Button size="xs" miw={136} variant={isToDo ? "filled" : "default"} component={Link} to={assignmentAddress(assignment, why?.frame ?? assignment.next_frame)}>
         {isToDo ? (assignment.next_frame === null ? "Look through and submit" : `Go on at frame ${assignment.next_frame}`) : "Look at it"}
       </Button>
     </div>

@@ -1,14 +1,14 @@
-import { Button, NumberInput, Progress, Select, Stack, Table, Text, TextInput, Title } from "@mantine/core";
+import { Button, NumberInput, Select, Stack, Table, Text, TextInput, Title } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { useState } from "react";
 import { Link } from "react-router";
 import { assignmentAddress, useAssignments, usePeople, useProjectRecordings, useTeamChange, type Assignment, type Project } from "../../api/teams";
-import { formatCount } from "../../model/format";
 import { offerUndo, tellFailure } from "./offerUndo";
 import { Loading } from "./ProjectPage";
 import classes from "./projects.module.css";
 import { EditAssignment } from "./EditAssignment";
 import { StateBadge } from "./StateBadge";
+import { WorkProgress, workText } from "../parts/WorkProgress";
 
 /** Who marks which frames, person by person, and how far they are. */
 export function ProjectAssignments({ project, mayChange }: { project: Project; mayChange: boolean }) {
@@ -41,6 +41,7 @@ function PersonWork({ person, work, mayChange }: { person: string; work: readonl
   const change = useTeamChange();
   const [edited, setEdited] = useState<string | null>(null);
   const done = work.reduce((sum, one) => sum + one.frames_done, 0);
+  const partial = work.reduce((sum, one) => sum + one.frames_partial, 0);
   const frames = work.reduce((sum, one) => sum + one.frames, 0);
   const withdraw = async (one: Assignment): Promise<void> => {
     await change.mutateAsync({ method: "DELETE", path: `/assignments/${one.id}`, revision: one.revision });
@@ -53,9 +54,9 @@ function PersonWork({ person, work, mayChange }: { person: string; work: readonl
           {person}
         </Text>
         <div className={classes.progress} style={{ width: 240 }}>
-          <Progress value={(100 * done) / Math.max(1, frames)} aria-label={`${person}: ${done} of ${frames} frames done`} />
+          <WorkProgress done={done} partial={partial} total={frames} />
           <Text size="xs" className="quiet" mt={4}>
-            {done} of {formatCount(frames, "frame")}
+            {workText(done, partial, frames)}
           </Text>
         </div>
       </div>
@@ -86,9 +87,10 @@ function PersonWork({ person, work, mayChange }: { person: string; work: readonl
                 <Table.Td ta="right" style={{ whiteSpace: "nowrap" }}>
                   {one.open_comments > 0 && `${one.open_comments} to resolve · `}
                   {one.frames_done} of {one.frames}
+                  {one.frames_partial > 0 && `, ${one.frames_partial} begun`}
                 </Table.Td>
-                <Table.Td w={176} ta="right" style={{ whiteSpace: "nowrap" }}>
-                  {mayChange && (
+                {mayChange && (
+                  <Table.Td w={176} ta="right" style={{ whiteSpace: "nowrap" }}>
                     <>
                       <Button size="compact-xs" variant="subtle" color="gray" aria-label={`Change the work of ${person} on ${one.recording}`} onClick={() => setEdited(one.id)}>
                         Change
@@ -97,8 +99,8 @@ function PersonWork({ person, work, mayChange }: { person: string; work: readonl
                         Withdraw
                       </Button>
                     </>
-                  )}
-                </Table.Td>
+                  </Table.Td>
+                )}
               </Table.Tr>
             ),
           )}

@@ -205,6 +205,19 @@ def get_scan_geometry(
     return Response(shelf.pack(row, crop, size), media_type=MEDIA_TYPE, headers={"Cache-Control": IMMUTABLE})
 
 
+@router.get(
+    "/{scan_id}/thumbnail/{key}.png",
+    response_class=Response,
+    responses={200: {"content": {"image/png": {"schema": {"type": "string", "format": "binary"}}}}}
+    | error_responses(404),
+)
+def get_scan_thumbnail(scan_id: uuid.UUID, key: str, session: SessionDep, shelf: ShelfDep) -> Response:
+    """A small picture for lists, of what is not left out; `key` is the `geometry_key`. It never changes."""
+    row = service.get_scan(session, scan_id, deleted_too=True)
+    crop = service.read_crop(service.get_crop(session, scan_id, service.find_geometry_revision(row, key)))
+    return Response(shelf.draw(row, crop), media_type="image/png", headers={"Cache-Control": IMMUTABLE})
+
+
 @router.get("/{scan_id}/crop", responses=error_responses(404))
 def get_scan_crop(scan_id: uuid.UUID, session: SessionDep, response: Response) -> ScanCropOut:
     """What is left out of a scan now."""

@@ -21,6 +21,7 @@ from server.scans.cropping import LEAST_LEFT, check_crop, find_flags
 from server.scans.geometry import pack_scan
 from server.scans.models import ScanCropRow, ScanRow
 from server.scans.schemas import CollectionOut, ScanCrop, ScanPatch
+from server.scans.thumbnails import draw_thumbnail
 from server.storage import Storage
 
 if TYPE_CHECKING:
@@ -221,3 +222,8 @@ class ScanShelf:
         scan = self.get(row)
         flags = find_flags(scan, crop)
         return pack_scan(scan.points, scan.normals, scan.colors, flags, size, row.digest)
+
+    def draw(self, row: ScanRow, crop: ScanCrop) -> bytes:
+        """A small picture of what the crop leaves of a scan."""
+        scan = self.get(row)
+        return draw_thumbnail(scan, find_flags(scan, crop) == 0, row.digest)

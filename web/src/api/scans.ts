@@ -114,6 +114,8 @@ const LEFT_OUT = 3;
 
 type ScanPlace = Pick<Scan, "id" | "geometry_key">;
 
+export const scanThumbnailUrl = (scan: ScanPlace): string => `${API}/scans/${scan.id}/thumbnail/${scan.geometry_key}.png`;
+
 /** The points of a scan, with nothing fitted to them. */
 export async function fetchScanGeometry(scan: ScanPlace, side: Side | null, signal?: AbortSignal): Promise<HandGeometry> {
   const { data } = await fetchBytes(`${API}/scans/${scan.id}/geometry/${scan.geometry_key}?size=${POINTS}`, signal);

@@ -92,7 +92,7 @@ export default function CuratePage() {
       <h1 className="visually-hidden">Curate</h1>
       <QueueBar choice={choice} onChange={setChoice} state={state} />
       <div className={classes.middle}>
-        <HandRail scope="curate" control={control} hasMesh />
+        {!isEnd && <HandRail scope="curate" control={control} hasMesh />}
         <HandView
           scope="curate"
           label={item ? `Scan and registered mesh of ${item.scan.name}` : "Scan and registered mesh"}
@@ -137,11 +137,15 @@ export default function CuratePage() {
           {item && <div className={classes.place}>{`${state.place + 1}${state.hasMore ? "" : ` of ${state.items.length}`} · ${item.scan.name}`}</div>}
           <DecisionRefusals status={status} onGo={curation.goTo} />
         </HandView>
-        {item ? <DecisionPanel item={item} mine={mine} reasons={reasons} mayDecide={mayDecide} onDecide={decideByClick} /> : <aside className={classes.panel} aria-label="The registration and the decision" />}
+        {item ? (
+          <DecisionPanel item={item} mine={mine} reasons={reasons} mayDecide={mayDecide} onDecide={decideByClick} />
+        ) : (
+          !isEnd && <aside className={classes.panel} aria-label="The registration and the decision" />
+        )}
       </div>
       <div className={classes.line}>
         <SaveState status={{ ...status, refusals: status.refusals.size }} what="Every decision is kept in this browser until the server has it" action="curate.save" onFlush={() => decisionLog().flush()} />
-        {HINTS.map(([id, label]) => (
+        {HINTS.filter(([id]) => !isEnd || id === "curate.undo").map(([id, label]) => (
           <span key={id} className={classes.hint}>
             <Kbd size="xs">{id === "curate.reason1" && keyOf(id) === "1" ? "1–9" : keyOf(id) || "–"}</Kbd>
             <Text size="xs" span>

@@ -44,7 +44,7 @@ export function QueueBar({ choice, onChange, state }: QueueBarProps) {
         aria-label="Queue"
         allowDeselect={false}
         value={choice.queue}
-        data={QUEUES.map(([value, label]) => ({ value, label: counts ? `${label} (${counts[value].toLocaleString("en")})` : label }))}
+        data={QUEUES.map(([value, label]) => ({ value, label: counts ? `${label} (${(value === choice.queue ? (value === "all" ? counts.all : left) : counts[value]).toLocaleString("en")})` : label }))}
         onChange={(value) => onChange({ queue: value as Queue })}
       />
       <Select

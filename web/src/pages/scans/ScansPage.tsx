@@ -3,7 +3,7 @@ import { useDebouncedCallback, useDisclosure } from "@mantine/hooks";
 import { IconChecks, IconFilterOff, IconScan, IconSearch, IconTrash } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link } from "react-router";
-import { useDeleteScans, useScanCollections, useScanList, type Scan } from "../../api/scans";
+import { useDeleteScans, useScanCollections, useScanList, type Scan, scanThumbnailUrl } from "../../api/scans";
 import type { Side } from "../../api/types";
 import { formatAgo, formatCount } from "../../model/format";
 import { VerdictBadge } from "../curate/Verdict";
@@ -234,8 +234,9 @@ export default function ScansPage() {
                     <Checkbox aria-label={`Choose ${scan.name}`} checked={chosen.has(scan.id)} onChange={(event) => choose([scan.id], event.currentTarget.checked)} />
                   </Table.Td>
                   <Table.Td className={classes.cell} title={scan.name}>
-                    <Link to={`/scans/${scan.id}`} className={classes.link}>
-                      {scan.name}
+                    <Link to={`/scans/${scan.id}`} className={`${classes.link} ${classes.named}`}>
+                      <img className={classes.picture} src={scanThumbnailUrl(scan)} alt="" loading="lazy" width={32} height={32} />
+                      <span className="one-line">{scan.name}</span>
                     </Link>
                   </Table.Td>
                   <Table.Td className={classes.cell} title={scan.subject}>

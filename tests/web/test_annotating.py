@@ -265,6 +265,20 @@ def test_between_key_frames_positions_are_proposed_until_accepted(
     picture.wait_until_saved()
     assert {item["frame"] for item in find_annotations(studio, recording)} == {0, 4}
 
+    other = open_page()
+    other.goto(f"/recordings/{recording['id']}/annotate?frame=2")
+    picture_of(other).wait()
+    theirs = other.get_by_role("slider", name="Timeline")
+    expect(theirs).to_have_attribute("aria-valuetext", re.compile("right: not marked, suggested"))
+    other.keyboard.press("Shift+K")
+    expect(theirs).to_have_attribute("aria-valuetext", re.compile("right: 1 of 21;"))
+    other.get_by_role("tab", name="History").click()
+    versions = other.get_by_role("list", name="Versions, newest first")
+    expect(versions.get_by_role("listitem").first).to_contain_text("1 between key frames 0 and 4")
+    picture_of(other).wait_until_saved()
+    source = next(item for item in find_annotations(studio, recording) if item["frame"] == 2)["sources"][0]
+    assert (source["kind"], source["label"]) == ("interpolation", "key frames 0 and 4")
+
 
 def test_an_earlier_version_is_looked_at_and_brought_back(studio, recording, open_page, picture_of, screenshots):
     from playwright.sync_api import expect

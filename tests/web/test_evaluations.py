@@ -92,6 +92,21 @@ def test_two_tracks_are_chosen_compared_and_the_address_holds_it_all(studio, jud
     page.get_by_role("radiogroup", name="Joints").get_by_text("Occluded").click()
     expect(first).to_contain_text("Nothing to compare with")
     screenshots.take(page, "32-evaluations-nothing")
+    page.get_by_role("radiogroup", name="Joints").get_by_text("All joints").click()
+
+    kept = studio.send("POST", f"/sequences/{recording['id']}/labels/snapshots", json={"name": "Before the review"})
+    page.reload()
+    labels = page.get_by_role("combobox", name="Labels that judge")
+    expect(labels).to_have_value("Labels of now")
+    labels.click()
+    page.get_by_role("option", name="Snapshot 1: Before the review").click()
+    expect(page).to_have_url(re.compile(f"snapshots={kept.json()['id']}"))
+    expect(page.get_by_role("region", name="What was judged, and by which labels")).to_contain_text("snapshot 1")
+    page.reload()
+    expect(labels).to_have_value("Snapshot 1: Before the review")
+    labels.click()
+    page.get_by_role("option", name="Labels of now").click()
+    expect(page).not_to_have_url(re.compile("snapshots="))
 
 
 def test_a_worst_frame_is_one_click_from_the_annotator_and_from_the_3d_view(studio, judged, open_page, screenshots):

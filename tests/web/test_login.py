@@ -12,11 +12,14 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 
+from tests.web.hands import fill_studio
+from tests.web.test_curation import wait_for_hand
 from tests.web.conftest import ROOT, Picture, Screenshots, Studio, Synthesized, _lacking, _wait_until_up
 
 pytestmark = pytest.mark.browser
@@ -35,9 +38,15 @@ class Lab(Studio):
         with closing(sqlite3.connect(self.data_dir / "handloom.sqlite3", timeout=20)) as database, database:
             database.execute(statement)
 
+    def send(self, method: str, path: str, **options: Any) -> httpx.Response:
+        headers = {"Authorization": f"Bearer {self.token}"}
+        return httpx.request(method, f"{self.url}/api/v1{path}", headers=headers, timeout=60, **options)
+
+    def get(self, path: str) -> Any:
+        return self.send("GET", path).raise_for_status().json()
+
     def annotations(self) -> list[dict[str, Any]]:
-        url = f"{self.url}/api/v1/sequences/{self.recording_id}/annotations"
-        return httpx.get(url, headers={"Authorization": f"Bearer {self.token}"}, timeout=60).json()["items"]
+        return self.get(f"/sequences/{self.recording_id}/annotations")["items"]
 
 
 @pytest.fixture(scope="module")
@@ -173,6 +182,44 @@ def test_a_login_that_ends_in_mid_frame_loses_no_gesture(
     picture.wait_until_saved()
     assert lab_points(lab, 1) == 3
     assert {item["author"] for item in lab.annotations() if item["frame"] == 1} == {"Anna"}
+
+
+def test_a_login_that_ends_while_curating_loses_no_decision(
+    lab: Lab, open_lab: OpenLab, tmp_path: Path, screenshots: Screenshots
+) -> None:
+    from playwright.sync_api import expect
+
+    hands = fill_studio(lab, tmp_path, 3, "curation")
+    page = open_lab()
+    page.goto("/curate?collection=curation")
+    log_in(page, "Lea")
+    wait_for_hand(page, hands.registrations[0])
+    page.keyboard.press("a")
+    wait_for_hand(page, hands.registrations[1])
+    saved = page.get_by_test_id("save-state")
+    expect(saved).to_have_text("saved")
+    lab.execute("DELETE FROM logins")
+    page.keyboard.press("r")
+    dialog = page.get_by_role("dialog", name="Your login has ended")
+    expect(dialog).to_be_visible()
+    expect(saved).to_have_text(re.compile("log in to save, 1 waiting"))
+    screenshots.take(page, "login-ended-curating-dark-1280")
+
+    def decisions() -> list[str | None]:
+        found = {item["id"]: item["decision"] for item in lab.get("/registrations?collection=curation")["items"]}
+        return [found[id_] for id_ in hands.registrations]
+
+    assert decisions() == ["accept", None, None]
+    dialog.get_by_role("textbox", name="Password").fill(PASSWORD)
+    page.keyboard.press("Enter")
+    expect(dialog).to_have_count(0)
+    expect(saved).to_have_text("saved")
+    assert decisions() == ["accept", "reject", None]
+    wait_for_hand(page, hands.registrations[2])
+    page.keyboard.press("u")
+    expect(page.get_by_text("The queue is done")).to_be_visible()
+    expect(saved).to_have_text("saved")
+    assert decisions() == ["accept", "reject", "unsure"]
 
 
 def lab_points(lab: Lab, frame: int) -> int:

@@ -82,6 +82,8 @@ def test_a_good_suggestion_is_a_hand_in_one_action(studio, tracked, truth, open_
     assert np.linalg.norm(np.array(item["points"])[:, :2] - truth, axis=1).mean() < 2.0
     assert all(v in (1, 2) for _, _, v in item["points"])
     assert len([url for url in saves if "/annotations/" in url]) == 1, "one save a hand"
+    assert {(source["kind"], source["label"]) for source in item["sources"]} == {("track", "Track 1")}
+    assert all(source["track_id"] and source["model"] for source in item["sources"])
     page.keyboard.press("Control+z")
     expect(page.get_by_role("tab", name="right 0/21")).to_be_visible()
     picture.wait_until_saved()

@@ -38,7 +38,7 @@ if (root) {
         defaultColorScheme="dark"
         colorSchemeManager={localStorageColorSchemeManager({ key: "handloom/colours" })}
       >
-        <Notifications position="bottom-center" limit={4} style={{ bottom: 112 }} />
+        <Notifications position="bottom-center" limit={4} />
         <QueryClientProvider client={queries}>
           <Gate>
             <RouterProvider router={router} />

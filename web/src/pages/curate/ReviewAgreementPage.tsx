@@ -22,19 +22,19 @@ const share = (value: number | null): string => (value === null ? "–" : `${(10
 function PairTable({ pair }: { pair: ReviewAgreement["pairs"][number] }) {
   return (
     <section className="card" aria-label={`${pair.first_name} and ${pair.second_name}`} style={{ padding: 16 }}>
-      <Title order={3} className="one-line" title={`${pair.first_name} and ${pair.second_name}`}>
+      <Title order={3} style={{ overflowWrap: "anywhere" }}>
         {pair.first_name} and {pair.second_name}
       </Title>
       <Text size="xs" className="quiet" mb="sm">
-        {formatCount(pair.both, "registration")}; {share(pair.share_agreed)} alike; Cohen’s kappa {formatNumber(pair.kappa, 2)}
+        {formatCount(pair.both, "registration")}; {share(pair.share_agreed)} alike; Cohen’s kappa {formatNumber(pair.kappa, 2)}. Rows: {pair.first_name}; columns: {pair.second_name}
       </Text>
       <table className={classes.confusion}>
         <thead>
           <tr>
             <td />
             {STANDINGS.map((one) => (
-              <th key={one} scope="col">
-                {pair.second_name}: {one}
+              <th key={one} scope="col" aria-label={`${pair.second_name}: ${one}`}>
+                {one}
               </th>
             ))}
           </tr>
@@ -42,8 +42,8 @@ function PairTable({ pair }: { pair: ReviewAgreement["pairs"][number] }) {
         <tbody>
           {STANDINGS.map((first) => (
             <tr key={first}>
-              <th scope="row">
-                {pair.first_name}: {first}
+              <th scope="row" aria-label={`${pair.first_name}: ${first}`}>
+                {first}
               </th>
               {STANDINGS.map((second) => (
                 <td key={second} data-same={first === second}>
@@ -140,7 +140,7 @@ export default function ReviewAgreementPage() {
               Ask for second reviews …
             </Button>
           </For>
-          <Button component={Link} to="/curate?queue=second" leftSection={<IconChecks size={16} aria-hidden />}>
+          <Button component={Link} to="/curate?queue=second" variant={data && data.waiting === 0 ? "default" : "filled"} leftSection={<IconChecks size={16} aria-hidden />}>
             Review blindly
           </Button>
         </Group>
@@ -173,7 +173,7 @@ export default function ReviewAgreementPage() {
               <Group gap={8}>
                 {data.disputed.slice(0, 40).map((id, at) => (
                   <Button key={id} size="compact-xs" variant="default" component={Link} to={`/curate?queue=all&registration=${id}`}>
-                    {at + 1}
+                    Open no. {at + 1}
                   </Button>
                 ))}
                 {data.disputed.length > 40 && <Text size="xs" className="quiet">and {data.disputed.length - 40} more</Text>}

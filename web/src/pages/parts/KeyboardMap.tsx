@@ -2,7 +2,7 @@ import { Button, Group, Kbd, Modal, Stack, Text, Title } from "@mantine/core";
 import { IconKeyboard } from "@tabler/icons-react";
 import { Fragment } from "react";
 import { useLocation } from "react-router";
-import type { Scope } from "../../model/keymap";
+import type { KeyBinding, Scope } from "../../model/keymap";
 import { useCurrentKeymap } from "../../state/keys";
 import classes from "./KeyboardMap.module.css";
 
@@ -67,12 +67,26 @@ function scopeOf(path: string): Scope | null {
   return scopes.find(([start]) => path.startsWith(start))?.[1] ?? null;
 }
 
+function KeyGroup({ group, map }: { group: string; map: readonly KeyBinding[] }) {
+  return (
+    <Stack gap={2} className={classes.group}>
+      <Title order={3}>{group === "Track" ? "Track page" : group}</Title>
+      {map
+        .filter((binding) => binding.group === group)
+        .map((binding) => (
+          <Row key={binding.id} keys={binding.keys} label={binding.label} />
+        ))}
+    </Stack>
+  );
+}
+
 /** The keyboard map, made from the same table as the handlers. */
 export function KeyboardMap({ isOpen, onClose, onSettings }: { isOpen: boolean; onClose: () => void; onSettings: () => void }) {
   const map = useCurrentKeymap();
   const scope = scopeOf(useLocation().pathname);
-  const here = map.filter((binding) => binding.scope === scope);
-  const groups = [...new Set([...here, ...map].map((binding) => binding.group))];
+  const isHere = (binding: KeyBinding): boolean => scope === null || binding.scope === scope || binding.scope === "everywhere";
+  const groupsOf = (some: readonly KeyBinding[]): string[] => [...new Set(some.map((binding) => binding.group))];
+  const elsewhere = groupsOf(map.filter((binding) => !isHere(binding)));
   return (
     <Modal opened={isOpen} onClose={onClose} title={<Title order={2}>Keyboard map</Title>} size={1040}>
       <Group justify="space-between" mb="md">
@@ -84,15 +98,8 @@ export function KeyboardMap({ isOpen, onClose, onSettings }: { isOpen: boolean; 
         </Button>
       </Group>
       <div className={classes.columns}>
-        {groups.map((group) => (
-          <Stack key={group} gap={2} className={classes.group}>
-            <Title order={3}>{group === "Track" ? "Track page" : group}</Title>
-            {map
-              .filter((binding) => binding.group === group)
-              .map((binding) => (
-                <Row key={binding.id} keys={binding.keys} label={binding.label} />
-              ))}
-          </Stack>
+        {groupsOf(map.filter(isHere)).map((group) => (
+          <KeyGroup key={group} group={group} map={map} />
         ))}
         <Stack gap={2} className={classes.group}>
           <Title order={3}>Mouse, on the picture</Title>
@@ -106,6 +113,18 @@ export function KeyboardMap({ isOpen, onClose, onSettings }: { isOpen: boolean; 
           ))}
         </Stack>
       </div>
+      {elsewhere.length > 0 && (
+        <>
+          <Title order={2} mt="lg" mb="md">
+            On other pages
+          </Title>
+          <div className={classes.columns}>
+            {elsewhere.map((group) => (
+              <KeyGroup key={group} group={group} map={map} />
+            ))}
+          </div>
+        </>
+      )}
     </Modal>
   );
 }

@@ -13,7 +13,7 @@ const STATES: Record<AssignmentState, { color: string; icon: typeof IconCheck; l
 export function StateBadge({ state }: { state: AssignmentState }) {
   const { color, icon: Icon, label } = STATES[state];
   return (
-    <Badge variant="light" color={color} leftSection={<Icon size={12} aria-hidden />} tt="none" miw={96} style={{ flex: "none" }} styles={{ root: { justifyContent: "center", gridTemplateColumns: "auto auto" }, label: { flex: "none" } }} data-testid="assignment-state">
+    <Badge variant="light" color={color} leftSection={<Icon size={12} aria-hidden />} tt="none" miw={96} style={{ flex: "none" }} styles={{ root: { justifyContent: "center", gridTemplateColumns: "auto auto" }, label: { flex: "none" }, section: { marginInlineEnd: 6 } }} data-testid="assignment-state">
       {label}
     </Badge>
   );

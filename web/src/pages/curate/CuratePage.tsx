@@ -19,6 +19,7 @@ import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { SaveState } from "../parts/SaveState";
 import { useTitle } from "../parts/useTitle";
+import frame from "../hand3d/HandPage.module.css";
 import classes from "./CuratePage.module.css";
 import { DecisionPanel } from "./DecisionPanel";
 import { DecisionRefusals } from "./DecisionRefusals";
@@ -88,10 +89,10 @@ export default function CuratePage() {
   const isEnd = !isLoading && !item && !state.hasMore;
   const isEmptyStudio = isEnd && state.items.length === 0 && counts?.all === 0;
   return (
-    <div className={classes.page}>
+    <div className={frame.page}>
       <h1 className="visually-hidden">Curate</h1>
       <QueueBar choice={choice} onChange={setChoice} state={state} />
-      <div className={classes.middle}>
+      <div className={frame.middle}>
         {!isEnd && <HandRail scope="curate" control={control} hasMesh />}
         <HandView
           scope="curate"
@@ -143,10 +144,10 @@ export default function CuratePage() {
           !isEnd && <aside className={classes.panel} aria-label="The registration and the decision" />
         )}
       </div>
-      <div className={classes.line}>
+      <div className={frame.line}>
         <SaveState status={{ ...status, refusals: status.refusals.size }} what="Every decision is kept in this browser until the server has it" action="curate.save" onFlush={() => decisionLog().flush()} />
         {HINTS.filter(([id]) => !isEnd || id === "curate.undo").map(([id, label]) => (
-          <span key={id} className={classes.hint}>
+          <span key={id} className={frame.hint}>
             <Kbd size="xs">{id === "curate.reason1" && keyOf(id) === "1" ? "1–9" : keyOf(id) || "–"}</Kbd>
             <Text size="xs" span>
               {label}

@@ -6,6 +6,7 @@ import { useScanCollections } from "../../api/scans";
 import { formatDuration } from "../../model/format";
 import { paceOf } from "../../model/pace";
 import type { CurationState } from "../../state/curation";
+import frame from "../hand3d/HandPage.module.css";
 import classes from "./CuratePage.module.css";
 
 const QUEUES: readonly (readonly [Queue, string])[] = [
@@ -37,7 +38,7 @@ export function QueueBar({ choice, onChange, state }: QueueBarProps) {
   const done = counts ? Math.min(all, all - counts.undecided + (choice.queue === "undecided" || choice.queue === "all" ? here : 0)) : 0;
   const { perMinute, secondsLeft } = paceOf(state.times, left);
   return (
-    <div className={classes.bar}>
+    <div className={frame.bar}>
       <Select
         size="xs"
         w={176}

@@ -1,10 +1,10 @@
 import { Button } from "@mantine/core";
 import { IconUpload } from "@tabler/icons-react";
-import { useEffect, useRef, useState } from "react";
-import { readChoice, readDrop } from "../../actions/readDrop";
+import { useRef } from "react";
+import { readChoice } from "../../actions/readDrop";
 import { hasRole, useMe } from "../../state/me";
 import { chooseScans } from "../../state/scanUpload";
-import classes from "./ScansPage.module.css";
+import { DropTarget } from "../parts/DropTarget";
 
 /** Choose scans without dragging; leads add scans. */
 export function AddScansButton({ label }: { label: string }) {
@@ -33,56 +33,12 @@ export function AddScansButton({ label }: { label: string }) {
   );
 }
 
-const holdsFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
-
 /** Scans and folders of them may be dropped anywhere on the page. */
 export function ScanDrops() {
-  const [isOver, setOver] = useState(false);
   const mayAdd = hasRole(useMe(), "lead");
-  useEffect(() => {
-    if (!mayAdd) return;
-    let depth = 0;
-    const enter = (event: DragEvent): void => {
-      if (!holdsFiles(event)) return;
-      depth += 1;
-      setOver(true);
-    };
-    const leave = (): void => {
-      depth = Math.max(0, depth - 1);
-      if (depth === 0) setOver(false);
-    };
-    const over = (event: DragEvent): void => {
-      if (holdsFiles(event)) event.preventDefault();
-    };
-    const drop = (event: DragEvent): void => {
-      if (!holdsFiles(event) || !event.dataTransfer) return;
-      event.preventDefault();
-      depth = 0;
-      setOver(false);
-      void readDrop(event.dataTransfer).then(chooseScans);
-    };
-    window.addEventListener("dragenter", enter);
-    window.addEventListener("dragleave", leave);
-    window.addEventListener("dragover", over);
-    window.addEventListener("drop", drop);
-    return () => {
-      window.removeEventListener("dragenter", enter);
-      window.removeEventListener("dragleave", leave);
-      window.removeEventListener("dragover", over);
-      window.removeEventListener("drop", drop);
-    };
-  }, [mayAdd]);
   return (
     <div data-takes-drops>
-      {isOver && (
-        <div className={classes.overlay}>
-          <div className={classes.sheet}>
-            <IconUpload size={48} stroke={1.5} aria-hidden />
-            <strong>Drop to add scans</strong>
-            <span className="quiet">PLY, OBJ or STL files, folders of them, or a .zip; perhaps with a scans.json.</span>
-          </div>
-        </div>
-      )}
+      {mayAdd && <DropTarget title="Drop to add scans" hint="PLY, OBJ or STL files, folders of them, or a .zip; perhaps with a scans.json." onFiles={chooseScans} />}
     </div>
   );
 }

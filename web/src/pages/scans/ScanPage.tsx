@@ -26,6 +26,7 @@ import { Tool } from "../parts/Tool";
 import { useTitle } from "../parts/useTitle";
 import { CropPanel } from "./CropPanel";
 import { RegisterDialog } from "./RegisterDialog";
+import frame from "../hand3d/HandPage.module.css";
 import classes from "./ScanPage.module.css";
 import { StrokeLayer } from "./StrokeLayer";
 import { useCrop } from "./useCrop";
@@ -188,8 +189,8 @@ function OpenScan({ scan }: { scan: Scan }) {
 
   const failure = geometry.error ?? registration.error;
   return (
-    <div className={classes.page}>
-      <div className={classes.bar}>
+    <div className={frame.page}>
+      <div className={frame.bar}>
         <Link to={`/scans?collection=${encodeURIComponent(scan.collection)}`} className="one-line quiet" style={{ flex: "none", maxWidth: 240 }}>
           {scan.collection}
         </Link>
@@ -217,7 +218,7 @@ function OpenScan({ scan }: { scan: Scan }) {
           </For>
         </Group>
       </div>
-      <div className={classes.middle}>
+      <div className={frame.middle}>
         <HandRail scope="scan" control={control} hasMesh={Boolean(geometry.data?.mesh)}>
           <Tool label="Knife: the next stroke cuts" action="scan.cut" icon={<IconScissors size={18} />} isOn={isCutting} isDisabled={!crop.isReady} onClick={() => setCutting(!isCutting)} />
           <Tool label="Take the last stroke back" action="scan.uncut" icon={<IconArrowBackUp size={18} />} isDisabled={crop.draft.cuts.length === 0} onClick={crop.undo} />
@@ -278,9 +279,9 @@ function OpenScan({ scan }: { scan: Scan }) {
           <LineageList kind="scan" id={scan.id} />
         </aside>
       </div>
-      <div className={classes.line}>
+      <div className={frame.line}>
         {HINTS.map(([id, label]) => (
-          <span key={id} className={classes.hint}>
+          <span key={id} className={frame.hint}>
             <Kbd size="xs">{keyOf(id) || "–"}</Kbd>
             <Text size="xs" span>
               {label}

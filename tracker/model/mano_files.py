@@ -77,7 +77,7 @@ def save_mano(model: BlendModel, path: Path) -> None:
         "kintree_table": np.stack([model.parents % 2**32, np.arange(bones)]).astype(np.uint32),
         "hands_components": _complete(model.pose_components, 3 * (bones - 1)),
         "hands_mean": model.pose_mean,
-        "hands_coeffs": np.zeros((0, 3 * (bones - 1))),
+        "hands_coeffs": np.zeros((0, 3 * (bones - 1))),  # nobody's poses; loaders of the authors' kind slice it
         "bs_type": "lrotmin",
         "bs_style": "lbs",
         "tips": model.tips,

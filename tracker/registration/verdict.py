@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial.transform import Rotation
 
 from tracker.capture.scan import Scan
 from tracker.model.blend_model import BlendModel
 from tracker.registration.free_fit import FreeSurface
+from tracker.registration.hand_state import HandState
 from tracker.registration.model_fit import MM, Evaluation, FitSettings, ModelFit
 from tracker.registration.registration import Registration, digest_scan
 from tracker.registration.scan_points import ScanPoints
@@ -36,6 +38,22 @@ BAD = 1.6
 
 LEAST_COVERED = 0.35
 
+NEARLY = 0.99
+"""Score of a hand that is good but for its person: queues have it first among the good ones."""
+
+STRANGE = ("stretch", "scan_to_model")
+"""Beyond their limits when the pose is wrong, and when the person is unlike all whom the model knows."""
+STRANGE_MOST = 1.35
+"""So many times its limit either may then be..."""
+OTHERS_MOST = 0.9
+"""...while every other measure stays below this share of its own,"""
+HIDDEN_MOST = 0.05
+"""...no more of the surface than this has no scan beside it, so that no finger can be elsewhere,"""
+TURNED_MOST = 0.7
+"""...and the model lies at this share of the cost, at most, at which a hand of the other side does."""
+OVER = (FitSettings(10.0, 8, to_scan=0.3), FitSettings(5.0, 8, to_scan=0.1))
+OVER_POINTS = 3000
+
 TOLD = {
     "stretch": "the surface is stretched against the model (edges differ by {:.2f} mm)",
     "scan_to_surface": "parts of the scan lie away from the surface ({:.2f} mm² a point)",
@@ -44,6 +62,7 @@ TOLD = {
     "moved": "the surface left the model ({:.1f} mm)",
     "shape": "the shape is unlike a hand's ({:.1f} standard deviations)",
     "covered": "only {:.0%} of the points lie beside the hand",
+    "person": "a hand unlike the people whom this model knows, else nothing speaks against it",
 }
 
 
@@ -77,10 +96,51 @@ def judge(
     if measures["covered"] < LEAST_COVERED:
         shares["covered"] = 2.0 * LEAST_COVERED / max(measures["covered"], 1e-3)
     worst = max(shares.values())
+    if worst >= 1.0 and _is_sure_else(shares, measures) and _turned_over(fit, scan, evaluation) < TURNED_MOST:
+        worst = NEARLY
+        return Verdict("good", worst / (1.0 + worst), (TOLD["person"],), measures)
     score = float(worst / (1.0 + worst))
     name = "good" if worst < 1.0 else "doubtful" if worst < BAD else "bad"
     faults = sorted((name for name in shares if shares[name] >= 1.0), key=lambda name: -shares[name])
     return Verdict(name, score, tuple(TOLD[fault].format(measures[fault]) for fault in faults), measures)
+
+
+def _is_sure_else(shares: dict[str, float], measures: dict[str, float]) -> bool:
+    """Whether only the person may be strange."""
+    strange = [share for name, share in shares.items() if name in STRANGE]
+    others = [share for name, share in shares.items() if name not in STRANGE]
+    return max(strange) <= STRANGE_MOST and max(others) <= OTHERS_MOST and measures["hidden_free"] <= HIDDEN_MOST
+
+
+def _turned_over(fit: ModelFit, scan: ScanPoints, evaluation: Evaluation) -> float:
+    """Cost of the model against that of a hand of the other side, its palm where the back of this one is.
+
+    A flat hand is much like a hand of the other side turned over: thumb and fingers lie where they should, and only
+    palm and back are unlike. Registered so it has the measures of a strange person, but the right side fits far better.
+    """
+    joints, state = evaluation.posed.joints, evaluation.state
+    palm = np.cross(joints[4] - joints[0], joints[1] - joints[7])  # knuckles of middle, index and little finger
+    palm /= np.linalg.norm(palm)
+    mirror = np.diag([-1.0, 1.0, 1.0])
+    turn = mirror @ (np.eye(3) - 2.0 * np.outer(palm, palm))
+    center = evaluation.posed.vertices.mean(axis=0)
+    root = fit.model.joints_of(fit.model.shaped(state.shape))[0]
+    pose = state.pose.copy()
+    pose[0] = Rotation.from_matrix(turn @ Rotation.from_rotvec(pose[0]).as_matrix()).as_rotvec()
+    other = HandState(pose, state.shape, turn @ (root + state.translation - center) + mirror @ center - root)
+    mirrored = scan.mirrored()
+    for settings in OVER:
+        other = fit.fit(other, mirrored.first(OVER_POINTS), settings).state
+    return _cost(fit, scan, state) / max(_cost(fit, mirrored, other), 1e-9)
+
+
+def _cost(fit: ModelFit, scan: ScanPoints, state: HandState) -> float:
+    """Of points beside the model and vertices beside the scan, mm²."""
+    points = scan.first(JUDGE_POINTS)
+    judged = fit.evaluate(state, points, JUDGE)
+    vertices = judged.posed.vertices
+    beside = ~fit.search.match(vertices, points.points, np.zeros_like(points.normals), 1.0).on_rim
+    return _robust_mean(judged.matches, beside) + _look_back(fit, scan, vertices)[1]
 
 
 def measure(

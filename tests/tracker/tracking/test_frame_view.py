@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.tracker.grips import PINCH, ball, gripped
 from tracker.geometry import se3
+from tracker.model.blend_articulated import articulated_of
 from tracker.model.default_hand import default_hand
 from tracker.model.joints import FINGERS
 from tracker.model.scene import Scene
+from tracker.model.trained_hand import trained_hand
 from tracker.physics import PhysicsWorld
 from tracker.terms.penetration import measure_penetration
 from tracker.tracking.frame_view import describe_frame
@@ -53,6 +57,21 @@ def test_a_fitted_hand_lies_on_the_data_and_one_that_is_moved_does_not(view, rec
     moved[:6] = se3.log(se3.exp(np.r_[0.0, 0.0, 0.010, 0.0, 0.0, 0.0]) @ se3.exp(moved[:6]))  # 10 mm away
     (farther,) = describe_frame(recorded.sequence, setup, moved, 3).surface_fit
     assert 0.004 < np.nanmedian(farther) < 0.011
+
+
+def test_every_layer_shows_a_trained_hand_as_its_pose_blend_shapes_make_it(recorded, run):
+    setup, _, _, chunk = run
+    hand = articulated_of(trained_hand("right"))
+    pose = np.r_[chunk.pose[3][:6], np.zeros(hand.num_dofs - 6)]
+    pose[6:] = 0.3 * hand.skeleton.upper
+    shown = describe_frame(recorded.sequence, replace(setup, models=(hand,)), pose, 3)
+    posed, plain = (Scene((each,)).pose_at(pose) for each in (hand, replace(hand, pose_blend=None)))
+    vertices = shown.models[0].vertices
+    np.testing.assert_allclose(vertices, posed.vertices[: len(vertices)], atol=1e-6)
+    assert np.abs(vertices - plain.vertices[: len(vertices)]).max() > 5e-4
+    assert len(shown.models[0].joints) == 21 and any(len(lines) for lines in shown.correspondences.values())
+    assert np.isfinite(shown.surface_fit[0]).any()
+    assert len(shown.collisions.pairs) == 0 and shown.contacts.contacts == ()
 
 
 def test_an_open_hand_collides_with_nothing_and_holds_nothing(view):

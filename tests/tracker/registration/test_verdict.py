@@ -1,0 +1,49 @@
+"""What is called good: also a person unlike all whom the model knows, but never a hand of the other side."""
+
+import numpy as np
+import pytest
+
+from tests.tracker.registration.conftest import scan_model
+from tracker.capture.scan import Scan
+from tracker.model.untrained_hand import untrained_hand
+from tracker.registration.options import RegistrationOptions
+from tracker.registration.register import register_scan
+from tracker.registration.verdict import HIDDEN_MOST, LIMITS, OTHERS_MOST, STRANGE, STRANGE_MOST, TOLD, _is_sure_else
+
+
+def swollen(scan: Scan, most: float) -> Scan:
+    """The scan with smooth lumps and dents of up to so many m, which no shape direction of the model makes."""
+    rng = np.random.default_rng(5)
+    centers = scan.points[rng.choice(len(scan.points), 40, replace=False)]
+    heights = most * rng.choice([-1.0, 1.0], 40)
+    near = np.exp(-(np.linalg.norm(scan.points[:, None] - centers, axis=2) ** 2) / (2.0 * 0.012**2))
+    return Scan(scan.points + (near @ heights)[:, None] * scan.normals, scan.normals, name="swollen")
+
+
+def test_a_person_unlike_those_whom_the_model_knows_is_good_and_said_to_be_so():
+    registration = register_scan(swollen(scan_model(1, 6000).scan, 0.0024), untrained_hand())
+    assert (registration.side, registration.verdict) == ("right", "good")
+    assert registration.reasons == (TOLD["person"],) and registration.score < 0.5
+    assert any(registration.measures[name] > LIMITS[name] for name in STRANGE)
+
+
+def test_a_flat_hand_registered_as_one_of_the_other_side_is_not_good(own_scan):
+    registration = register_scan(own_scan.scan, untrained_hand(), RegistrationOptions(side="left"))
+    assert registration.verdict != "good"
+
+
+@pytest.mark.parametrize(
+    ("change", "is_sure"),
+    [
+        ({}, True),
+        ({"stretch": STRANGE_MOST + 0.01}, False),
+        ({"moved": OTHERS_MOST + 0.01}, False),
+        ({"scan_to_surface": OTHERS_MOST + 0.01}, False),
+        ({"covered": 1.1}, False),
+        ({"hidden_free": HIDDEN_MOST + 0.01}, False),
+    ],
+)
+def test_nothing_else_may_speak_against_it(change, is_sure):
+    shares = dict.fromkeys(LIMITS, 0.5) | {"stretch": 1.2, "scan_to_model": 1.3}
+    hidden = change.pop("hidden_free", 0.01)
+    assert _is_sure_else(shares | change, {"hidden_free": hidden}) == is_sure

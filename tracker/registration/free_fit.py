@@ -33,8 +33,8 @@ class FreeSettings:
         coupling: λ_c of [R17] Eq. 5, edges summed, in mm² against a data term of one for each vertex.
         sigma_mm: Scale of the Geman-McClure function.
         iterations: Steps tried at most.
-        pose_weight: λ_θ. A tenth of the model fit's, and λ_β likewise: with full priors the model lags behind the surface
-            and drags it along the skin (a learned model's vertices are .91 mm off instead of .76).
+        pose_weight: λ_θ, far below the model fit's, and λ_β likewise: with full priors the model lags behind the
+            surface and drags it along the skin (vertices .91 mm off with a learned model, instead of .76).
         shape_weight: λ_β.
         tolerance: Ends when a step brings less than this share of the cost.
     """

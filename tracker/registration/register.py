@@ -23,8 +23,8 @@ from tracker.registration.options import RegistrationOptions
 from tracker.registration.pose_prior import PosePrior
 from tracker.registration.registration import Registration, RegistrationStart, digest_model, digest_scan
 from tracker.registration.scan_points import ScanPoints, arrange_points, find_hand_points
-from tracker.registration.start import StartSearch
-from tracker.registration.verdict import judge, refuse
+from tracker.registration.start import Start, StartSearch, find_apart
+from tracker.registration.verdict import Verdict, judge, refuse
 from tracker.registration.vertex_fit import fit_to_vertices
 
 Array = npt.NDArray[np.float64]
@@ -34,6 +34,9 @@ SIZES = (0.06, 1.5)
 """m; box around the points of a hand, with forearm: beyond, the unit is wrong or there is no hand."""
 
 MIN_POINTS = 50
+
+NEARLY, MOST_AGAIN = 1.03, 3
+"""When a registration is not good, so many starts that cost this much at most, against the best, are followed up."""
 
 
 @dataclass(frozen=True)
@@ -96,48 +99,97 @@ def register_scan(
     tell("start", 0.0)
     with clock.measure("start"):
         evaluation, side, scans = _begin(tools, points, options, start, tell)
-    state = evaluation.state
-    hand = scans[side]
     tell("model", 0.6)
-    with clock.measure("model"):
-        for count, settings in options.model_stages:
-            evaluation = tools.fit.fit(state, hand.first(count), settings)
-            state = evaluation.state
-    tell("surface", 0.7)
-    with clock.measure("surface"):
-        surface = FreeSurface(
-            evaluation.posed.vertices, state, evaluation.posed.vertices, evaluation.matches, evaluation.weights, 0.0
-        )
-        for number, (count, settings) in enumerate(options.free_stages):
-            surface = tools.free.fit(surface, hand.first(count), settings)
-            tell("surface", 0.7 + 0.2 * (number + 1) / len(options.free_stages))
-        count, settings = options.last_stage
-        centred = replace(surface.state, translation=surface.state.translation + surface.offset)
-        last = tools.fit.fit(centred, hand.first(count), settings)
-    with clock.measure("judge"):
-        flip = np.array([1.0 if side == "right" else -1.0, 1.0, 1.0])
-        distances = _measure(tools, surface.vertices, scan, keep, flip)
-        verdict = judge(tools.fit, hand, evaluation, surface, distances, int(keep.sum()))
+    best = _settle(tools, evaluation, side, scans[side], scan, keep, options, clock)
+    if start is None and best.verdict.name != "good":
+        tell("second look", 0.8)
+        for again in _look_again(tools, scans, clock):
+            other = _settle(tools, again.evaluation, again.side, scans[again.side], scan, keep, options, clock)
+            if best.verdict.name == "doubtful" or other.verdict.name == "good":
+                best = min(best, other, key=_misfit)
     tell("done", 1.0)
+    flip = _flip(best.side)
     return Registration(
-        vertices=surface.vertices * flip,
-        model_vertices=last.posed.vertices * flip,
-        faces=np.asarray(tools.model.faces if side == "right" else tools.model.faces[:, ::-1], dtype=np.int64),
-        pose=last.state.pose,
-        shape=last.state.shape,
-        translation=last.state.translation,
-        side=side,
-        verdict=verdict.name,
-        score=verdict.score,
-        reasons=(*verdict.reasons, *notes),
-        scan_to_mesh=distances,
+        vertices=best.vertices * flip,
+        model_vertices=best.model.posed.vertices * flip,
+        faces=np.asarray(tools.model.faces if best.side == "right" else tools.model.faces[:, ::-1], dtype=np.int64),
+        pose=best.model.state.pose,
+        shape=best.model.state.shape,
+        translation=best.model.state.translation,
+        side=best.side,
+        verdict=best.verdict.name,
+        score=best.verdict.score,
+        reasons=(*best.verdict.reasons, *notes),
+        scan_to_mesh=best.distances,
         seconds=time.perf_counter() - began,
         timings=clock.seconds,
         scan=scan.name,
         scan_digest=digest_scan(scan),
         model_digest=tools.model_digest,
-        measures=verdict.measures,
+        measures=best.verdict.measures,
     )
+
+
+@dataclass(frozen=True)
+class _Settled:
+    """A surface (V, 3) of a right hand, the model that was fitted beside it, and what it is worth."""
+
+    side: str
+    vertices: Array
+    model: Evaluation
+    distances: Array
+    verdict: Verdict
+
+
+def _misfit(settled: _Settled) -> tuple[bool, float]:
+    """Least for the best of several surfaces: a good one, then what misses the scan least and is strained least.
+
+    Of hands folded otherwise, the wrong one's surface both misses the scan more and is strained more.
+    """
+    measures = settled.verdict.measures
+    return settled.verdict.name != "good", measures["scan_to_surface"] * measures["stretch"]
+
+
+def _settle(
+    tools: Tools,
+    evaluation: Evaluation,
+    side: str,
+    hand: ScanPoints,
+    scan: Scan,
+    keep: npt.NDArray[np.bool_],
+    options: RegistrationOptions,
+    clock: _Clock,
+) -> _Settled:
+    """From a start to a judged surface."""
+    state = evaluation.state
+    with clock.measure("model"):
+        for count, settings in options.model_stages:
+            evaluation = tools.fit.fit(state, hand.first(count), settings)
+            state = evaluation.state
+    with clock.measure("surface"):
+        surface = FreeSurface(
+            evaluation.posed.vertices, state, evaluation.posed.vertices, evaluation.matches, evaluation.weights, 0.0
+        )
+        for count, settings in options.free_stages:
+            surface = tools.free.fit(surface, hand.first(count), settings)
+        count, settings = options.last_stage
+        centred = replace(surface.state, translation=surface.state.translation + surface.offset)
+        last = tools.fit.fit(centred, hand.first(count), settings)
+    with clock.measure("judge"):
+        distances = _measure(tools, surface.vertices, scan, keep, _flip(side))
+        verdict = judge(tools.fit, hand, evaluation, surface, distances, int(keep.sum()))
+    return _Settled(side, surface.vertices, last, distances, verdict)
+
+
+def _look_again(tools: Tools, scans: dict[str, ScanPoints], clock: _Clock) -> list[Start]:
+    """Starts that a thorough search finds about as good as its best, each another arrangement of the hand."""
+    with clock.measure("start"):
+        found = tools.starts.find(scans, is_thorough=True)
+        return [start for start in find_apart(found) if start.cost <= NEARLY * found[0].cost][:MOST_AGAIN]
+
+
+def _flip(side: str) -> Array:
+    return np.array([1.0 if side == "right" else -1.0, 1.0, 1.0])
 
 
 def _begin(
@@ -150,8 +202,7 @@ def _begin(
         shape[: len(start.shape)] = start.shape[: len(shape)]
         state = HandState(np.array(start.pose, dtype=np.float64), shape, np.array(start.translation, dtype=np.float64))
         if start.vertices is not None:
-            flip = np.array([1.0 if start.side == "right" else -1.0, 1.0, 1.0])
-            state = fit_to_vertices(tools.fit, state, start.vertices * flip)
+            state = fit_to_vertices(tools.fit, state, start.vertices * _flip(start.side))
         count, settings = options.model_stages[0]
         return tools.fit.evaluate(state, scans[start.side].first(count), settings), start.side, scans
     sides = (options.side,) if options.side else ("right", "left")

@@ -26,6 +26,9 @@ FEW, SOME, MORE, MANY = 200, 500, 1000, 2500
 
 ROUNDS, RIVALS = 2, 3
 
+ARRANGEMENTS, APART = 4, 0.015
+"""So many are looked at thoroughly; in two of them some vertices lie farther apart than this, m."""
+
 KEPT_STIFF, KEPT_COARSE = 10, 3
 """Candidates that go on."""
 
@@ -70,12 +73,19 @@ class StartSearch:
         )
         """(S,) shape by which the hand grows by its own size."""
 
-    def find(self, scans: dict[str, ScanPoints], tell: Callable[[float], None] = lambda share: None) -> list[Start]:
+    def find(
+        self,
+        scans: dict[str, ScanPoints],
+        tell: Callable[[float], None] = lambda share: None,
+        is_thorough: bool = False,
+    ) -> list[Start]:
         """States of the hand, best first.
 
         Args:
             scans: The points for each side to try, mirrored for "left".
             tell: Is told the share that is done.
+            is_thorough: Fingers are started anew in every arrangement that may be right, not in the best alone: the
+                right one may come late, with a finger astray. Takes three times as long.
         """
         fitted: list[Start] = []
         grid: NearestGrid | None = None
@@ -94,9 +104,10 @@ class StartSearch:
                 found.append(self._fit(start.evaluation.state, scan.first(MORE), side, FINE))
         tell(0.7)
         found.sort(key=lambda start: start.cost)
-        best = self._try_fingers(scans[found[0].side].first(MORE), found[0])
+        tried = find_apart(found)[:ARRANGEMENTS] if is_thorough else found[:1]
+        best = [self._try_fingers(scans[one.side].first(MORE), one) for one in tried]
         # the first looks were short and at few points: the best of them are looked at again, longer
-        last = [self._fit(s.evaluation.state, scans[s.side].first(MANY), s.side, LAST) for s in [best, *found[:RIVALS]]]
+        last = [self._fit(s.evaluation.state, scans[s.side].first(MANY), s.side, LAST) for s in best + found[:RIVALS]]
         last.sort(key=lambda start: start.cost)
         tell(1.0)
         return last
@@ -162,6 +173,17 @@ class StartSearch:
             if best.cost > 0.97 * before.cost:
                 break
         return best
+
+
+def find_apart(starts: list[Start]) -> list[Start]:
+    """Those that are another arrangement than all before them."""
+    kept: list[Start] = []
+    for start in starts:
+        vertices = start.evaluation.posed.vertices
+        rivals = [other.evaluation.posed.vertices for other in kept if other.side == start.side]
+        if all(np.linalg.norm(vertices - other, axis=1).max() > APART for other in rivals):
+            kept.append(start)
+    return kept
 
 
 def _differ(one: Placing, other: Placing) -> bool:

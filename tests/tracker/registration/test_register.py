@@ -14,6 +14,7 @@ from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.options import RegistrationOptions
 from tracker.registration.register import register_scan
 from tracker.registration.registration_files import pack_registration
+from tracker.synthesis.scans.generate import ScanOptions, generate_scan
 
 
 def find_errors(registration, own) -> np.ndarray:

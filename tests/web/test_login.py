@@ -89,7 +89,7 @@ def lab(chromium: str, synthesized: Synthesized, tmp_path_factory: pytest.TempPa
         api = f"{lab.url}/api/v1"
         with httpx.Client(base_url=api, timeout=60) as client, synthesized.archive.open("rb") as file:
             client.post("/login", json={"name": "Lea", "password": PASSWORD}).raise_for_status()
-            token = client.post("/account/tokens", json={"name": "the tests"}).json()["secret"]
+            token = client.post("/account/tokens", json={"name": "the tests", "may_write": True}).json()["secret"]
             made = client.post("/imports", files={"files": ("opening-hand.zip", file)}).json()
             stored = client.post(f"/imports/{made['id']}/confirm", json={"name": "Opening hand"})
         yield Lab(lab.url, lab.data_dir, log, stored.json()["id"], token)

@@ -256,7 +256,7 @@ def study_people(trained: Training) -> dict[str, Any]:
     most = min(20, len(np.unique(people)) - 2)
     if most < 1 or len(people) != len(trained.templates):
         return {}
-    counts = sorted({*range(1, min(10, most) + 1), most})
+    counts = sorted({*range(min(10, most) + 1), most})
     return {"shape_generalisation": generalize_shapes(trained.templates, people, counts)}
 
 

@@ -225,6 +225,12 @@ def test_scans_become_a_model_that_is_judged_and_registers_again(studio, scans, 
     screenshots.take(page, "path-model")
     kept.scroll_into_view_if_needed()
     screenshots.take(page, "path-model-plots")
+    if screenshots.folder:
+        large = open_page(1920, 1080, "light")
+        large.goto(page.url)
+        large.get_by_role("region", name="People kept for testing").scroll_into_view_if_needed()
+        large.wait_for_timeout(1500)
+        screenshots.take(large, "path-model-light-1920")
     page.get_by_role("button", name="Download").click()
     with page.expect_download() as started:
         page.get_by_role("menuitem", name="The report").click()

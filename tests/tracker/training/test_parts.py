@@ -9,7 +9,7 @@ from tracker.training.blend_weights import find_weights, solve_nonnegative
 from tracker.training.learn import find_features, measure_from_joints
 from tracker.training.motion import sparsen_skinning
 from tracker.training.pose_fit import Poses, Rig
-from tracker.training.pose_shapes import compute_costs, fit_pose_shapes
+from tracker.training.pose_shapes import _solve, compute_costs, fit_pose_shapes
 from tracker.training.regressor import fit_joint_regressor
 from tracker.training.ridge_choice import choose_ridge
 from tracker.training.spaces import align_rigidly, find_shape_space, find_space
@@ -114,3 +114,16 @@ def test_first_templates_are_made_of_hands_at_rest():
     weights = weigh_by_pose(Poses(fingers.rotations, fingers.translations, np.zeros(20)), fingers.owners)
     assert weights.reshape(2, 10).sum(1) == pytest.approx([1.0, 1.0])
     assert (weights.reshape(2, 10).argmax(1) == 0).all() and weights[0] > 0.3
+
+
+def test_ridge_systems_are_solved_as_numpy_solves_them_also_with_hardly_any_data():
+    rng = np.random.default_rng(4)
+    for samples in (3, 200):
+        features, sides = rng.normal(size=(samples, 36)), rng.normal(size=(36, 15))
+        penalties = rng.uniform(1e-6, 2.0, (5, 36))
+        found = _solve(features.T @ features, sides, penalties)
+        for v in range(5):
+            expected = np.linalg.solve(features.T @ features + np.diag(penalties[v]), sides[:, 3 * v : 3 * v + 3])
+            np.testing.assert_allclose(
+                found[:, 3 * v : 3 * v + 3], expected, rtol=1e-6, atol=1e-9 * abs(expected).max()
+            )

@@ -17,6 +17,8 @@ export interface Curve {
   readonly digits?: number;
   /** Single values, shown as dots. */
   readonly isSparse?: boolean;
+  /** Dots on the line: few values, between which nothing was measured. */
+  readonly hasDots?: boolean;
 }
 
 interface PlotProps {
@@ -107,7 +109,7 @@ export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false
             stroke: curve.color,
             width: 1.5,
             ...(curve.dash ? { dash: curve.dash } : {}),
-            points: { show: curve.isSparse ?? false, size: 6, fill: curve.color },
+            points: { show: Boolean(curve.isSparse ?? curve.hasDots), size: curve.isSparse ? 6 : 5, fill: curve.color },
             ...(curve.isSparse ? { paths: () => null } : {}),
           })),
         ],

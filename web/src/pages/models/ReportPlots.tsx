@@ -25,7 +25,7 @@ function Curves({ title, note, unit, digits, lines }: { title: string; note: str
           const found = curve.values[curve.components.indexOf(component)];
           return found === undefined ? null : scale * found;
         });
-        return { label, unit, values, color, ...(dash ? { dash } : {}), axis: "left", digits };
+        return { label, unit, values, color, ...(dash ? { dash } : {}), axis: "left", digits, hasDots: curve.values.length <= MOST_DOTS };
       }),
     [shown, places, unit, digits],
   );
@@ -45,6 +45,9 @@ function Curves({ title, note, unit, digits, lines }: { title: string; note: str
 }
 
 const NONE: readonly number[] = [];
+
+/** More of them would only thicken the line. */
+const MOST_DOTS = 24;
 
 function Bars({ title, note, rows, show }: { title: string; note: string; rows: readonly NamedValue[]; show: (value: number) => string }) {
   if (rows.length === 0) return null;
@@ -134,11 +137,11 @@ function HeldOut({ study }: { study: HeldOutStudy | null }) {
             {study.floorMm !== null && ` Their registrations themselves lie ${mm(study.floorMm)} from the scans.`}
           </Text>
           <div className={classes.plots}>
-            <Curves title="Generalisation of poses" note="Scan to mesh, by number of pose components, mm" unit="mm" digits={2} lines={poses} />
             <Bars title="Scan to mesh" note="Pose and shape fitted" rows={study.models.scanToMesh} show={mm3} />
             <Bars title="Scan to mesh, own template" note="A template of each person, the pose fitted" rows={study.ownTemplate.scanToMesh} show={mm3} />
             <Bars title="Vertices" note="To those of the registration; pose and shape fitted" rows={study.models.vertices} show={mm3} />
             <Bars title="Vertices, own template" note="To those of the registration; the pose fitted" rows={study.ownTemplate.vertices} show={mm3} />
+            <Curves title="Generalisation of poses" note="Scan to mesh, by number of pose components, mm" unit="mm" digits={2} lines={poses} />
           </div>
           {study.notCompared.map(({ name, why }) => (
             <Text key={name} size="xs" className="quiet" mt={4}>

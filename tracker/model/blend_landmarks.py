@@ -10,12 +10,12 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from tracker.model.hand_axes import HandChains
+from tracker.model.hand_axes import HandChains, find_flexion_axis
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.model.skeleton import Array
 
 FINGER_DEPTH = 1.0 / 3.0
-"""Of the second and third joint of a finger, share of the way from the back to the palmar side."""
+"""Of the second and third joint of a finger and the thumb's last, share of the way from the back to the other side."""
 THUMB_BASE_DEPTH = 0.6
 
 
@@ -30,10 +30,15 @@ def find_landmark_offsets(vertices: Array, faces: npt.NDArray[np.int64], chains:
     offsets = np.zeros((len(HAND_JOINTS), 3))
     for finger in FINGERS:
         points = [chains.wrist, *chains.fingers[finger][-4:]]
-        for place, depth in ((1, THUMB_BASE_DEPTH),) if finger == "thumb" else ((2, FINGER_DEPTH), (3, FINGER_DEPTH)):
+        for place, depth in (
+            ((1, THUMB_BASE_DEPTH), (3, FINGER_DEPTH)) if finger == "thumb" else ((2, FINGER_DEPTH), (3, FINGER_DEPTH))
+        ):
             before, joint, after = points[place - 1 : place + 2]
-            along = _unit(joint - before) + _unit(after - joint)
-            back = _unit(chains.dorsal - (chains.dorsal @ along) / (along @ along) * along)
+            along = _unit(_unit(joint - before) + _unit(after - joint))
+            back = chains.dorsal
+            if finger == "thumb" and place > 1:  # that of the nail
+                back = np.cross(along, find_flexion_axis(chains, finger))
+            back = _unit(back - (back @ along) * along)
             inner, outer = _find_skin(vertices[faces], joint, back)
             offsets[1 + 4 * FINGERS.index(finger) + place - 1] = (outer - depth * (outer - inner)) * back
     return offsets

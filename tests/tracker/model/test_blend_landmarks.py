@@ -29,6 +29,6 @@ def test_those_of_the_trained_hand_are_deeper_than_its_joints_and_mirror_images(
     other = articulated_of(trained_hand("left" if side == "right" else "right")).hand
     assert hand is not None and other is not None
     moved = {name for name, offset in zip(HAND_JOINTS, hand.joint_offsets, strict=True) if offset.any()}
-    assert moved == {"thumb_cmc", *(f"{f}_{j}" for f in FINGERS[1:] for j in ("pip", "dip"))}
+    assert moved == {"thumb_cmc", "thumb_ip", *(f"{f}_{j}" for f in FINGERS[1:] for j in ("pip", "dip"))}
     assert -0.008 < hand.joint_offsets[HAND_JOINTS.index("thumb_cmc"), 2] < -0.003
     np.testing.assert_allclose(hand.joint_offsets * [1.0, -1.0, 1.0], other.joint_offsets, atol=1e-9)

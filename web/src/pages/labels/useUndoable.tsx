@@ -4,15 +4,16 @@ import { useRestoreSnapshot, type Snapshot } from "../../api/labels";
 
 /** Says what was done to a recording's labels and offers the way back: the snapshot that was kept before it. */
 export function useUndoable(recording: string): (what: string, before: Snapshot) => void {
-  const { mutate } = useRestoreSnapshot(recording);
+  const { mutateAsync } = useRestoreSnapshot(recording);
   return (what, before) => {
     const id = `undo-${before.id}`;
     const undo = (): void => {
       notifications.hide(id);
-      mutate(before.id, {
-        onSuccess: () => notifications.show({ message: "Undone: the labels are as they were before.", color: "teal" }),
-        onError: (failure) => notifications.show({ color: "red", title: "Not undone", message: failure.message }),
-      });
+      // Said whether or not the part of the page that offered it is still there.
+      mutateAsync(before.id).then(
+        () => notifications.show({ message: "Undone: the labels are as they were before.", color: "teal" }),
+        (failure: Error) => notifications.show({ color: "red", title: "Not undone", message: failure.message }),
+      );
     };
     notifications.show({
       id,

@@ -23,15 +23,21 @@ from tracker.synthesis.scans.scanner import Scanner
 
 ROOT = Path(__file__).resolve().parents[3]
 
-NUM_SCANS = 10
+NUM_SCANS = 8
 """Two are under way and three wait in the pool when Ctrl-C comes: the rest is not begun, however slow the signal."""
 
 
 def start(*words: object) -> subprocess.Popen[str]:
-    """A command with a terminal's group of its own."""
+    """A command with a terminal's group of its own, which hears Ctrl-C even where tests run in the background."""
     command = [sys.executable, "-m", "tracker.cli", *map(str, words)]
     pipe = subprocess.PIPE
-    return subprocess.Popen(command, cwd=ROOT, stdout=pipe, stderr=pipe, text=True, start_new_session=True)
+    return subprocess.Popen(
+        command, cwd=ROOT, stdout=pipe, stderr=pipe, text=True, start_new_session=True, preexec_fn=_hear_interrupts
+    )
+
+
+def _hear_interrupts() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def wait_for(process: subprocess.Popen[str], is_so, seconds: float = 240.0) -> None:

@@ -138,6 +138,7 @@ def test_one_stroke_crops_a_scan_and_can_be_taken_back_before_and_after_it_is_sa
     assert kept["revision"] == scan["revision"] + 1
     assert 100 * kept["removed_count"] / kept["point_count"] == pytest.approx(below, abs=1)
     page.keyboard.press("z")
+    page.get_by_text("Not saved yet; kept in this tab.").wait_for()
     save(page)
     assert studio.get(f"/scans/{scan['id']}")["removed_count"] == 0, "the file stayed whole"
 

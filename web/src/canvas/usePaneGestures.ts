@@ -33,7 +33,7 @@ const CLICK_RADIUS = 4;
 const TURN_PER_STEP = (2 * Math.PI) / 180 / 100;
 const GROWTH_PER_STEP = Math.log(1.02) / 100;
 /** A pause this long ends a turn: the next notch is another step for undo. */
-const TURN_PAUSE_MS = 350;
+const TURN_PAUSE_MS = 700;
 
 const clamp = (pixel: Point, image: Size): Point => ({
   x: Math.min(image.width - 0.501, Math.max(-0.5, pixel.x)),

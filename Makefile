@@ -1,5 +1,8 @@
-# Handloom: `make demo` serves the studio with a sample project, `make test` runs every test. Everything else hangs on `setup`.
+# Handloom: `make demo` serves the studio with a sample project, `make test` runs the tests, `make proofs` the slow ones. Everything else hangs on `setup`.
 # Stamps lie inside what they stand for (.venv, node_modules, dist): delete the folder and it is made again.
+
+# Bytecode is kept: without it every process compiles 4,000 modules anew, which made a worker's start twice as long.
+unexport PYTHONDONTWRITEBYTECODE
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -11,7 +14,7 @@ WEB := web/dist/.stamp
 TRACKER_SOURCES := $(shell find tracker -name '*.py')
 WEB_SOURCES := $(shell find web -type f -not -path '*/node_modules/*' -not -path '*/dist/*' -not -path '*/test-results/*' -not -name '*.tsbuildinfo')
 
-.PHONY: setup demo test test-python test-rooms test-browser test-web lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies clean
+.PHONY: setup demo test test-python test-rooms test-browser test-web proofs lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies clean
 .DELETE_ON_ERROR:
 
 setup: $(PROJECT) $(WEB) $(COMPILED)
@@ -55,10 +58,14 @@ test-python: setup
 	@status=0; $(MAKE) --no-print-directory test-rooms || status=1; $(MAKE) --no-print-directory test-browser || status=1; exit $$status
 
 test-rooms: setup
-	$(BIN)/python -m pytest -rs -m "not browser" --numprocesses auto --maxprocesses 4 --dist loadfile
+	$(BIN)/python -m pytest -rs -m "not browser and not slow" --numprocesses auto --maxprocesses 4 --dist worksteal
 
 test-browser: setup
-	$(BIN)/python -m pytest -rs -m browser
+	$(BIN)/python -m pytest tests/web -rs -m "browser and not slow"
+
+# What takes minutes: a loop of two rounds whose worker is killed, the demo, scans that become a model in the browser.
+proofs: setup
+	$(BIN)/python -m pytest -rs -m slow
 
 test-web: setup
 	cd web && npm test --silent

@@ -132,6 +132,33 @@ def test_a_worst_frame_is_one_click_from_the_annotator_and_from_the_3d_view(stud
     expect(page.get_by_role("table", name="Error of each track").get_by_role("row")).to_have_count(3)
 
 
+def test_who_leaves_a_track_before_its_address_is_written_is_not_called_back(judged, open_page):
+    """The page that is left stays drawn until the code of the next has come, and its address is written late."""
+    from playwright.sync_api import expect
+
+    _, tracks = judged
+    page = open_page()
+    asked = []
+
+    def slowly(route):
+        asked.append(route.request.url)
+        time.sleep(0.6)
+        route.continue_()
+
+    page.route(re.compile(r"/assets/EvaluationsPage[^/]*\.js"), slowly)
+    page.goto(f"/tracks/{tracks[0]['id']}")
+    expect(page.get_by_test_id("frame")).to_have_text("frame 0")
+    expect(page).to_have_url(re.compile("frame=0"))
+    page.get_by_role("link", name="Evaluate and compare").evaluate(
+        """(link) => {
+          document.body.dispatchEvent(new KeyboardEvent("keydown", { key: "f", code: "KeyF", bubbles: true }));
+          link.click();
+        }"""
+    )
+    expect(page.get_by_role("table", name="Error of each track").get_by_role("row")).to_have_count(3)
+    assert asked and "/evaluations?recordings=" in page.url and "frame=" not in page.url
+
+
 def test_a_click_in_the_curve_offers_that_frame(judged, open_page):
     from playwright.sync_api import expect
 

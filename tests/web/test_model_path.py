@@ -139,6 +139,7 @@ def _inked(page: Any, title: str) -> int:
     )
 
 
+@pytest.mark.slow
 def test_scans_become_a_model_that_is_judged_and_registers_again(studio, scans, open_page, screenshots):
     from playwright.sync_api import expect
 

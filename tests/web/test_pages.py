@@ -27,6 +27,9 @@ TOO_WIDE = """() =>
   [document.scrollingElement, document.querySelector("main")].some((element) => element.scrollWidth > innerWidth)"""
 
 
+NOTHING_LOADS = "() => !document.querySelector('main .mantine-Skeleton-root, main [aria-busy=true]')"
+
+
 @pytest.fixture(scope="module")
 def track(studio, synthesized):
     """A tracked recording with an annotation, made through the API."""
@@ -69,7 +72,8 @@ def test_every_page_fits_and_every_control_has_a_name(studio, track, open_page, 
     for name, address in addresses.items():
         page.goto(address)
         page.locator("main h1, main h2, [data-picture] canvas").first.wait_for()
-        page.wait_for_timeout(6000 if name == "track" and screenshots.folder else 800)
+        page.wait_for_function(NOTHING_LOADS)
+        page.wait_for_timeout(6000 if name == "track" and screenshots.folder else 100)
         screenshots.take(page, f"{name}-{width}-{scheme}")
         assert not page.evaluate(TOO_WIDE), f"{name} scrolls sideways at {width} px"
         assert page.evaluate(NAMELESS) == [], f"{name} has controls without a name"

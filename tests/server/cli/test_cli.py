@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
+import pytest
 
 from tests.server.conftest import GeneratedHand
 
@@ -224,6 +225,7 @@ def test_the_studio_does_jobs_and_outlives_its_worker_and_itself(tmp_path: Path,
     assert not [entry for entry in tmp_path.iterdir() if entry.name.startswith(".")]
 
 
+@pytest.mark.slow
 def test_the_demo_makes_its_samples_once_and_tracks_one(tmp_path: Path) -> None:
     data = tmp_path / "data"
     for _ in range(2):

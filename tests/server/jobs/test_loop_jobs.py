@@ -59,6 +59,7 @@ def test_a_cancelled_job_keeps_what_is_registered_and_goes_on_with_the_rest(fill
     assert {row.id: row.created_at for row in made if row.id in before} == before, "none was done twice"
 
 
+@pytest.mark.slow
 def test_a_loop_of_two_rounds_goes_on_after_a_killed_worker_and_each_round_learns_from_its_own(
     filled: ScanBench,
 ) -> None:

@@ -95,6 +95,7 @@ def machines(postgres_url: str, postgres_template: str, s3: S3, tmp_path: Path) 
             machine.database.close()
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_for_good_is_noticed_and_another_machine_ends_its_job_with_the_same_bits(
     machines: list[Machine], rendered: Path
 ) -> None:

@@ -61,6 +61,7 @@ def train(bench: ScanBench, set_id: uuid.UUID, **more: Any) -> uuid.UUID:
     return bench.make(making.make_train_job, asked)
 
 
+@pytest.mark.slow
 def test_killed_and_cancelled_in_training_and_in_evaluating_a_job_ends_with_the_same_bits(filled: ScanBench) -> None:
     bench, chosen = filled, choose(filled)
     worker = bench.start_worker()

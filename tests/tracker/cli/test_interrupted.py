@@ -51,6 +51,7 @@ def list_files(folder: Path) -> set[str]:
     return {path.name for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.slow
 def test_registering_with_several_processes_is_stopped_by_ctrl_c_and_goes_on(tmp_path):
     scans, out = tmp_path / "scans", tmp_path / "out"
     scans.mkdir()

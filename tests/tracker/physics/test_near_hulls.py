@@ -13,8 +13,10 @@ def distance_between(one, other):
     """Between two convex hulls of points, m: the least |x - y|, found by alternating projections (slow and plain)."""
     x = one.mean(axis=0)
     for _ in range(300):
-        y = nearest_in_hull(other, x)
+        before, y = x, nearest_in_hull(other, x)
         x = nearest_in_hull(one, y)
+        if np.linalg.norm(x - before) < 1e-8:
+            break
     return np.linalg.norm(x - y)
 
 

@@ -1,7 +1,6 @@
 /** The annotator's own state beside the session: pictures, views, keys, playback. */
 
 import { useCallback, useEffect, useMemo, useRef, useState, type RefObject } from "react";
-import { useSearchParams } from "react-router";
 import { PLACE_MODES } from "../../actions/annotate/place";
 import { stepFrames } from "../../actions/annotate/select";
 import { useKeymap } from "../../actions/useKeymap";
@@ -16,6 +15,7 @@ import { keepPlace } from "../../state/lastPlace";
 import { createHoverStore, pointerOn } from "../../state/pointer";
 import type { Session } from "../../state/session";
 import { arrangementFor, arrangementsOf, clampFactor, useViewOptions } from "../../state/viewOptions";
+import { useLateAddress } from "../parts/useLateAddress";
 import type { Actions, Annotating } from "./annotating";
 import { annotateActions, stepFor } from "./useAnnotateActions";
 import { usePlayback } from "./usePlayback";
@@ -37,7 +37,6 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
   const [preview, setPreview] = useState<Pose | null>(null);
   const [lock, setLock] = useState<string | null>(null);
   const [hover] = useState(createHoverStore);
-  const [, setAddress] = useSearchParams();
 
   const camera = recording.cameras.find((one) => one.id === state.camera) ?? recording.cameras[0];
   if (!camera) throw new Error("This recording has no camera.");
@@ -87,15 +86,7 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     if (pictures.failure) steps.drawn();
   }, [pictures.failure, steps]);
 
-  useEffect(() => {
-    const timer = setTimeout(() => {
-      const address = new URLSearchParams(window.location.search);
-      for (const [name, value] of Object.entries({ camera: state.camera, frame: String(state.frame), hand: state.hand })) address.set(name, value);
-      setAddress(address, { replace: true });
-      keepPlace(`/recordings/${recording.id}/annotate?${address}`);
-    }, 120);
-    return () => clearTimeout(timer);
-  }, [state.camera, state.frame, state.hand, recording.id, setAddress]);
+  useLateAddress({ camera: state.camera, frame: String(state.frame), hand: state.hand }, 120, keepPlace);
 
   useEffect(() => setRange(null), [camera.id]);
   useEffect(() => setViews({}), [arrangement]);

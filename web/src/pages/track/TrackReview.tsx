@@ -1,5 +1,5 @@
 import { useComputedColorScheme } from "@mantine/core";
-import { useCallback, useEffect, useMemo, useState } from "react";
+import { useCallback, useMemo, useState } from "react";
 import { useNavigate, useSearchParams } from "react-router";
 import { useKeymap } from "../../actions/useKeymap";
 import { LAYERS, useViewer, type Layer, type Shown } from "../../api/tracks";
@@ -9,6 +9,7 @@ import { badFrames, nextIn } from "../../model/badFrames";
 import { formatNumber } from "../../model/format";
 import { trackRows } from "../../model/trackRows";
 import { usePlayback } from "../annotate/usePlayback";
+import { useLateAddress } from "../parts/useLateAddress";
 import { ErrorLegend } from "./ErrorLegend";
 import { TrackBar } from "./TrackBar";
 import { TrackImage } from "./TrackImage";
@@ -32,7 +33,7 @@ interface TrackReviewProps {
 
 /** One frame drives everything: the 3D viewer, the image with the overlay, the curves and the timeline. */
 export function TrackReview({ track, frames, recording }: TrackReviewProps) {
-  const [address, setAddress] = useSearchParams();
+  const [address] = useSearchParams();
   const navigate = useNavigate();
   const first = frames.frame[0] ?? 0;
   const last = frames.frame.at(-1) ?? first;
@@ -58,11 +59,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
     },
   });
 
-  useEffect(() => {
-    const on = LAYERS.filter((layer) => layers[layer]).join(",");
-    const timer = setTimeout(() => setAddress({ frame: String(frame), camera: camera?.id ?? "", tab, layers: on }, { replace: true }), 150);
-    return () => clearTimeout(timer);
-  }, [frame, camera?.id, tab, layers, setAddress]);
+  useLateAddress({ frame: String(frame), camera: camera?.id ?? "", tab, layers: LAYERS.filter((layer) => layers[layer]).join(",") }, 150);
 
   const bad = useMemo(() => badFrames(frames), [frames]);
   const lost = useMemo(() => frames.frame.filter((_, index) => frames.status[index] === "lost"), [frames]);

@@ -10,7 +10,12 @@ import pytest
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(420)]
 
-SIZES = [(1280, 720), (1920, 1080)]
+LOOKS = [
+    (1280, 720, "dark"),
+    (1920, 1080, "light"),
+    pytest.param(1280, 720, "light", marks=pytest.mark.slow),
+    pytest.param(1920, 1080, "dark", marks=pytest.mark.slow),
+]
 
 NAMELESS = """() => [...document.querySelectorAll("button, a[href], input, select, textarea, [role=slider], iframe")]
   .filter((element) => element.offsetParent !== null || element.tagName === "IFRAME")
@@ -54,8 +59,7 @@ def track(studio, synthesized):
     return studio.get(f"/tracks/{job['track_id']}")
 
 
-@pytest.mark.parametrize("scheme", ["dark", "light"])
-@pytest.mark.parametrize(("width", "height"), SIZES)
+@pytest.mark.parametrize(("width", "height", "scheme"), LOOKS)
 def test_every_page_fits_and_every_control_has_a_name(studio, track, open_page, screenshots, width, height, scheme):
     page = open_page(width, height, scheme)
     recording = track["sequence_id"]

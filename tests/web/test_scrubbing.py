@@ -128,6 +128,7 @@ def read_number(page: Any) -> int:
     return sum(value << bit for bit, value in enumerate(bits))
 
 
+@pytest.mark.slow
 def test_scrubbing_forward_at_thirty_frames_a_second_shows_every_frame(
     studio, long_recording, open_page, picture_of, record_property
 ):

@@ -23,6 +23,7 @@ def test_annotators_lose_nothing_when_the_studio_is_killed_under_them(capsys) ->
     assert result["restarts"] >= 1 and result["sent_again"] > 0 and result["gestures"] > 10
 
 
+@pytest.mark.slow
 def test_the_same_on_postgresql(capsys, postgres_url: str) -> None:
     import psycopg
 

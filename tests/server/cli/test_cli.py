@@ -190,6 +190,7 @@ def test_what_is_no_recording_is_refused_and_nothing_stays(tmp_path: Path) -> No
     assert handloom(tmp_path / "data", "import", str(tmp_path / "none")).returncode == 2
 
 
+@pytest.mark.slow
 def test_the_studio_does_jobs_and_outlives_its_worker_and_itself(tmp_path: Path, rendered: Path) -> None:
     data = tmp_path / "data"
     sequence_id = json.loads(handloom(data, "import", str(rendered), "--json").stdout)["id"]

@@ -137,6 +137,7 @@ def assert_same(first: dict[str, np.ndarray], second: dict[str, np.ndarray]) -> 
         assert array.tobytes() == second[name].tobytes(), f"{name} differs"
 
 
+@pytest.mark.parametrize("database_kind", ["sqlite", pytest.param("postgresql", marks=pytest.mark.slow)])
 def test_a_job_whose_worker_is_killed_again_and_again_ends_with_the_same_bits(bench_on_both: Bench) -> None:
     bench = bench_on_both
     worker = bench.start_worker()
@@ -177,6 +178,7 @@ def test_a_cancelled_job_stops_at_once_and_resumes_where_it_was_with_the_same_bi
     assert_same(bench.arrays(undisturbed), bench.arrays(cancelled))
 
 
+@pytest.mark.parametrize("database_kind", [pytest.param("sqlite", marks=pytest.mark.slow), "postgresql"])
 def test_two_workers_share_the_jobs_and_do_none_twice(bench_on_both: Bench) -> None:
     bench = bench_on_both
     first, second = bench.start_worker(), bench.start_worker()

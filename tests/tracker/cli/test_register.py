@@ -83,6 +83,7 @@ def test_truths_and_registrations_beside_scans_are_no_scans(tmp_path):
     assert list_scans([tmp_path]) == [tmp_path / "scans" / "a.ply"]
 
 
+@pytest.mark.slow
 def test_bench_registration_prints_cold_and_warm_by_stage(capsys):
     assert run("bench", "registration", "--scans", 1, "--json") == 0
     found = json.loads(capsys.readouterr().out)

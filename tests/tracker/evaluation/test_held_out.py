@@ -123,6 +123,7 @@ def test_every_part_of_the_model_is_seen_to_help_on_people_it_has_not_seen(studi
     assert studied["not_compared"] == {} and studied["people"] == ["s32"] and studied["scans"] == 2
 
 
+@pytest.mark.slow
 def test_a_study_that_is_broken_off_again_and_again_finds_the_same(studied, trained, held_out, chosen, tmp_path):
     class Stopped(Exception):
         pass

@@ -27,6 +27,7 @@ def test_a_person_unlike_those_whom_the_model_knows_is_good_and_said_to_be_so():
     assert any(registration.measures[name] > LIMITS[name] for name in STRANGE)
 
 
+@pytest.mark.slow
 def test_a_flat_hand_registered_as_one_of_the_other_side_is_not_good(own_scan):
     registration = register_scan(own_scan.scan, untrained_hand(), RegistrationOptions(side="left"))
     assert registration.verdict != "good"

@@ -19,6 +19,7 @@ from tracker.model.blend_files import load_blend_model
 from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.blend_model import BlendModel
 from tracker.model.untrained_hand import untrained_hand
+from tracker.registration.curved_triangles import find_middles
 from tracker.registration.register import register_scan
 from tracker.registration.registration import Registration
 from tracker.registration.registration_files import load_registration, save_registration
@@ -128,9 +129,11 @@ def measure(registration: Registration, made: GeneratedScan, model: BlendModel) 
         "found_side": registration.side,
         "verdict": registration.verdict,
         "score": registration.score,
+        "measures": registration.measures,
         "reasons": list(registration.reasons),
         "scan_to_mesh_mm": float(np.nanmean(scan_to_mesh)) if np.isfinite(scan_to_mesh).any() else None,
         "surface_mm": float(1e3 * surface_distances(registration, made).mean()),
+        "flat_surface_mm": float(1e3 * surface_distances(registration, made, is_curved=False).mean()),
         "vertices_mm": float(error.mean()),
         "vertices_p95_mm": float(np.percentile(error, 95)),
         "model_vertices_mm": float(
@@ -140,9 +143,15 @@ def measure(registration: Registration, made: GeneratedScan, model: BlendModel) 
     }
 
 
-def surface_distances(registration: Registration, made: GeneratedScan) -> Array:
-    """(V + F,) m from the registration's vertices and the middles of its faces to the true surface, seen or not."""
-    points = np.concatenate([registration.vertices, registration.vertices[registration.faces].mean(axis=1)])
+def surface_distances(registration: Registration, made: GeneratedScan, is_curved: bool = True) -> Array:
+    """(V + F,) m from the registration's vertices and the middles of its faces to the true surface, seen or not.
+
+    Args:
+        is_curved: The faces bulge, as registration has them; else they are flat.
+    """
+    vertices, faces = registration.vertices, registration.faces
+    middles = find_middles(vertices, faces) if is_curved else vertices[faces].mean(axis=1)
+    points = np.concatenate([vertices, middles])
     vertices, faces = made.true_surface
     normals = vertex_normals(vertices, faces)
     away, nearest = KDTree(vertices).query(points)

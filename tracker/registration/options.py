@@ -38,7 +38,7 @@ class RegistrationOptions:
         default=(
             (5000, FreeSettings(1.0, 10.0, 3)),
             (5000, FreeSettings(0.2, 7.0, 3)),
-            (10000, FreeSettings(0.03, 5.0, 4)),
+            (20000, FreeSettings(0.02, 5.0, 4)),
         )
     )
     last_stage: tuple[int, FitSettings] = (5000, FitSettings(4.0, 8, pose_weight=0.3, shape_weight=1.0))

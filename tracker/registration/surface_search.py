@@ -1,4 +1,7 @@
-"""Closest points on a posed mesh, exactly, among the triangles that look the same way."""
+"""Closest points on a posed mesh among the triangles that look the same way.
+
+The closest triangle is found exactly as if all were flat; the distance is that to the curved one (`curved_triangles`).
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ import numpy.typing as npt
 from numba import njit
 
 from tracker.geometry.triangle_tree import Filter, build_triangle_tree, fit_tree
+from tracker.registration.curved_triangles import find_bulges, find_height
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -25,8 +29,10 @@ class Matches:
         faces: (N,) triangle, -1 where none is near enough and looks the same way.
         weights: (N, 3) of the triangle's corners.
         directions: (N, 3) unit, in which the distance is measured: the triangle's normal where the point lies over its
-            inside, else from the closest point to the point. So the derivative of the distance is exact.
-        offsets: (N,) signed distance along that direction, m.
+            inside, else from the closest point to the point. So the derivative of the distance from flat triangles is
+            exact; how they bulge is held.
+        offsets: (N,) signed distance from the curved triangle along that direction, m.
+        heights: (N,) how far the curved triangle lies above the flat one there, m.
         on_rim: (N,) the closest point lies on the open rim of the mesh.
     """
 
@@ -34,6 +40,7 @@ class Matches:
     weights: Array
     directions: Array
     offsets: Array
+    heights: Array
     on_rim: npt.NDArray[np.bool_]
 
 
@@ -78,6 +85,7 @@ class SurfaceSearch:
             np.zeros((count, 3)),
             np.zeros((count, 3)),
             np.zeros(count),
+            np.zeros(count),
             np.zeros(count, dtype=np.bool_),
         )
         face_normals = np.empty((len(self.faces), 3))
@@ -87,12 +95,14 @@ class SurfaceSearch:
             found.weights,
             found.directions,
             found.offsets,
+            found.heights,
             found.on_rim,
             points,
             normals,
             vertices,
             self.faces,
             face_normals,
+            find_bulges(vertices, self.faces),
             fitted.node_boxes,
             self._tree.order,
             self._tree.starts,
@@ -177,8 +187,8 @@ def _box_distance(boxes, n, x, y, z):
 
 @njit(cache=True, nogil=True)
 def _match_into(
-    found, weights, directions, offsets, on_rim,
-    points, normals, vertices, faces, face_normals, boxes, order, starts, ends, skip, rim_edges, rim_vertices,
+    found, weights, directions, offsets, heights, on_rim,
+    points, normals, vertices, faces, face_normals, bulges, boxes, order, starts, ends, skip, rim_edges, rim_vertices,
     reach, min_cosine,
 ):  # fmt: skip
     stack = np.empty(128, dtype=np.int32)
@@ -251,3 +261,5 @@ def _match_into(
             scale = sign / length
             directions[p, 0], directions[p, 1], directions[p, 2] = dx * scale, dy * scale, dz * scale
             offsets[p] = sign * length
+        heights[p] = find_height(bulges, face, weights, p, directions)
+        offsets[p] -= heights[p]

@@ -24,8 +24,8 @@ JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=3.0)
 JUDGE_POINTS = 4000
 
 LIMITS = {
-    "stretch": 1.02,
-    "scan_to_surface": 0.10,
+    "stretch": 1.05,
+    "scan_to_surface": 0.07,
     "scan_to_model": 1.4,
     "model_to_scan": 4.2,
     "moved": 2.8,

@@ -14,6 +14,7 @@ from tracker.evaluation.scan_fit import (
     without_pose_shapes,
 )
 from tracker.model.untrained_hand import untrained_hand
+from tracker.registration.curved_triangles import find_bulges
 from tracker.registration.surface_search import SurfaceSearch
 from tracker.registration.vertex_normals import find_unit_normals
 
@@ -54,12 +55,15 @@ def test_pose_comes_back_exactly_where_the_template_is_known(model, posed):
 
 
 def make_scan(posed):
-    """Points (N, 3) within faces of the posed mesh, and normals (N, 3)."""
+    """Points (N, 3) within the curved faces of the posed mesh, and normals (N, 3)."""
     rng = np.random.default_rng(2)
-    faces = posed.model.faces[rng.integers(0, len(posed.model.faces), 3000)]
+    ids = rng.integers(0, len(posed.model.faces), 3000)
+    faces = posed.model.faces[ids]
     shares = rng.dirichlet(np.ones(3), 3000)
     normals = find_unit_normals(posed.vertices, posed.model.faces)
-    return np.einsum("nk,nki->ni", shares, posed.vertices[faces]), normals[faces[:, 0]]
+    bulges = find_bulges(posed.vertices, posed.model.faces)[ids]
+    on_flat = np.einsum("nk,nki->ni", shares, posed.vertices[faces])
+    return on_flat + np.einsum("nk,nki->ni", 4.0 * shares * np.roll(shares, -1, axis=1), bulges), normals[faces[:, 0]]
 
 
 def test_a_fit_to_a_scan_ends_on_its_surface(model, posed):

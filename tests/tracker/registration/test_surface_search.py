@@ -1,4 +1,7 @@
-"""Closest points against looking at every triangle."""
+"""Closest points against looking at every triangle.
+
+Offsets are from the curved triangle, heights above the flat one.
+"""
 
 from __future__ import annotations
 
@@ -42,14 +45,14 @@ def problem():
 def test_without_normals_every_point_finds_the_nearest_of_all_triangles(problem):
     hand, search, points, normals, (distances, _) = problem
     found = search.match(hand.template, points, np.zeros_like(normals), reach=1.0)
-    assert np.abs(found.offsets) == pytest.approx(distances.min(axis=1), abs=1e-12)
+    assert np.abs(found.offsets + found.heights) == pytest.approx(distances.min(axis=1), abs=1e-12)
 
 
 def test_with_normals_it_finds_the_nearest_of_those_that_look_the_same_way(problem):
     hand, search, points, normals, (distances, face_normals) = problem
     found = search.match(hand.template, points, normals, reach=1.0, min_cosine=0.25)
     allowed = np.where(normals @ face_normals.T > 0.25, distances, np.inf)
-    assert np.abs(found.offsets) == pytest.approx(allowed.min(axis=1), abs=1e-12)
+    assert np.abs(found.offsets + found.heights) == pytest.approx(allowed.min(axis=1), abs=1e-12)
 
 
 def test_seeds_change_nothing_but_the_time(problem):
@@ -70,7 +73,7 @@ def test_point_direction_and_offset_lead_back_to_the_closest_point(problem):
     hand, search, points, normals, _ = problem
     found = search.match(hand.template, points, np.zeros_like(normals), reach=1.0)
     closest = np.einsum("nk,nkd->nd", found.weights, hand.template[search.faces[found.faces]])
-    assert closest + found.offsets[:, None] * found.directions == pytest.approx(points, abs=1e-9)
+    assert closest + (found.offsets + found.heights)[:, None] * found.directions == pytest.approx(points, abs=1e-9)
 
 
 def test_points_behind_the_wrist_lie_on_the_rim_and_others_do_not():

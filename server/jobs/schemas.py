@@ -46,7 +46,14 @@ class TrainingParams(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     rounds: int = Field(default=3, ge=1, le=20, description="Times that all parts of the model are improved in turn.")
-    num_shapes: int = Field(default=10, ge=1, le=200, description="Shape directions kept, at most.")
+    num_shapes: int = Field(default=10, ge=1, le=200, description="Shape directions of the whole hand kept, at most.")
+    num_local_shapes: int = Field(
+        default=0,
+        ge=0,
+        le=200,
+        description="Shape directions of parts of the hand that follow them, at most: they fit people unlike those "
+        "learnt from.",
+    )
     with_pose_shapes: bool = Field(default=True, description="Without: plain linear blend skinning.")
     with_mirrored: bool = Field(default=True, description="Learn from left hands too, mirrored.")
 

@@ -17,7 +17,8 @@ class TrainingOptions:
     with_pose_shapes: Without, what is trained is plain linear blend skinning.
     with_mirrored: Whether mirrored left hands are learnt from, too.
     ridges: Weights of Eq. 10 to choose from by leaving people out; a single one is taken as it is.
-    num_shapes: Shape directions kept, at most.
+    num_shapes: Shape directions of the whole hand kept, at most.
+    num_local_shapes: Shape directions of parts of the hand that follow them, at most (`local_shapes`).
     joint_stiffness: How strongly joints keep to the joint regressor, in vertices per registration.
     weight_stiffness: How strongly blend weights keep to what they were, mm².
     threads: Poses fitted at a time.
@@ -29,6 +30,7 @@ class TrainingOptions:
     with_mirrored: bool = True
     ridges: tuple[float, ...] = RIDGES
     num_shapes: int = 10
+    num_local_shapes: int = 0
     joint_stiffness: float = 2.0
     weight_stiffness: float = 0.1
     threads: int = 1
@@ -40,6 +42,8 @@ class TrainingOptions:
             raise TrainingError(f"ridges are {self.ridges}; give one or more weights above 0.")
         if not 1 <= self.num_shapes <= 200:
             raise TrainingError(f"num_shapes is {self.num_shapes}; it must be from 1 to 200.")
+        if not 0 <= self.num_local_shapes <= 200:
+            raise TrainingError(f"num_local_shapes is {self.num_local_shapes}; it must be from 0 to 200.")
         if self.joint_stiffness <= 0.0 or self.weight_stiffness <= 0.0:
             raise TrainingError("joint_stiffness and weight_stiffness must be above 0.")
         if not 1 <= self.threads <= 256:

@@ -14,6 +14,7 @@ from tracker.errors import TrainingError
 from tracker.model.blend_model import BlendModel
 from tracker.training.checkpoints import Checkpoints, NoCheckpoints, compute_key
 from tracker.training.learn import Data, Learnt, begin, improve_joints, improve_surface
+from tracker.training.local_shapes import find_local_shapes
 from tracker.training.motion import fill_skinning
 from tracker.training.options import TrainingOptions
 from tracker.training.pose_fit import fit_poses
@@ -204,6 +205,10 @@ def _assemble(learnt: Learnt, initial: BlendModel, training_set: TrainingSet, op
     turns = compute_rotation_vectors(learnt.poses.rotations.reshape(-1, 3, 3)).reshape(N, 3 * B)
     pose_space = find_space(turns[:, 3:])
     template, shape_directions, shape_space = find_shape_space(learnt.templates, options.num_shapes)
+    if options.num_local_shapes:
+        whole = shape_space.components[: shape_directions.shape[2]]
+        local = find_local_shapes(learnt.templates, whole, options.num_local_shapes)
+        shape_directions = np.concatenate([shape_directions, local], axis=2)
     V = len(template)
     directions = learnt.rig.directions if options.with_pose_shapes else np.zeros((V, 3, 9 * (B - 1)))
     model = replace(

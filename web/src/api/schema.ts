@@ -7212,8 +7212,14 @@ export interface components {
          */
         TrainingParams: {
             /**
+             * Num Local Shapes
+             * @description Shape directions of parts of the hand that follow them, at most: they fit people unlike those learnt from.
+             * @default 0
+             */
+            num_local_shapes: number;
+            /**
              * Num Shapes
-             * @description Shape directions kept, at most.
+             * @description Shape directions of the whole hand kept, at most.
              * @default 10
              */
             num_shapes: number;

@@ -35,9 +35,7 @@ def add_training_options(parser: argparse.ArgumentParser) -> None:
     """What `train-model` and `model-loop` share."""
     parser.add_argument("--accepted", type=Path, metavar="FILE", help="names of accepted scans, a JSON list or lines")
     parser.add_argument("--rounds-of-training", type=int, default=3, metavar="N", help="of training (3)")
-    parser.add_argument(
-        "--shapes", type=int, default=10, metavar="N", help="shape directions of the whole hand (10)"
-    )
+    parser.add_argument("--shapes", type=int, default=10, metavar="N", help="shape directions of the whole hand (10)")
     parser.add_argument("--local-shapes", type=int, default=0, metavar="N", help="and of parts of the hand (0)")
     parser.add_argument("--no-pose-shapes", action="store_true", help="plain linear blend skinning")
     parser.add_argument("--no-mirrored", action="store_true", help="learn from right hands only")

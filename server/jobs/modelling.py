@@ -9,6 +9,7 @@ import uuid
 from collections import Counter, OrderedDict
 from dataclasses import replace
 from pathlib import Path
+from statistics import median
 from typing import TYPE_CHECKING, Any
 from uuid import UUID
 
@@ -43,6 +44,9 @@ Span = tuple[float, float]
 
 NAMESPACE = UUID("3b7f2f0e-6c8a-4b57-9d55-0a2f4cf1e7d3")
 FAILED = "not read"
+
+RECENT_SCANS = 15
+"""That the time left is judged by."""
 
 
 class ModelShelf:
@@ -104,8 +108,19 @@ class ScanRun(JobRun):
                 session.execute(update(ScanRow).where(ScanRow.id == scan_id).values(state="failed", problem=problem))
             progress.log("warning", f"{row.name}: {problem}")
             verdict = FAILED
-        progress.scans_done(number + 1, total, span)
+        progress.scans_done(number + 1, total, span, self._estimate_seconds_left(model_id, total - number - 1, span))
         return verdict
+
+    def _estimate_seconds_left(self, model_id: UUID, scans_left: int, span: Span) -> float | None:
+        """As the last scans took; null while another part of a loop follows, which takes nobody knows how long."""
+        if span[1] < 1.0:
+            return None
+        mine = select(RegistrationRow.seconds).where(
+            RegistrationRow.job_id == self.job_id, RegistrationRow.model_id == model_id
+        )
+        with self.context.database.reading() as session:
+            recent = session.scalars(mine.order_by(RegistrationRow.created_at.desc()).limit(RECENT_SCANS)).all()
+        return scans_left * median(recent) if recent else None
 
     def _find_start(self, session: Session, scan_id: UUID, model_id: UUID) -> RegistrationStart | None:
         """Where to begin: at the newest registration of the scan, when it seems right and people do not reject it."""

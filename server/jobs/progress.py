@@ -74,9 +74,10 @@ class JobProgress:
         """Say that `done` of `total` scans are registered, and a share of the next; also how a job learns to stop."""
         self._publish(False, **self._describe_scans(done + share, total, span), stage=name, frames_done=done)
 
-    def scans_done(self, done: int, total: int, span: tuple[float, float]) -> None:
-        """Say that another scan is safe on disk."""
-        self._publish(True, **self._describe_scans(done, total, span), frames_done=done, crashes=0)
+    def scans_done(self, done: int, total: int, span: tuple[float, float], seconds_left: float | None) -> None:
+        """Say that another scan is safe on disk, and how long the others will take."""
+        values = self._describe_scans(done, total, span)
+        self._publish(True, **values, frames_done=done, crashes=0, seconds_left=seconds_left)
 
     def _describe_scans(self, done: float, total: int, span: tuple[float, float]) -> dict[str, float | int]:
         first, last = span

@@ -190,11 +190,15 @@ def test_scans_become_a_model_that_is_judged_and_registers_again(studio, scans, 
     expect(
         dialog.get_by_text(f"{len(TRAINED_ON) * len(POSES)} registrations of {len(TRAINED_ON)} subjects")
     ).to_be_visible()
+    dialog.get_by_label("Parts of the hand vary by themselves, too").check()
     screenshots.take(page, "path-train-dialog")
     dialog.get_by_role("button", name="Train", exact=True).click()
     page.wait_for_url(re.compile(r"/jobs/[0-9a-f-]{36}$"))
     screenshots.take(page, "path-training")
     job = _wait_for_end(studio, page, page.url.rsplit("/", 1)[1])
+    assert job["params"]["options"]["num_local_shapes"] == 40
+    parameters = page.get_by_role("region", name="Parameters")
+    expect(parameters.get_by_text("Shapes of parts of the hand")).to_be_visible()
     screenshots.take(page, "path-trained")
     page.get_by_role("link", name="Open the model").click()
 

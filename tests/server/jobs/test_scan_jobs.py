@@ -44,12 +44,13 @@ def test_a_killed_worker_loses_one_scan_at_most_and_none_is_registered_twice(
     (bench.storage.folder("scans", damaged.id) / "scan.ply").write_bytes(b"ply\nnothing\n")
     worker = bench.start_worker()
     job_id = bench.make(making.make_register_job, RegisterCreate(only="all"))
-    bench.wait(job_id, lambda job: job.frames_done >= 1)
+    job = bench.wait(job_id, lambda job: job.frames_done >= 1)
+    assert job.seconds_left is not None and 0.0 < job.seconds_left < 120.0, "two scans, each as long as the first took"
     bench.kill(worker)
     assert bench.job(job_id).state == "running"
     bench.start_worker()
     job = bench.wait_for_end(job_id)
-    assert (job.frames_done, job.frames_total, job.progress) == (3, 3, 1.0)
+    assert (job.frames_done, job.frames_total, job.progress, job.seconds_left) == (3, 3, 1.0, None)
     assert any("going on after the last finished step" in line for line in bench.log(job_id))
     made = bench.registrations(job_id)
     assert len(made) == 2 and len({row.scan_id for row in made}) == 2

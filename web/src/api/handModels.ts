@@ -30,10 +30,14 @@ export interface RegisterWish {
 /** How thoroughly a model is judged on people kept for testing. */
 export type Evaluate = Schemas["TrainCreate"]["evaluate"];
 
+/** How to train, where it is not as usual. */
+export type TrainingWish = Partial<Schemas["TrainingParams"]>;
+
 export interface TrainWish {
   training_set_id: string;
   name: string;
   model_id?: string;
+  options?: TrainingWish;
   evaluate?: Evaluate;
   test_subjects?: readonly string[];
 }
@@ -46,6 +50,7 @@ export interface LoopWish {
   by?: "verdict" | "decisions";
   rounds?: number;
   leave_out_subjects?: readonly string[];
+  options?: TrainingWish;
   evaluate?: Evaluate;
 }
 

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import type { Job, JobForm } from "../api/types";
-import { compareParams, listParams, showValue } from "./compareJobs";
+import { compareParams, describeParams } from "./compareJobs";
 
 const job = (params: Record<string, unknown>): Job => ({ params }) as unknown as Job;
 const form = { fields: [{ name: "iterations", label: "Iterations" }, { name: "calibrate", label: "Fit the shape" }] } as unknown as JobForm;
@@ -20,11 +20,11 @@ test("10 and \"10\" are not the same", () => {
 
 test("parameters of a training are listed one by one, with names in place of ids", () => {
   const params = { model_id: "7f43", model: "Untrained right hand", job_id: "1", options: { rounds: 3, with_mirrored: true }, test_subjects: ["S32", "S33"] };
-  expect(listParams(params).map(([name, value]) => [name, showValue(value)])).toEqual([
-    ["model", "Untrained right hand"],
-    ["job_id", "1"],
-    ["rounds", "3"],
-    ["with_mirrored", "yes"],
-    ["test_subjects", "S32, S33"],
+  expect(describeParams(params)).toEqual([
+    ["Model", "Untrained right hand"],
+    ["Job id", "1"],
+    ["Test subjects", "S32, S33"],
+    ["Rounds of training", "3"],
+    ["Left hands, mirrored", "yes"],
   ]);
 });

@@ -11,6 +11,25 @@ export interface ParamRow {
   isDifferent: boolean;
 }
 
+/** What the options of a training are called; their names serve programs. */
+const TRAINING_LABELS: Readonly<Record<string, string>> = {
+  rounds: "Rounds of training",
+  num_shapes: "Shapes of the whole hand",
+  num_local_shapes: "Shapes of parts of the hand",
+  with_pose_shapes: "Pose blend shapes",
+  with_mirrored: "Left hands, mirrored",
+};
+
+/** Parameters one by one, as people read them: those inside others too, and no id beside the name of the same thing. */
+export function describeParams(params: Readonly<Record<string, unknown>>): [label: string, value: string][] {
+  const { options, ...rest } = params;
+  const training = typeof options === "object" && options !== null ? Object.entries(options) : [];
+  return [
+    ...listParams(rest).map(([name, value]): [string, string] => [formatName(name), showValue(value)]),
+    ...training.map(([name, value]): [string, string] => [TRAINING_LABELS[name] ?? formatName(name), showValue(value)]),
+  ];
+}
+
 /** A value as people read it. */
 export function showValue(value: unknown): string {
   if (typeof value === "boolean") return value ? "yes" : "no";
@@ -31,8 +50,7 @@ export function compareParams(first: Job, second: Job, form: JobForm | undefined
   return [...rows.filter((row) => row.isDifferent), ...rows.filter((row) => !row.isDifferent)];
 }
 
-/** Parameters one by one: those inside others too, and no id beside the name of the same thing. */
-export function listParams(params: Readonly<Record<string, unknown>>): [name: string, value: unknown][] {
+function listParams(params: Readonly<Record<string, unknown>>): [name: string, value: unknown][] {
   return Object.entries(params).flatMap(([name, value]): [string, unknown][] => {
     if (name.endsWith("_id") && name.slice(0, -3) in params) return [];
     return typeof value === "object" && value !== null && !Array.isArray(value) ? listParams(value as Record<string, unknown>) : [[name, value]];

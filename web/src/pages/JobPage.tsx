@@ -3,7 +3,7 @@ import { useEffect, useRef } from "react";
 import { Link, useParams } from "react-router";
 import { isActive, useJob, useJobLog } from "../api/jobs";
 import { useRecording } from "../api/recordings";
-import { listParams, showValue } from "../model/compareJobs";
+import { describeParams } from "../model/compareJobs";
 import { formatAgo, formatDuration, formatName } from "../model/format";
 import { CompareWith } from "./jobs/CompareWith";
 import { JobResult } from "./jobs/JobResult";
@@ -40,7 +40,7 @@ export function JobPage() {
   useTitle(job ? `${formatName(job.kind)} ${job.title}` : "Job");
   if (error && !job) return <Failure what="The job could not be loaded" error={error} safe="If it runs, it goes on by itself." onRetry={() => void refetch()} />;
   if (!job) return <PageSkeleton />;
-  const params = listParams(job.params);
+  const params = describeParams(job.params);
   return (
     <div className="page">
       <Group mb="lg" justify="space-between" wrap="nowrap" align="flex-start">
@@ -118,12 +118,12 @@ export function JobPage() {
           </Title>
           <Stack gap={4} className="card" p="md">
             {params.length === 0 && <Text className="quiet">All at their defaults.</Text>}
-            {params.map(([name, value]) => (
-              <Group key={name} justify="space-between" wrap="nowrap" align="flex-start">
+            {params.map(([label, value]) => (
+              <Group key={label} justify="space-between" wrap="nowrap" align="flex-start">
                 <Text size="sm" className="quiet">
-                  {formatName(name)}
+                  {label}
                 </Text>
-                <Code>{showValue(value)}</Code>
+                <Code>{value}</Code>
               </Group>
             ))}
           </Stack>

@@ -4,6 +4,7 @@ import { useNavigate } from "react-router";
 import { useStartLoop, type Evaluate, type HandModel } from "../../api/handModels";
 import { useScanCollections } from "../../api/scans";
 import { EvaluateChoice } from "./EvaluateChoice";
+import { LOCAL_SHAPES, LocalShapesChoice } from "./LocalShapesChoice";
 
 const EVERY = "";
 
@@ -18,6 +19,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
   const [collection, setCollection] = useState(EVERY);
   const [leaveOut, setLeaveOut] = useState<string[]>([]);
   const [evaluate, setEvaluate] = useState<Evaluate>("quick");
+  const [hasLocalShapes, setHasLocalShapes] = useState(false);
   const submit = (): void =>
     start.mutate(
       {
@@ -26,6 +28,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
         rounds: by === "decisions" ? 1 : rounds,
         leave_out_subjects: leaveOut,
         evaluate: leaveOut.length > 0 ? evaluate : "no",
+        ...(hasLocalShapes ? { options: { num_local_shapes: LOCAL_SHAPES } } : {}),
         ...(collection ? { collection } : {}),
         ...(model ? { model_id: model.id } : {}),
       },
@@ -55,6 +58,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
             <Select label="Collection" allowDeselect={false} value={collection} data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]} onChange={(value) => setCollection(value ?? EVERY)} />
           </Group>
           <TagsInput label="Subjects to leave out" description="Kept for testing" placeholder={leaveOut.length === 0 ? "None" : ""} value={leaveOut} onChange={setLeaveOut} />
+          <LocalShapesChoice value={hasLocalShapes} onChange={setHasLocalShapes} />
           <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
           {start.error && (
             <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>

@@ -6,6 +6,7 @@ import { useHandModels, useMakeTrainingSet, useStartTraining, useTrainingPreview
 import { useScanCollections } from "../../api/scans";
 import { formatCount } from "../../model/format";
 import { EvaluateChoice } from "./EvaluateChoice";
+import { LOCAL_SHAPES, LocalShapesChoice } from "./LocalShapesChoice";
 
 const EVERY = "";
 
@@ -29,6 +30,7 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
   const [collection, setCollection] = useState(EVERY);
   const [leaveOut, setLeaveOut] = useState<string[]>([]);
   const [evaluate, setEvaluate] = useState<Evaluate>("quick");
+  const [hasLocalShapes, setHasLocalShapes] = useState(false);
   const rule: TrainingRule = {
     by,
     collections: collection ? [collection] : [],
@@ -48,6 +50,7 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
       const job = await train.mutateAsync({
         training_set_id: set.id,
         name: title,
+        ...(hasLocalShapes ? { options: { num_local_shapes: LOCAL_SHAPES } } : {}),
         ...(leaveOut.length > 0 ? { evaluate, test_subjects: leaveOut } : {}),
         ...(modelId ? { model_id: modelId } : {}),
       });
@@ -83,6 +86,7 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
             />
             <TagsInput label="Subjects to leave out" description="Kept for testing" placeholder={leaveOut.length === 0 ? "None" : ""} value={leaveOut} onChange={setLeaveOut} />
           </Group>
+          <LocalShapesChoice value={hasLocalShapes} onChange={setHasLocalShapes} />
           <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
           {model && (
             <Text size="sm" className="quiet">

@@ -199,6 +199,7 @@ def test_scans_become_a_model_that_is_judged_and_registers_again(studio, scans, 
     assert job["params"]["options"]["num_local_shapes"] == 40
     parameters = page.get_by_role("region", name="Parameters")
     expect(parameters.get_by_text("Shapes of parts of the hand")).to_be_visible()
+    expect(page.get_by_label("Log of the job").get_by_text("Hand of the whole path is trained")).to_be_visible()
     screenshots.take(page, "path-trained")
     page.get_by_role("link", name="Open the model").click()
 

@@ -141,6 +141,7 @@ export function useJobLog(id: string, isLive: boolean) {
       return [...known, ...lines];
     },
     refetchInterval: isLive ? 1500 : false,
+    placeholderData: (seen) => seen, // the lines stay while the last ones come, when the job has ended
   });
 }
 

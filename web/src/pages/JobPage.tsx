@@ -22,7 +22,7 @@ function Log({ jobId, isLive }: { jobId: string; isLive: boolean }) {
   if (error) return <Text className="quiet">The log could not be loaded: {error.message}</Text>;
   return (
     <ScrollArea.Autosize mah={420} className={classes.log} tabIndex={0} aria-label="Log of the job">
-      {count === 0 && <Text className="quiet">{isLive ? "Nothing logged yet." : "The job logged nothing."}</Text>}
+      {count === 0 && <Text className="quiet">{!data ? "Loading …" : isLive ? "Nothing logged yet." : "The job logged nothing."}</Text>}
       {data?.map((line) => (
         <div key={line.n} className={classes.line} data-level={line.level.toLowerCase()}>
           <span className="quiet">{new Date(line.time).toLocaleTimeString()}</span> <span className={classes.level}>{line.level.toLowerCase()}</span> {line.text}

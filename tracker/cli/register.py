@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Job = tuple[Path, Path, Path | None, Path | None, "RegistrationOptions", float | None]
 
 
-NO_SCANS = ("truth.npz", "registration.npz", "registration.ply")
+NO_SCANS = ("truth.npz", "registration.npz", "registration.ply", "registration_surface.ply")
 """Files of other meaning that may lie among scans."""
 
 
@@ -33,8 +33,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "register",
         help="lay a hand model's mesh onto 3D scans",
         description="Register the mesh of a hand model to each scan, without a manual start, and judge the result. For "
-        "each scan, OUT/NAME gets registration.npz and registration.ply. Scans whose registration is there already, "
-        "with the same scan and model, are skipped: an interrupted run goes on where it stopped.",
+        "each scan, OUT/NAME gets registration.npz, registration.ply and registration_surface.ply. Scans whose "
+        "registration is there already, with the same scan and model, are skipped: an interrupted run goes on where "
+        "it stopped.",
     )
     parser.add_argument(
         "scans", type=Path, nargs="+", metavar="SCAN", help="PLY, OBJ, STL or npz; a folder stands for all in it"
@@ -137,6 +138,7 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
         REGISTRATION_FILE,
         load_registration,
         save_registration,
+        save_surface,
         summarize_registration,
     )
 
@@ -158,6 +160,7 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
         registration = register_scan(scan, model, options, start)
         subject, pose_name = _read_labels(path)
         registration = replace(registration, subject=subject, pose_name=pose_name)
+        save_surface(registration, folder)
         save_registration(registration, folder)
         return summarize_registration(registration)
     except (ScanError, RegistrationError) as error:

@@ -30,6 +30,28 @@ def find_middles(vertices: Array, faces: npt.NDArray) -> Array:
     return vertices[faces].mean(axis=1) + 4.0 / 9.0 * find_bulges(vertices, faces).sum(axis=1)
 
 
+def refine(vertices: Array, faces: npt.NDArray, levels: int = 2) -> tuple[Array, npt.NDArray[np.int64]]:
+    """The curved surface as flat triangles, each one of the mesh cut into four `levels` times.
+
+    Args:
+        vertices: (V, 3) m. They stay the first ones, where they are.
+        faces: (F, 3).
+
+    Returns:
+        Vertices and faces (4^levels F, 3); which vertex is where depends on `faces` alone.
+    """
+    corners = np.asarray(faces, dtype=np.int64)
+    for _ in range(levels):
+        ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
+        edges, first, middle = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_inverse=True)
+        bulges = find_bulges(vertices, corners).reshape(-1, 3)
+        middle = len(vertices) + middle.reshape(-1, 3)
+        vertices = np.concatenate([vertices, vertices[edges].mean(axis=1) + bulges[first]])
+        (a, b, c), (ab, bc, ca) = corners.T, middle.T
+        corners = np.stack([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]).transpose(2, 0, 1).reshape(-1, 3)
+    return vertices, corners
+
+
 @njit(cache=True, nogil=True)
 def _bulges_into(bulges, vertices, normals, faces):
     for f in range(len(faces)):

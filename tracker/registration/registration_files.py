@@ -13,10 +13,12 @@ import numpy as np
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan_ply import write_ply
 from tracker.errors import RegistrationError
+from tracker.registration.curved_triangles import refine
 from tracker.registration.registration import VERDICTS, Registration, summarize_distances
 
 REGISTRATION_FILE = "registration.npz"
 PLY_FILE = "registration.ply"
+SURFACE_FILE = "registration_surface.ply"
 
 NEEDED = "a registration.npz that `handloom register` wrote"
 
@@ -34,6 +36,13 @@ def save_registration(registration: Registration, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     write_atomically(folder / PLY_FILE, write_ply(registration.vertices, registration.faces))
     write_atomically(folder / REGISTRATION_FILE, pack_registration(registration))
+
+
+def save_surface(registration: Registration, folder: Path) -> None:
+    """Write `registration_surface.ply`: the hand with its triangles bulging, the vertices of the mesh coming first."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_atomically(folder / SURFACE_FILE, write_ply(*refine(registration.vertices, registration.faces)))
 
 
 def pack_registration(registration: Registration) -> bytes:

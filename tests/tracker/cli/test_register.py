@@ -8,13 +8,14 @@ import re
 
 import numpy as np
 import pytest
+import trimesh
 
 from tests.tracker.registration.conftest import scan_model
 from tracker.capture.scan import load_scan, save_scan
 from tracker.cli import add_commands
 from tracker.cli.register import list_scans, name_scans
 from tracker.errors import TrackerError
-from tracker.registration.registration_files import load_registration
+from tracker.registration.registration_files import PLY_FILE, SURFACE_FILE, load_registration
 
 
 def run(*words: object) -> int:
@@ -46,6 +47,9 @@ def test_each_scan_gets_its_files_and_a_row_and_a_second_run_skips_what_is_done(
     assert (registration.subject, registration.pose_name, registration.side) == ("7", "flat", "left")
     mesh = load_scan(tmp_path / "one" / "registration.ply")
     assert len(mesh.points) == len(registration.vertices)
+    coarse, fine = (trimesh.load(tmp_path / "one" / name, process=False) for name in (PLY_FILE, SURFACE_FILE))
+    assert np.array_equal(fine.vertices[: len(coarse.vertices)], coarse.vertices)
+    assert len(fine.faces) == 16 * len(coarse.faces)
     stamp = (tmp_path / "one" / "registration.npz").stat().st_mtime_ns
     assert run("register", scans, "--out", tmp_path, "--side", "left", "--json") == 0
     assert json.loads(capsys.readouterr().out)[1] == one
@@ -77,7 +81,13 @@ def test_scans_that_share_a_name_are_told_apart_by_their_folder(tmp_path):
 
 
 def test_truths_and_registrations_beside_scans_are_no_scans(tmp_path):
-    for name in ("scans/a.ply", "truth/a.npz", "out/a/registration.npz", "out/a/registration.ply", "notes.txt"):
+    for name in (
+        "scans/a.ply",
+        "truth/a.npz",
+        "out/a/registration.npz",
+        "out/a/registration.ply",
+        "b/registration_surface.ply",
+    ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
     assert list_scans([tmp_path]) == [tmp_path / "scans" / "a.ply"]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.curved_triangles import find_bulges, find_middles
+from tracker.registration.curved_triangles import find_bulges, find_middles, refine
 from tracker.registration.surface_search import SurfaceSearch
 from tracker.registration.vertex_normals import find_unit_normals
 from tracker.synthesis.scans.generate import ScanOptions, generate_truth
@@ -71,3 +71,21 @@ def test_true_vertices_of_a_hand_span_its_skin_when_triangles_are_curved():
     counted = (found.faces >= 0) & ~found.on_rim
     flat, curved = (1e3 * np.abs(d[counted]).mean() for d in (found.offsets + found.heights, found.offsets))
     assert curved < 0.4 * flat
+
+
+def test_a_refined_mesh_keeps_its_vertices_has_no_cracks_and_lies_on_the_curved_one():
+    vertices, faces = refine(HAND.template, FACES)
+    assert np.array_equal(vertices[: len(HAND.template)], HAND.template) and len(faces) == 16 * len(FACES)
+    before, after = (trimesh.Trimesh(*mesh, process=False) for mesh in ((HAND.template, FACES), (vertices, faces)))
+    assert after.euler_number == before.euler_number and after.is_winding_consistent
+    assert len(after.outline().entities) == len(before.outline().entities) == 1
+    search = SurfaceSearch(HAND.template, FACES)
+    found = search.match(HAND.template, vertices, vertex_normals(vertices, faces), reach=0.005)
+    inner = (found.faces >= 0) & ~found.on_rim
+    assert 1e3 * np.percentile(np.abs(found.offsets[inner]), 95) < 0.1
+
+
+def test_a_refined_ball_is_round():
+    ball = trimesh.creation.icosphere(subdivisions=2, radius=0.01)
+    vertices, _ = refine(np.asarray(ball.vertices), np.asarray(ball.faces))
+    assert np.linalg.norm(vertices, axis=1) == pytest.approx(0.01, rel=0.005)

@@ -56,9 +56,9 @@ OVER_POINTS = 3000
 
 TOLD = {
     "stretch": "the surface is stretched against the model (edges differ by {:.2f} mm)",
-    "scan_to_surface": "parts of the scan lie away from the surface ({:.2f} mm² a point)",
-    "scan_to_model": "parts of the scan lie away from the model ({:.1f} mm² a point)",
-    "model_to_scan": "parts of the model have no scan beside them ({:.1f} mm² a vertex)",
+    "scan_to_surface": "parts of the scan lie away from the surface ({:.2f} mm, root mean square)",
+    "scan_to_model": "parts of the scan lie away from the model ({:.1f} mm, root mean square)",
+    "model_to_scan": "parts of the model have no scan beside them ({:.0%} of its vertices)",
     "moved": "the surface left the model ({:.1f} mm)",
     "shape": "the shape is unlike a hand's ({:.1f} standard deviations)",
     "covered": "only {:.0%} of the points lie beside the hand",
@@ -102,7 +102,13 @@ def judge(
     score = float(worst / (1.0 + worst))
     name = "good" if worst < 1.0 else "doubtful" if worst < BAD else "bad"
     faults = sorted((name for name in shares if shares[name] >= 1.0), key=lambda name: -shares[name])
-    return Verdict(name, score, tuple(TOLD[fault].format(measures[fault]) for fault in faults), measures)
+    return Verdict(name, score, tuple(tell(fault, measures) for fault in faults), measures)
+
+
+def tell(fault: str, measures: dict[str, float]) -> str:
+    """A reason with its figure as people read it: squares as lengths, what is not seen as a share."""
+    value = measures["hidden"] if fault == "model_to_scan" else measures[fault]
+    return TOLD[fault].format(np.sqrt(value) if fault.startswith("scan_to") else value)
 
 
 def _is_sure_else(shares: dict[str, float], measures: dict[str, float]) -> bool:

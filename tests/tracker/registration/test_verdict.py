@@ -8,7 +8,16 @@ from tracker.capture.scan import Scan
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.options import RegistrationOptions
 from tracker.registration.register import register_scan
-from tracker.registration.verdict import HIDDEN_MOST, LIMITS, OTHERS_MOST, STRANGE, STRANGE_MOST, TOLD, _is_sure_else
+from tracker.registration.verdict import (
+    HIDDEN_MOST,
+    LIMITS,
+    OTHERS_MOST,
+    STRANGE,
+    STRANGE_MOST,
+    TOLD,
+    _is_sure_else,
+    tell,
+)
 
 
 def swollen(scan: Scan, most: float) -> Scan:
@@ -48,3 +57,10 @@ def test_nothing_else_may_speak_against_it(change, is_sure):
     shares = dict.fromkeys(LIMITS, 0.5) | {"stretch": 1.2, "scan_to_model": 1.3}
     hidden = change.pop("hidden_free", 0.01)
     assert _is_sure_else(shares | change, {"hidden_free": hidden}) == is_sure
+
+
+def test_reasons_give_lengths_and_shares_not_squares():
+    measures = {"scan_to_model": 2.25, "scan_to_surface": 0.09, "model_to_scan": 6.0, "hidden": 0.36, "shape": 2.0}
+    told = [tell(fault, measures) for fault in ("scan_to_model", "scan_to_surface", "model_to_scan", "shape")]
+    for text, figure in zip(told, ("1.5 mm", "0.30 mm", "36% of its vertices", "2.0 standard"), strict=True):
+        assert figure in text

@@ -22,6 +22,7 @@ def recordings(studio: Any, synthesized: Any) -> list[dict[str, Any]]:
     return stored
 
 
+@pytest.mark.slow
 def test_a_batch_is_started_watched_stopped_and_run_again_and_two_runs_are_compared(
     studio: Any, recordings: list[dict[str, Any]], open_page: Any, screenshots: Any
 ) -> None:

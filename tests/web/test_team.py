@@ -195,6 +195,7 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     expect(page.get_by_test_id("next-click")).to_contain_text("finished")
 
 
+@pytest.mark.slow
 def test_blind_replicas_are_marked_apart_and_compared(join, open_as, recording, project, picture_of, screenshots):
     from playwright.sync_api import expect
 

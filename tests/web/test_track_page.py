@@ -87,6 +87,7 @@ def test_a_preset_fills_the_form_a_changed_field_is_custom_and_every_option_is_t
     assert (job["params"]["last_frame"], job["params"]["threads"]) == (3, 2)
 
 
+@pytest.mark.slow
 def test_every_layer_is_switched_counted_and_explained(studio, track, open_page, screenshots):
     from playwright.sync_api import expect
 

@@ -21,6 +21,7 @@ DROP = """async ([name, content]) => {
 }"""
 
 
+@pytest.mark.slow
 def test_a_recording_is_dropped_annotated_tracked_and_seen_in_3d(
     studio, synthesized, open_page, picture_of, screenshots
 ):

@@ -17,6 +17,7 @@ def measure(capsys: pytest.CaptureFixture[str], *options: str) -> tuple[int, dic
     return code, json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_annotators_lose_nothing_when_the_studio_is_killed_under_them(capsys) -> None:
     code, result = measure(capsys, "--annotators", "6", "--seconds", "5", "--kill-every", "1.5")
     assert code == 0 and result["faults"] == []

@@ -253,6 +253,7 @@ def test_the_help_of_import_names_the_formats_there_are() -> None:
     assert [name for name in IMPORT_FORMATS if name not in shown] == []
 
 
+@pytest.mark.slow
 def test_a_folder_of_scans_is_imported_once_and_what_is_none_is_named(
     tmp_path: Path, generated_hand: GeneratedHand
 ) -> None:

@@ -43,6 +43,7 @@ def filled(bench: ScanBench, hands: list[GeneratedHand]) -> ScanBench:
     return bench
 
 
+@pytest.mark.slow
 def test_a_cancelled_job_keeps_what_is_registered_and_goes_on_with_the_rest(filled: ScanBench) -> None:
     bench = filled
     bench.start_worker()

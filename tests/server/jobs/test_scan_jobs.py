@@ -34,6 +34,7 @@ from tracker.synthesis.scans.generate import generate_truth
 __all__ = ["bench", "join"]
 
 
+@pytest.mark.slow
 def test_a_killed_worker_loses_one_scan_at_most_and_none_is_registered_twice(
     bench: ScanBench, generated_hand: GeneratedHand
 ) -> None:

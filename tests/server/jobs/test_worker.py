@@ -137,7 +137,8 @@ def assert_same(first: dict[str, np.ndarray], second: dict[str, np.ndarray]) -> 
         assert array.tobytes() == second[name].tobytes(), f"{name} differs"
 
 
-@pytest.mark.parametrize("database_kind", ["sqlite", pytest.param("postgresql", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("database_kind", ["sqlite", "postgresql"])
 def test_a_job_whose_worker_is_killed_again_and_again_ends_with_the_same_bits(bench_on_both: Bench) -> None:
     bench = bench_on_both
     worker = bench.start_worker()
@@ -193,6 +194,7 @@ def test_two_workers_share_the_jobs_and_do_none_twice(bench_on_both: Bench) -> N
     assert first.poll() is second.poll() is None
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_stopped_leaves_its_job_to_the_other(bench: Bench) -> None:
     worker = bench.start_worker()
     job_id = bench.queue()

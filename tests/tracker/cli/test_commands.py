@@ -79,6 +79,7 @@ def test_a_preset_stands_for_its_options_and_what_is_given_besides_wins(recordin
         assert (options["terms"], options["iterations"]) == wanted
 
 
+@pytest.mark.slow
 def test_bench_prints_the_time_of_a_frame_and_its_floor_for_every_case(capsys):
     assert main(["bench", "tracking", "--frames", "10", "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
@@ -121,6 +122,7 @@ def test_a_truth_file_that_is_none_is_refused(tracked, tmp_path, capsys):
     assert "not a truth file" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_hand_is_calibrated_and_the_model_can_be_tracked_with(recording, tmp_path, capsys):
     model = tmp_path / "mine.npz"
     assert main(["calibrate", str(recording), "--out", str(model), "--json"]) == 0

@@ -91,6 +91,7 @@ def registered(tmp_path):
     return tmp_path / "registrations"
 
 
+@pytest.mark.slow
 def test_training_that_is_killed_goes_on_with_the_same_bits(registered, tmp_path):
     words = ("train-model", registered, "--no-pose-shapes", "--rounds-of-training", 2, "--json", "--out")
     undisturbed = start(*words, tmp_path / "one.npz")

@@ -108,6 +108,7 @@ def test_the_flattest_gives_the_template_and_each_person_is_judged_as_often():
     assert choose_held_out([], [], 5) == ({}, [])
 
 
+@pytest.mark.slow
 def test_every_part_of_the_model_is_seen_to_help_on_people_it_has_not_seen(studied):
     assert json.loads(json.dumps(studied)) == studied
     models, own = studied["models"], studied["own_template"]

@@ -126,7 +126,7 @@ def make_pieces() -> Scan:
 
 @pytest.mark.parametrize(
     "scan",
-    [pytest.param(make_sphere(0.06), marks=pytest.mark.slow), make_plate(), make_pieces()],
+    [*(pytest.param(scan, marks=pytest.mark.slow) for scan in (make_sphere(0.06), make_plate())), make_pieces()],
     ids=lambda scan: scan.name,
 )
 def test_what_is_no_hand_is_never_called_good(scan):

@@ -148,7 +148,8 @@ def room(table_m: float, noise_mm: float, seed: int) -> np.ndarray:
     return np.where(depth > 0, np.maximum(depth + noise_mm * rng.normal(size=depth.shape), 0), 0)
 
 
-@pytest.mark.parametrize("table", [pytest.param(0.6, marks=pytest.mark.slow), 1.1])
+@pytest.mark.slow
+@pytest.mark.parametrize("table", [0.6, 1.1])
 def test_in_an_empty_room_no_hand_is_seen(recording, table):
     write_depths(recording, {index: room(table, 1.0, index) for index in range(4)})
     change(recording, lambda document: document["cameras"][0].pop("color", None))

@@ -36,6 +36,7 @@ def track_with(recorded, annotations):
     return join_chunks(recorded.sequence, setup, [chunk])
 
 
+@pytest.mark.slow
 def test_the_wrist_is_where_the_first_frame_marks_it_in_every_frame(recorded, elsewhere):
     first = recorded.annotations.items[0]
     points = first.points.copy()
@@ -48,6 +49,7 @@ def test_the_wrist_is_where_the_first_frame_marks_it_in_every_frame(recorded, el
     assert error.mean() < 2e-3  # m
 
 
+@pytest.mark.slow
 def test_the_right_hand_is_left_nearly_as_it_is(recorded):
     track = track_with(recorded, recorded.annotations)
     assert recorded.joint_errors(track.frame, track.joints_3d).max() < 2.5e-3  # m

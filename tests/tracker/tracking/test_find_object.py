@@ -95,6 +95,7 @@ def test_an_object_seen_later_starts_from_a_guess(tmp_path):
     assert surface_error(model, pose, true) < 2e-3  # m
 
 
+@pytest.mark.slow
 def test_the_size_of_a_mesh_is_measured_within_three_percent(tmp_path):
     from tracker.model.object_scale import with_scale
 

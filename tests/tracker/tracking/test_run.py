@@ -98,6 +98,7 @@ def test_a_saved_track_holds_what_the_contract_says(recorded, run, tmp_path: Pat
     assert np.array_equal(load_track(tmp_path).joints_3d, track.joints_3d)
 
 
+@pytest.mark.slow
 def test_another_size_is_calibrated_from_the_first_second(recorded):
     base = default_hand("right")
     assert base.shape is not None

@@ -48,6 +48,7 @@ def test_two_hands_are_tracked_as_one_scene(two_hands):
     assert set(track.status) == {"ok"}
 
 
+@pytest.mark.slow
 def test_two_hands_without_annotations_do_not_share_a_place(two_hands):
     sequence, truth = two_hands
     setup, state = start_tracking(sequence, TrackOptions(calibrate=False))

@@ -14,7 +14,7 @@ WEB := web/dist/.stamp
 TRACKER_SOURCES := $(shell find tracker -name '*.py')
 WEB_SOURCES := $(shell find web -type f -not -path '*/node_modules/*' -not -path '*/dist/*' -not -path '*/test-results/*' -not -name '*.tsbuildinfo')
 
-.PHONY: setup demo test test-python test-rooms test-browser test-web proofs lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies clean
+.PHONY: setup demo test test-python test-rooms test-browser test-web proofs proofs-rooms proofs-browser lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies clean
 .DELETE_ON_ERROR:
 
 setup: $(PROJECT) $(WEB) $(COMPILED)
@@ -65,7 +65,13 @@ test-browser: setup
 
 # What takes minutes: a loop of two rounds whose worker is killed, the demo, scans that become a model in the browser.
 proofs: setup
-	$(BIN)/python -m pytest -rs -m slow
+	@status=0; $(MAKE) --no-print-directory proofs-rooms || status=1; $(MAKE) --no-print-directory proofs-browser || status=1; exit $$status
+
+proofs-rooms: setup
+	$(BIN)/python -m pytest -rs -m "slow and not browser" --numprocesses auto --maxprocesses 4 --dist worksteal
+
+proofs-browser: setup
+	$(BIN)/python -m pytest tests/web -rs -m "slow and browser"
 
 test-web: setup
 	cd web && npm test --silent

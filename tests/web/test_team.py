@@ -139,13 +139,21 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     work.keyboard.press("Alt+n")
     expect(work.get_by_label("Frame", exact=True)).to_have_value("1")
     picture.wait()
+    held, asked = [], []
+    work.route("**/annotations/cam0/1/right*", lambda route: held.append(route))
+    work.on("request", lambda request: asked.append(request.url) if request.url.endswith("/submit") else None)
     picture.click(300, 300)
-    picture.wait_until_saved()
     expect(bar).to_contain_text("1 of 2 done, 1 begun")
     screenshots.take(work, "team-annotator")
     work.keyboard.press("Control+Enter")
     expect(bar).to_contain_text("1 frame has undecided joints, the first is 1.")
     work.keyboard.press("Control+Enter")
+    expect(bar).to_contain_text("Submits as soon as everything is saved")
+    screenshots.take(work, "team-submits-when-saved")
+    assert held and not asked, "the last joint is still on its way"
+    for route in held:
+        route.continue_()
+    work.unroute("**/annotations/cam0/1/right*")
     expect(bar.get_by_test_id("assignment-state")).to_have_text("in review")
     expect(work.get_by_test_id("next-click")).to_contain_text("waits for its review")
     picture.click(400, 300)

@@ -1,29 +1,34 @@
-import { Button, Text, TextInput, Tooltip } from "@mantine/core";
+import { Button, Text, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { IconEyeOff, IconMessage } from "@tabler/icons-react";
-import { useEffect, useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { Link } from "react-router";
 import { goToFrame, keepToFrames, selectCamera } from "../../actions/annotate/select";
 import { assignmentAddress, useTeamChange, type Assignment } from "../../api/teams";
 import { describeUnfinished, hasRole, lockReason, progressOf } from "../../model/assignment";
 import { jointLabel } from "../../model/joints";
 import { useHint } from "../../state/keys";
+import type { SaveStatus } from "../../state/saveQueue";
 import { StateBadge } from "../projects/StateBadge";
 import { WorkProgress } from "../parts/WorkProgress";
 import { useActions, useAnnotating } from "./annotating";
 import classes from "./AssignmentBar.module.css";
 import { useAssignmentHere } from "./useAssignmentHere";
+import { Words } from "./Words";
 
 type Writing = "comment" | "return";
 
+const isStuck = ({ conflicts, refusals }: SaveStatus): boolean => conflicts.size > 0 || refusals.size > 0;
+
 /** The work that this frame belongs to: how far it is, and what comes next. Draws nothing where nobody was given anything. */
 export function AssignmentBar() {
-  const { recording, state, saving, act, setLock } = useAnnotating();
+  const { recording, session, state, saving, act, setLock } = useAnnotating();
   const { me, assignment, replicas, blind, failure } = useAssignmentHere();
   const change = useTeamChange<Assignment>();
   const hint = useHint();
   const [writing, setWriting] = useState<Writing | null>(null);
   const [isSure, setSure] = useState(false);
+  const [isWaiting, setWaiting] = useState(false);
 
   const asked = assignment?.replica_set_id ? replicas : undefined;
   useEffect(() => {
@@ -39,7 +44,10 @@ export function AssignmentBar() {
     setLock(reason);
     return () => setLock(null);
   }, [reason, setLock]);
-  useEffect(() => setSure(false), [assignment?.id, state.frame]);
+  useEffect(() => {
+    setSure(false);
+    setWaiting(false);
+  }, [assignment?.id, state.frame]);
 
   const progress = assignment && progressOf(assignment, replicas, state.poses, recording.hands);
   const unfinished = progress ? describeUnfinished(progress) : "";
@@ -63,12 +71,22 @@ export function AssignmentBar() {
       onError: (error) => notifications.show({ color: "red", title: "That was not done", message: error.message }),
     });
   };
+  const sendNow = useRef(send);
+  sendNow.current = send;
   const submit = (): void => {
     if (!progress) return;
-    if (saving.waiting > 0 || saving.conflicts.size > 0) notifications.show({ color: "yellow", message: "Something is not saved yet. Submit when the status line says saved." });
+    if (isStuck(session.queue.status())) notifications.show({ color: "yellow", message: "Settle the changes that are not saved, then submit." });
     else if (unfinished !== "" && !isSure) setSure(true);
-    else send("submit");
+    else setWaiting(true);
   };
+  // Work goes once the server has all of it: a key right after the last joint is not lost. The queue itself is asked,
+  // because what is drawn here may be a moment old.
+  useEffect(() => {
+    const now = session.queue.status();
+    if (!isWaiting || (!isStuck(now) && (now.waiting > 0 || now.isSending))) return;
+    setWaiting(false);
+    if (!isStuck(now)) sendNow.current("submit");
+  }, [isWaiting, saving, session]);
   const goNext = (): void => {
     if (progress && progress.next !== null) act(goToFrame, progress.next);
   };
@@ -129,9 +147,14 @@ export function AssignmentBar() {
         />
       ) : (
         <div className={classes.acts}>
-          {isSure && (
+          {isSure && !isWaiting && (
             <Text size="xs" c="var(--warn-text)" role="status">
               {unfinished}
+            </Text>
+          )}
+          {isWaiting && (
+            <Text size="xs" className="quiet" role="status">
+              Submits as soon as everything is saved
             </Text>
           )}
           {assignment.open_comments > 0 && (
@@ -155,7 +178,7 @@ export function AssignmentBar() {
           )}
           {maySubmit && (
             <Tooltip label={hint("Hand the work in; it is locked until its review", "assignment.submit")}>
-              <Button size="compact-xs" variant={isMine ? "filled" : "default"} loading={change.isPending} onClick={submit}>
+              <Button size="compact-xs" variant={isMine ? "filled" : "default"} loading={change.isPending || isWaiting} onClick={submit}>
                 {isSure ? "Submit nevertheless" : "Submit"}
               </Button>
             </Tooltip>
@@ -177,46 +200,5 @@ export function AssignmentBar() {
         </div>
       )}
     </div>
-  );
-}
-
-interface WordsProps {
-  label: string;
-  isBusy: boolean;
-  mayBeEmpty: boolean;
-  onSend: (text: string) => void;
-  onCancel: () => void;
-}
-
-/** A line to write in, in the bar itself: nothing covers the picture. */
-function Words({ label, isBusy, mayBeEmpty, onSend, onCancel }: WordsProps) {
-  const [text, setText] = useState("");
-  const isReady = text.trim() !== "" || mayBeEmpty;
-  return (
-    <form
-      className={classes.words}
-      onSubmit={(event) => {
-        event.preventDefault();
-        if (isReady) onSend(text.trim());
-      }}
-    >
-      <TextInput
-        size="xs"
-        autoFocus
-        flex={1}
-        maxLength={4000}
-        aria-label={label}
-        placeholder={label}
-        value={text}
-        onChange={(event) => setText(event.currentTarget.value)}
-        onKeyDown={(event) => event.key === "Escape" && onCancel()}
-      />
-      <Button size="compact-xs" type="submit" loading={isBusy} disabled={!isReady}>
-        Send
-      </Button>
-      <Button size="compact-xs" variant="default" onClick={onCancel}>
-        Cancel
-      </Button>
-    </form>
   );
 }

@@ -108,19 +108,18 @@ class ScanRun(JobRun):
                 session.execute(update(ScanRow).where(ScanRow.id == scan_id).values(state="failed", problem=problem))
             progress.log("warning", f"{row.name}: {problem}")
             verdict = FAILED
-        progress.scans_done(number + 1, total, span, self._estimate_seconds_left(model_id, total - number - 1, span))
+        progress.scans_done(number + 1, total, span, self._estimate_seconds_left(model_id, number + 1, total, span))
         return verdict
 
-    def _estimate_seconds_left(self, model_id: UUID, scans_left: int, span: Span) -> float | None:
-        """As the last scans took; null while another part of a loop follows, which takes nobody knows how long."""
-        if span[1] < 1.0:
-            return None
+    def _estimate_seconds_left(self, model_id: UUID, done: int, total: int, span: Span) -> float | None:
+        """As the last scans took, and what follows in a loop by its share of the bar."""
         mine = select(RegistrationRow.seconds).where(
             RegistrationRow.job_id == self.job_id, RegistrationRow.model_id == model_id
         )
         with self.context.database.reading() as session:
             recent = session.scalars(mine.order_by(RegistrationRow.created_at.desc()).limit(RECENT_SCANS)).all()
-        return scans_left * median(recent) if recent else None
+        later = total * (1.0 - span[1]) / (span[1] - span[0])  # in scans
+        return (total - done + later) * median(recent) if recent else None
 
     def _find_start(self, session: Session, scan_id: UUID, model_id: UUID) -> RegistrationStart | None:
         """Where to begin: at the newest registration of the scan, when it seems right and people do not reject it."""

@@ -15,6 +15,7 @@ from sqlalchemy.exc import OperationalError
 from server.database import Database
 from server.jobs import service
 from server.jobs.models import JobRow
+from server.jobs.pace import Pace
 
 log = logging.getLogger(__name__)
 
@@ -42,6 +43,7 @@ class JobProgress:
         self._published = 0.0
         self._moments: deque[tuple[int, float]] = deque(maxlen=RECENT_FRAMES)
         self._last_stage = ""
+        self._pace = Pace()
 
     def stage(self, name: str, share: float) -> None:
         """Name what is being done before the tracking, and how much of it is done, 0 to 1."""
@@ -64,7 +66,8 @@ class JobProgress:
     def part(self, span: tuple[float, float], name: str, share: float) -> None:
         """Name what is being done in one part of the bar, and how much of it is done, 0 to 1."""
         first, last = span
-        self._publish_stage(name, first + (last - first) * min(max(share, 0.0), 1.0))
+        progress = first + (last - first) * min(max(share, 0.0), 1.0)
+        self._publish_stage(name, progress, self._pace.estimate(progress))
 
     def kept(self) -> None:
         """Say that what was done so far is safe on disk."""
@@ -88,11 +91,11 @@ class JobProgress:
         with self._database.writing() as session:
             service.append_log(session, self._job_id, level, text)
 
-    def _publish_stage(self, name: str, progress: float) -> None:
+    def _publish_stage(self, name: str, progress: float, seconds_left: float | None = None) -> None:
         changed, self._last_stage = name != self._last_stage, name
         if changed:
             self.log("info", name)
-        self._publish(changed, stage=name, progress=progress, seconds_left=None)
+        self._publish(changed, stage=name, progress=progress, seconds_left=seconds_left)
 
     def _publish_frames(self, done: int, total: int, *, at_once: bool, **values: object) -> None:
         if (seconds := self._seconds_per_frame()) is not None:

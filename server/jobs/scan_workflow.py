@@ -108,8 +108,8 @@ def register_scan_workflows(context: WorkerContext) -> dict[str, Callable[[str, 
     return {"register": register, "train": train, "loop": loop}
 
 
-REGISTERING, TRAINING = 3.0, 1.0
-"""Rough shares of the time of a loop."""
+COLD, WARM, TRAINING = 8.0, 2.0, 1.0
+"""Rough shares of the time of a loop: registering without a start, from a start, and training."""
 
 TRAINED = {"no": 1.0, "quick": 0.7, "full": 0.3}
 """Share of training in training and evaluation."""
@@ -117,6 +117,6 @@ TRAINED = {"no": 1.0, "quick": 0.7, "full": 0.3}
 
 def plan_loop(rounds: int, registers_first: bool) -> list[Span]:
     """Parts of the progress bar, in the order in which a loop uses them."""
-    parts = [REGISTERING] * registers_first + [TRAINING, REGISTERING] * rounds
+    parts = [COLD] * registers_first + [TRAINING, WARM] * rounds
     ends = [sum(parts[: number + 1]) / sum(parts) for number in range(len(parts))]
     return list(zip([0.0, *ends[:-1]], ends, strict=True))

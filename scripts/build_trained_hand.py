@@ -60,7 +60,7 @@ def main() -> int:
     args = parser.parse_args()
     folder = args.registrations or register(args.work, args.people, args.poses)
     options = TrainingOptions(name="trained right hand", num_shapes=SHAPES)
-    training = train_model(load_training_set(folder), with_drawn_weights(untrained_hand("right")), options)
+    training = train_model(load_training_set(folder), untrained_hand("right"), options)
     model = shorten(training.model)
     save_blend_model(model, args.out)
     size = args.out.stat().st_size
@@ -75,25 +75,6 @@ def register(work: Path, people: int, poses: int) -> Path:
     if handloom(["model-loop", str(work / "scans"), "--out", str(work / "loop"), "--shapes", str(SHAPES)]):
         raise SystemExit("the loop failed")
     return work / "loop" / "round_2" / "registrations"
-
-
-def with_drawn_weights(crude: BlendModel) -> BlendModel:
-    """The crude hand with the default hand's blend weights, those of the fingers' metacarpals being the wrist's."""
-    hand = default_hand("right")
-    assert hand.hand is not None
-    joints = ["wrist", *(_landmark(name) for name in BLEND_JOINTS[1:])]
-    bones = [int(hand.hand.joint_bones[HAND_JOINTS.index(joint)]) for joint in joints]
-    rest = np.delete(hand.skinning_weights, bones, axis=1).sum(axis=1)
-    weights = hand.skinning_weights[:, bones]
-    weights[:, 0] += rest
-    where = find_surface_points(crude.template, hand.vertices, hand.faces)
-    return replace(crude, skinning_weights=limit_weights(where.interpolate(weights)))
-
-
-def _landmark(name: str) -> str:
-    """Of HAND_JOINTS, for one of BLEND_JOINTS such as "index2"."""
-    finger, number = name[:-1], int(name[-1]) - 1
-    return f"{finger}_{(('cmc', 'mcp', 'ip') if finger == 'thumb' else ('mcp', 'pip', 'dip'))[number]}"
 
 
 def shorten(model: BlendModel) -> BlendModel:

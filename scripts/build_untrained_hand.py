@@ -2,7 +2,7 @@
 
     python scripts/build_untrained_hand.py [--out tracker/model/data/untrained_hand.npz]
 
-Its surface and its joints are those of the default hand (MakeHuman, CC0). Skinning weights, shape directions and joint
+Its surface, its joints and its blend weights are those of the default hand (MakeHuman, CC0). Shape directions and joint
 regressor are made here; there are no pose blend shapes. The order of its vertices is what registrations and trained
 models are made in: a hand built anew with another order makes the old ones useless.
 """
@@ -19,16 +19,13 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "scripts")]
 
 from untrained_shape import ShapeMaker  # noqa: E402
-from untrained_skin import fit_joint_regressor, skinning_weights  # noqa: E402
+from untrained_skin import drawn_weights, find_landmark, fit_joint_regressor  # noqa: E402
 from untrained_surface import open_surface  # noqa: E402
 
 from tracker.model.blend_files import save_blend_model  # noqa: E402
 from tracker.model.blend_model import BLEND_JOINTS, BLEND_PARENTS, BlendModel  # noqa: E402
 from tracker.model.default_hand import default_hand  # noqa: E402
 from tracker.model.joints import HAND_JOINTS  # noqa: E402
-
-PLACES = ("mcp", "pip", "dip")
-THUMB_PLACES = ("cmc", "mcp", "ip")
 
 
 def main() -> None:
@@ -46,8 +43,8 @@ def build_untrained_hand() -> BlendModel:
     hand = default_hand("right")
     assert hand.hand is not None
     vertices, faces, tips = open_surface(hand)
-    joints = np.array([hand.skeleton.joints_rest[hand.hand.joint_bones[_joint(name)]] for name in BLEND_JOINTS])
-    weights = skinning_weights(vertices, joints, vertices[tips])
+    joints = np.array([hand.skeleton.joints_rest[hand.hand.joint_bones[HAND_JOINTS.index(find_landmark(name))]] for name in BLEND_JOINTS])
+    weights = drawn_weights(hand, vertices)
     names, directions, joint_directions = ShapeMaker(vertices, joints, vertices[tips], weights).make()
     return BlendModel(
         name="untrained right hand",
@@ -66,18 +63,11 @@ def build_untrained_hand() -> BlendModel:
         provenance={
             **{key: hand.provenance[key] for key in ("source", "licence")},
             "made_by": "scripts/build_untrained_hand.py",
-            "changes": "surface of the default hand remeshed and opened at the wrist; skinning weights by distance to "
-            "the bones, shape directions and joint regressor of our own making; no pose blend shapes",
+            "changes": "surface of the default hand remeshed and opened at the wrist; metacarpals joined to the "
+            "wrist; shape directions and joint regressor of our own making; no pose blend shapes",
             "shape_names": ", ".join(names),
         },
     )
-
-
-def _joint(name: str) -> int:
-    if name == "wrist":
-        return 0
-    finger, number = name[:-1], int(name[-1]) - 1
-    return HAND_JOINTS.index(f"{finger}_{(THUMB_PLACES if finger == 'thumb' else PLACES)[number]}")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What moves the untrained hand's surface: skinning by distance along bones, and a joint regressor to fit."""
+"""What moves the untrained hand's surface: blend weights that people drew, and a joint regressor to fit."""
 
 from __future__ import annotations
 
@@ -7,55 +7,40 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.optimize import nnls
 
-from tracker.model.blend_model import BLEND_PARENTS
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.blend_model import BLEND_JOINTS
+from tracker.model.decimation import find_surface_points, limit_weights
+from tracker.model.joints import HAND_JOINTS
 
 Array = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
-FALLOFF = 4.0
-"""A bone's weight is its distance to this power, inverted."""
-MOST_BONES = 4
+PLACES = ("mcp", "pip", "dip")
+THUMB_PLACES = ("cmc", "mcp", "ip")
+
 RING = 48
 """Vertices near a joint that its regressor may use."""
 REGRESSOR_RIDGE = 1e-4
 """Price of a large weight beside the misfit of the joint, both in m."""
 
 
-def skinning_weights(vertices: Array, joints: Array, tips: Array) -> Array:
-    """(V, B) by the distance to each bone, among the nearest bone and those it hangs together with.
+def drawn_weights(hand: ArticulatedModel, vertices: Array) -> Array:
+    """(V, B) the default hand's blend weights, which people drew, where the vertices (V, 3) m lie on its surface.
 
-    Args:
-        vertices: (V, 3) m.
-        joints: (B, 3) in MANO's order, m.
-        tips: (5, 3) thumb..little, m.
+    Bones in MANO's order; the fingers' metacarpals are the wrist's.
     """
-    bones = len(joints)
-    distances = np.full((len(vertices), bones), np.inf)
-    for bone, start, end in bone_segments(joints, tips):
-        distances[:, bone] = np.minimum(distances[:, bone], _distance(vertices, start, end))
-    nearest = distances.argmin(axis=1)
-    linked = np.eye(bones, dtype=bool)
-    for bone, parent in enumerate(BLEND_PARENTS):
-        if parent >= 0:
-            linked[bone, parent] = linked[parent, bone] = True
-    weights = np.where(linked[nearest], distances**-FALLOFF, 0.0)
-    least = np.sort(weights, axis=1)[:, -MOST_BONES][:, None]
-    weights = np.where(weights >= least, weights, 0.0)
-    weights /= weights.sum(axis=1, keepdims=True)
-    weights[weights < 0.01] = 0.0
-    return weights / weights.sum(axis=1, keepdims=True)
+    assert hand.hand is not None
+    bones = [int(hand.hand.joint_bones[HAND_JOINTS.index(find_landmark(name))]) for name in BLEND_JOINTS]
+    weights = hand.skinning_weights[:, bones]
+    weights[:, 0] += np.delete(hand.skinning_weights, bones, axis=1).sum(axis=1)
+    return limit_weights(find_surface_points(vertices, hand.vertices, hand.faces).interpolate(weights))
 
 
-def bone_segments(joints: Array, tips: Array) -> list[tuple[int, Array, Array]]:
-    """Bone, start and end; the wrist's are the forearm and the lines to the knuckles, but not to the thumb's base."""
-    forward = joints[4] - joints[0]
-    segments = [(0, joints[0], joints[0] - 0.5 * forward)]
-    for first, tip in ((1, 1), (4, 2), (7, 4), (10, 3), (13, 0)):
-        chain = [*joints[first : first + 3], tips[tip]]
-        if first != 13:
-            segments.append((0, joints[0], joints[first]))
-        segments += [(first + n, chain[n], chain[n + 1]) for n in range(3)]
-    return segments
+def find_landmark(name: str) -> str:
+    """Of HAND_JOINTS, for one of BLEND_JOINTS such as "index2"."""
+    if name == "wrist":
+        return name
+    finger, number = name[:-1], int(name[-1]) - 1
+    return f"{finger}_{(THUMB_PLACES if finger == 'thumb' else PLACES)[number]}"
 
 
 def fit_joint_regressor(vertices: Array, joints: Array, directions: Array, joint_directions: Array) -> sparse.csr_array:
@@ -80,9 +65,3 @@ def fit_joint_regressor(vertices: Array, joints: Array, directions: Array, joint
         columns += near[used].tolist()
         values += (found[used] / found[used].sum()).tolist()
     return sparse.csr_array((values, (rows, columns)), shape=(len(joints), len(vertices)))
-
-
-def _distance(points: Array, start: Array, end: Array) -> Array:
-    along = end - start
-    share = np.clip((points - start) @ along / (along @ along), 0.0, 1.0)
-    return np.maximum(np.linalg.norm(points - start - share[:, None] * along, axis=1), 1e-4)

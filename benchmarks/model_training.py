@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.distance_weights import with_distance_weights
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan import save_scan
 from tracker.cli.__main__ import main as handloom
@@ -48,6 +49,8 @@ SHAPES, LOCAL_SHAPES = 10, 40
 """Directions of the whole hand, and of parts: chosen on people 26 to 31 with models of the 25 others."""
 SHAPE_COUNTS = (0, 1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 25)
 FLAT = "flat_together"
+UNTRAINED = ("weights by distance, size only", "untrained, size only", "untrained")
+"""All shapes fitted where nothing is said."""
 
 
 def make_truths(people: int, poses: int) -> TrainingSet:
@@ -110,6 +113,15 @@ def judge(name: str, model: BlendModel, hands: list[TestHand], templates=None) -
     return {"model": name, "fitted": "pose and shape" if templates is None else "pose, own template", **found}
 
 
+def judge_untrained(crude: BlendModel, hands: list[TestHand]) -> list[dict[str, Any]]:
+    """What trained models are compared with, the crudest last."""
+    return [
+        judge("untrained", crude, hands),
+        judge("untrained, size only", size_only(crude), hands),
+        judge("weights by distance, size only", size_only(with_distance_weights(crude)), hands),
+    ]
+
+
 def size_only(model: BlendModel) -> BlendModel:
     """The model with nothing but its overall size to fit."""
     return replace(model, shape_directions=0.1 * model.template[:, :, None])
@@ -134,8 +146,7 @@ def study(args: argparse.Namespace) -> dict[str, Any]:
         name: {who: find_template(model, flat) for who, flat in flats.items()} for name, model in models.items()
     }
     rows = [
-        judge("untrained", crude, hands),
-        judge("untrained, size only", size_only(crude), hands),
+        *judge_untrained(crude, hands),
         *(judge(name, model, hands) for name, model in models.items()),
         judge("learned, whole hand's shapes alone", keep_shapes(learned.model, SHAPES), hands),
         *(judge(name, model, hands, templates[name]) for name, model in models.items()),
@@ -166,7 +177,7 @@ def study_own(args: argparse.Namespace, hands: list[TestHand], crude: BlendModel
     command += ["--local-shapes", str(LOCAL_SHAPES)]
     if handloom([*command, "--processes", str(args.processes)]) != 0:
         raise SystemExit("the loop failed")
-    rows = [judge("untrained", crude, hands), judge("untrained, size only", size_only(crude), hands)]
+    rows = []
     for number in (1, 2):
         folder = args.own / "loop" / f"round_{number}"
         report = json.loads((folder / "model.json").read_text())
@@ -205,10 +216,8 @@ def find_ratios(found: dict[str, Any]) -> list[tuple[str, float, float]]:
          ratio(s2m, learned, ("learned, blend shapes off", own)), 0.62),
         ("learned / plain skinning trained by itself, vertices, own template",
          ratio("vertices_mm", learned, ("plain skinning", own)), 0.55),
-        ("learned / untrained with its size fitted, scan to mesh",
-         ratio(s2m, ("learned", shaped), ("untrained, size only", shaped)), 0.31),
-        ("learned / untrained with all its shapes fitted, scan to mesh",
-         ratio(s2m, ("learned", shaped), ("untrained", shaped)), 0.31),
+        *((f"learned / {name}, scan to mesh", ratio(s2m, ("learned", shaped), (name, shaped)), 0.31)
+          for name in UNTRAINED),
         ("posed joints, pose and shape fitted to vertices, mm", rows["learned", shaped]["joints_mm"], 2.5),
         ("posed joints, pose and shape fitted to scans, mm", rows["learned", shaped]["scan_joints_mm"], 2.5),
         ("training, seconds", found["training"]["seconds"], 240.0),
@@ -217,8 +226,9 @@ def find_ratios(found: dict[str, Any]) -> list[tuple[str, float, float]]:
     if found["own"]:
         own_rows = {row["model"]: row for row in found["own"]}
         second, first = own_rows["own registrations, round 2"], own_rows["own registrations, round 1"]
-        for name in ("untrained, size only", "untrained"):
-            ratios.append((f"own registrations / {name}, scan to mesh", second[s2m] / own_rows[name][s2m], 0.38))
+        for name in UNTRAINED:
+            untrained = rows[name, shaped][s2m]
+            ratios.append((f"own registrations / {name}, scan to mesh", second[s2m] / untrained, 0.38))
         ratios.append(("own registrations, round 2 / round 1, scan to mesh", second[s2m] / first[s2m], 1.0))
         ratios.append(("own registrations, round 2 / round 1, vertices",
                        second["vertices_mm"] / first["vertices_mm"], 1.0))  # fmt: skip
@@ -230,7 +240,7 @@ def write_tables(found: dict[str, Any]) -> list[str]:
     lines += [f"| {name} | {value:.3g} | {bar:g} |" for name, value, bar in find_ratios(found)]
     lines += ["", "| model | fitted | scan to mesh, mm | vertices, mm | joints, mm | joints, fitted to scans, mm |"]
     lines += ["|---|---|---|---|---|---|"]
-    for row in [*found["rows"], *(found["own"] or [])[2:]]:
+    for row in [*found["rows"], *(found["own"] or [])]:
         name = row["model"] + (f" ({row['registrations']})" if "registrations" in row else "")
         lines.append(
             f"| {name} | {row['fitted']} | {row['scan_to_mesh_mm']:.3f} ± {row['scan_to_mesh_sd_mm']:.3f} "

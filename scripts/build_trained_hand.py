@@ -6,9 +6,8 @@
 DIR/scans gets scans of generated people (identities from MakeHuman's CC0 targets, a list of grasps of our own),
 DIR/loop what `handloom model-loop` makes of them in two rounds: registered, judged by the program itself and learnt
 from, nobody's truth used. About 20 minutes on two idle cores; an interrupted run goes on where it stopped. From the
-second round's registrations that were called good the hand is then learnt once more, beginning with the default hand's
-blend weights (CC0, drawn by people) rather than the untrained hand's, which go by distance: that leaves less over (0.22
-in place of 0.28 mm). Numbers are rounded so that the file stays small.
+second round's registrations that were called good the hand is then learnt once more, from the untrained hand on.
+Numbers are rounded so that the file stays small.
 """
 
 from __future__ import annotations
@@ -26,10 +25,7 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.model_training import write_own_scans  # noqa: E402
 from tracker.cli.__main__ import main as handloom  # noqa: E402
 from tracker.model.blend_files import save_blend_model  # noqa: E402
-from tracker.model.blend_model import BLEND_JOINTS, BlendModel  # noqa: E402
-from tracker.model.decimation import find_surface_points, limit_weights  # noqa: E402
-from tracker.model.default_hand import default_hand  # noqa: E402
-from tracker.model.joints import HAND_JOINTS  # noqa: E402
+from tracker.model.blend_model import BlendModel  # noqa: E402
 from tracker.model.untrained_hand import untrained_hand  # noqa: E402
 from tracker.training.options import TrainingOptions  # noqa: E402
 from tracker.training.train import train_model  # noqa: E402

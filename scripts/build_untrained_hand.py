@@ -43,7 +43,12 @@ def build_untrained_hand() -> BlendModel:
     hand = default_hand("right")
     assert hand.hand is not None
     vertices, faces, tips = open_surface(hand)
-    joints = np.array([hand.skeleton.joints_rest[hand.hand.joint_bones[HAND_JOINTS.index(find_landmark(name))]] for name in BLEND_JOINTS])
+    joints = np.array(
+        [
+            hand.skeleton.joints_rest[hand.hand.joint_bones[HAND_JOINTS.index(find_landmark(name))]]
+            for name in BLEND_JOINTS
+        ]
+    )
     weights = drawn_weights(hand, vertices)
     names, directions, joint_directions = ShapeMaker(vertices, joints, vertices[tips], weights).make()
     return BlendModel(

@@ -55,7 +55,7 @@ def list_files(folder: Path) -> set[str]:
 def test_registering_with_several_processes_is_stopped_by_ctrl_c_and_goes_on(tmp_path):
     scans, out = tmp_path / "scans", tmp_path / "out"
     scans.mkdir()
-    options = ScanOptions(scanner=Scanner(num_points=1200), has_forearm=False)
+    options = ScanOptions(scanner=Scanner(num_points=3000), has_forearm=False)
     for number in range(NUM_SCANS):
         save_scan(generate_scan(1 + number, 0, "right", number, options).scan, scans / f"{number}.ply")
     words = ("register", scans, "--out", out, "--side", "right", "--processes", 2)

@@ -143,6 +143,36 @@ def test_one_stroke_crops_a_scan_and_can_be_taken_back_before_and_after_it_is_sa
     assert studio.get(f"/scans/{scan['id']}")["removed_count"] == 0, "the file stayed whole"
 
 
+def test_a_stroke_that_is_taken_back_while_the_crop_is_on_its_way_is_the_next_thing_to_save(studio, scans, open_page):
+    scan = studio.get(f"/scans/{scans[0]['id']}")
+    page = open_scan(open_page, scan)
+    page.keyboard.press("x")
+    stroke(page, [(0.1, 0.8), (0.5, 0.82), (0.9, 0.8)])
+    below = share_of(page)
+    held = []
+    page.route("**/crop", lambda route: held.append(route) if route.request.method == "PUT" else route.continue_())
+    page.keyboard.press("Control+s")
+    page.get_by_role("button", name="Save").locator(".mantine-Loader-root").wait_for()
+    page.keyboard.press("z")
+    page.keyboard.press("Control+s")  # one is on its way
+    with page.expect_response(lambda answer: answer.request.method == "PUT" and answer.ok):
+        held[0].continue_()
+    page.unroute("**/crop")
+    page.wait_for_function(
+        "async ([id, revision]) => (await (await fetch(`/api/v1/scans/${id}`)).json()).revision > revision",
+        arg=[scan["id"], scan["revision"]],
+    )
+    page.get_by_role("button", name="Save").locator(".mantine-Loader-root").wait_for(state="detached")
+
+    assert len(held) == 1
+    kept = studio.get(f"/scans/{scan['id']}")
+    assert 100 * kept["removed_count"] / kept["point_count"] == pytest.approx(below, abs=1)
+    assert share_of(page) == 0
+    page.get_by_text("Not saved yet; kept in this tab.").wait_for()
+    save(page)
+    assert studio.get(f"/scans/{scan['id']}")["removed_count"] == 0
+
+
 def test_a_crop_that_somebody_else_has_changed_meanwhile_is_not_overwritten(studio, scans, open_page):
     scan = studio.get(f"/scans/{scans[1]['id']}")
     page = open_scan(open_page, scan)

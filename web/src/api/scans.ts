@@ -60,7 +60,8 @@ export const useScanCrop = (scan: Scan | undefined) =>
     enabled: scan !== undefined,
   });
 
-export function useSaveCrop() {
+/** `onSaved` is called with the scan as it is now, before anything is drawn from it. */
+export function useSaveCrop(onSaved: (scan: Scan) => void) {
   const client = useQueryClient();
   return useMutation({
     mutationFn: ({ scan, crop }: { scan: Scan; crop: ScanCrop }) =>
@@ -69,8 +70,9 @@ export function useSaveCrop() {
       // Known before it is asked for, so that what was cropped stays on the screen.
       client.setQueryData<ScanCropRevision>(cropKey(data), { ...crop, drops_objects: crop.drops_objects ?? false, revision: data.revision, removed_count: data.removed_count, author_name: null, created_at: null });
       client.setQueryData(scanKeys.one(data.id), data);
+      onSaved(data);
     },
-    onSettled: () => client.invalidateQueries({ queryKey: scanKeys.all }),
+    onSettled: () => void client.invalidateQueries({ queryKey: scanKeys.all }),
   });
 }
 

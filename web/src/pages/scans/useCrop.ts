@@ -1,5 +1,5 @@
 import { useSessionStorage } from "@mantine/hooks";
-import { useMemo, useState } from "react";
+import { useMemo, useRef, useState } from "react";
 import { useSaveCrop, useScanCrop, type Scan, type ScanCrop } from "../../api/scans";
 import type { HandGeometry } from "../../canvas/hand3d/geometry";
 import { countTaken, cutOf, readStroke, smallerSide, takenByAny, type Cut, type Point, type Projection, type Stroke } from "../../model/crop";
@@ -29,7 +29,14 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
   const saved = useScanCrop(scan).data;
   const [kept, setDraft, dropDraft] = useSessionStorage<Draft | null>({ key: `handloom/crop/${scan.id}`, defaultValue: null, getInitialValueInEffect: false });
   const [last, setLast] = useState<LastStroke | null>(null);
-  const save = useSaveCrop();
+  const latest = useRef(kept);
+  latest.current = kept;
+  const sent = useRef<Draft | null>(null);
+  const save = useSaveCrop(({ revision }) => {
+    // What was drawn or taken back while it was sent is the next thing to save, made from what is saved now.
+    if (latest.current && latest.current !== sent.current) setDraft({ ...latest.current, base: revision });
+    else dropDraft();
+  });
 
   const draft = useMemo<Draft>(() => kept ?? { base: scan.revision, cuts: (saved?.strokes as readonly Cut[] | undefined) ?? [], undone: [], dropsObjects: saved?.drops_objects ?? false }, [kept, saved]);
   const taken = useMemo(() => {
@@ -89,10 +96,9 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
     isOvertaken: kept !== null && kept.base !== scan.revision,
     /** Over the crop it was made from, or over somebody else's when that was asked for. */
     store(revision: number = draft.base): void {
-      save.mutate(
-        { scan: { ...scan, revision }, crop: { strokes: draft.cuts as unknown as ScanCrop["strokes"], drops_objects: draft.dropsObjects } },
-        { onSuccess: dropDraft },
-      );
+      if (save.isPending) return;
+      sent.current = kept;
+      save.mutate({ scan: { ...scan, revision }, crop: { strokes: draft.cuts as unknown as ScanCrop["strokes"], drops_objects: draft.dropsObjects } });
     },
   };
 }

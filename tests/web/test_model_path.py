@@ -244,7 +244,7 @@ def test_scans_become_a_model_that_is_judged_and_registers_again(studio, scans, 
     assert "Hand of the whole path" in text and f"{study['models']['learned']['vertices_mm']:.3f}" in text
     page.keyboard.press("Escape")
 
-    # And again, with the new model: the second round waits for a worker.
+    # And again, with the new model; what has begun can be gone on with.
     page.get_by_role("button", name="Register again").click()
     page.get_by_role("menuitem", name="The loop", exact=False).click()
     dialog = page.get_by_role("dialog")
@@ -256,6 +256,7 @@ def test_scans_become_a_model_that_is_judged_and_registers_again(studio, scans, 
     expect(page.get_by_role("heading", name=re.compile(f"1 round over {len(scans)} scans"))).to_be_visible()
     loop = studio.get(f"/jobs/{page.url.rsplit('/', 1)[1]}")
     assert (loop["kind"], loop["params"]["model_id"], loop["params"]["by"]) == ("loop", job["hand_model_id"], "verdict")
+    expect(page.get_by_text("running", exact=True).first).to_be_visible()
     page.get_by_role("button", name="Cancel").click()
-    expect(page.get_by_text("cancelled").first).to_be_visible()
+    expect(page.get_by_text("cancelled", exact=True).first).to_be_visible()
     expect(page.get_by_role("button", name="Resume")).to_be_visible()

@@ -1,4 +1,4 @@
-import { useSessionStorage } from "@mantine/hooks";
+import { readSessionStorageValue, useSessionStorage } from "@mantine/hooks";
 import { useMemo, useRef, useState } from "react";
 import { useSaveCrop, useScanCrop, type Scan, type ScanCrop } from "../../api/scans";
 import type { HandGeometry } from "../../canvas/hand3d/geometry";
@@ -27,14 +27,14 @@ const isOfObject = (colors: Uint8Array, point: number): boolean => (colors[3 * p
 /** The crop of a scan: strokes with undo, kept over a reload until they are saved. */
 export function useCrop(scan: Scan, geometry: HandGeometry | null) {
   const saved = useScanCrop(scan).data;
-  const [kept, setDraft, dropDraft] = useSessionStorage<Draft | null>({ key: `handloom/crop/${scan.id}`, defaultValue: null, getInitialValueInEffect: false });
+  const key = `handloom/crop/${scan.id}`;
+  const [kept, setDraft, dropDraft] = useSessionStorage<Draft | null>({ key, defaultValue: null, getInitialValueInEffect: false });
   const [last, setLast] = useState<LastStroke | null>(null);
-  const latest = useRef(kept);
-  latest.current = kept;
-  const sent = useRef<Draft | null>(null);
+  const sent = useRef("");
   const save = useSaveCrop(({ revision }) => {
-    // What was drawn or taken back while it was sent is the next thing to save, made from what is saved now.
-    if (latest.current && latest.current !== sent.current) setDraft({ ...latest.current, base: revision });
+    // What was drawn or taken back while it was sent, even on a page opened anew, is the next thing to save.
+    const now = readSessionStorageValue<Draft | null>({ key, defaultValue: null });
+    if (now && JSON.stringify(now) !== sent.current) setDraft({ ...now, base: revision });
     else dropDraft();
   });
 
@@ -97,7 +97,7 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
     /** Over the crop it was made from, or over somebody else's when that was asked for. */
     store(revision: number = draft.base): void {
       if (save.isPending) return;
-      sent.current = kept;
+      sent.current = JSON.stringify(kept);
       save.mutate({ scan: { ...scan, revision }, crop: { strokes: draft.cuts as unknown as ScanCrop["strokes"], drops_objects: draft.dropsObjects } });
     },
   };

@@ -95,6 +95,7 @@ def test_scans_dropped_on_the_page_are_added_and_each_that_cannot_be_used_says_w
     dialog.get_by_role("button", name="Add 1 file").click()
     dialog.get_by_text("1 refused").wait_for()
     expect(dialog.get_by_role("alert")).to_contain_text("broken.ply")
+    expect(dialog.get_by_role("alert")).to_contain_text("found an element 'vertex' without properties; needed a PLY")
     screenshots.take(page, "scans-refused")
     dialog.get_by_role("button", name="Done").click()
     assert len(studio.get("/scans?collection=dropped")["items"]) == 2

@@ -116,8 +116,10 @@ def _read_header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
         if element.count > limit:
             raise ScanError(path, f"{element.count} of the element {element.name}", f"at most {limit}")
         names = [name for name, _, _ in element.properties]
-        if len(set(names)) != len(names) or not names:
-            raise ScanError(path, f"properties {names[:9]} of {element.name}", "each once")
+        if not names:
+            raise ScanError(path, f"an element {element.name!r} without properties", NEEDED)
+        if len(set(names)) != len(names):
+            raise ScanError(path, f"two properties of one name in {names[:9]} of {element.name}", "each once")
     return order, elements, stream.tell()
 
 

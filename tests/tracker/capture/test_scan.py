@@ -163,6 +163,7 @@ HOSTILE = {
     "short.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 1000\n"
     b"property float x\nproperty float y\nproperty float z\nend_header\n1234",
     "twice.ply": b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float x\nend_header\n1 1\n",
+    "nothing_of_it.ply": b"ply\nformat ascii 1.0\nelement vertex 3\nend_header\n",
     "flat.ply": b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 1\n",
     "word.ply": b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
     b"end_header\n1 1 one\n",

@@ -30,7 +30,7 @@ function Result({ result, onDone }: { result: ScansAdded; onDone: () => void }) 
                   {file}
                 </Text>
                 <Text size="xs" c="var(--bad-text)">
-                  {detail}
+                  {detail.replace(`${file}: `, "")}
                 </Text>
               </div>
             ))}

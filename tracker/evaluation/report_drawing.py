@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
+from math import inf
 
 COLORS = ("#1c9c8f", "#d9822b", "#7d6bd8", "#3d86d8", "#c2547e", "#7c8a2e", "#8a8f98", "#b0553a")
 DASHES = ("", "7 4", "2 3", "9 3 2 3", "4 2", "12 4", "1 4", "6 2 1 2")
@@ -19,6 +20,23 @@ class Line:
     label: str
     x: Sequence[float]
     y: Sequence[float | None]
+    reach: float = inf
+    """Values that are farther apart in x are not joined: between them nothing was measured."""
+
+    def pieces(self) -> list[list[tuple[float, float]]]:
+        """What is drawn without a break."""
+        found: list[list[tuple[float, float]]] = []
+        is_joined = False
+        for x, y in zip(self.x, self.y, strict=True):
+            if y is None:
+                is_joined = False
+                continue
+            if is_joined and x - found[-1][-1][0] <= self.reach:
+                found[-1].append((x, y))
+            else:
+                found.append([(x, y)])
+            is_joined = True
+        return found
 
 
 def draw_curves(lines: Sequence[Line], label: str, x_title: str, y_title: str, top: float | None = None) -> str:
@@ -49,11 +67,17 @@ def draw_curves(lines: Sequence[Line], label: str, x_title: str, y_title: str, t
     parts.append(f'<text x="4" y="{HEIGHT - 4}">{escape(y_title)}</text>')
     for place, line in enumerate(lines):
         color, dash = COLORS[place % len(COLORS)], DASHES[place % len(DASHES)]
-        points = [at(x, min(y, top)) for x, y in zip(line.x, line.y, strict=True) if y is not None]
-        path = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-        parts.append(f'<polyline points="{path}" stroke="{color}" stroke-dasharray="{dash}"/>')
-        if len(points) <= 60:
-            parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="{color}"/>' for x, y in points]
+        pieces = [[at(x, min(y, top)) for x, y in piece] for piece in line.pieces()]
+        for piece in pieces:
+            path = " ".join(f"{x:.1f},{y:.1f}" for x, y in piece)
+            parts.append(f'<polyline points="{path}" stroke="{color}" stroke-dasharray="{dash}"/>')
+        has_dots = sum(map(len, pieces)) <= 60
+        parts += [
+            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="{color}"/>'
+            for piece in pieces
+            for x, y in piece
+            if has_dots or len(piece) == 1
+        ]
     legend = "".join(
         f'<span><svg class="key" viewBox="0 0 24 8"><line x1="0" x2="24" y1="4" y2="4" '
         f'stroke="{COLORS[place % len(COLORS)]}" stroke-dasharray="{DASHES[place % len(DASHES)]}"/></svg>'

@@ -154,7 +154,7 @@ def _curves(document: Document, names: Mapping[str, str]) -> str:
     for key in dict.fromkeys(track["recording_key"] for track in document["tracks"]):
         fellows = [track for track in document["tracks"] if track["recording_key"] == key]
         label = f"Mean error by frame, {fellows[0]['recording']}"
-        lines = [Line(names[t["key"]], t["curve"]["frame"], t["curve"]["mean"]) for t in fellows]
+        lines = [Line(names[t["key"]], t["curve"]["frame"], t["curve"]["mean"], reach=1) for t in fellows]
         parts.append(f"<h3>{escape(label)}</h3>" + draw_curves(lines, label, "frame", "px"))
     thresholds = document["thresholds_px"]
     lines = [

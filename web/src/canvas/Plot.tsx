@@ -5,24 +5,12 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import classes from "./Plot.module.css";
 import { PlotLegend } from "./PlotLegend";
-
-export interface Curve {
-  readonly label: string;
-  readonly unit: string;
-  readonly values: readonly (number | null)[];
-  readonly color: string;
-  /** Dashes tell curves apart without colour. */
-  readonly dash?: number[];
-  readonly axis: "left" | "right";
-  readonly digits?: number;
-  /** Single values, shown as dots. */
-  readonly isSparse?: boolean;
-  /** Dots on the line: few values, between which nothing was measured. */
-  readonly hasDots?: boolean;
-}
+import { axesOf, breaksOf, loneOf, type Curve } from "./series";
+import { useTouchSeek } from "./useTouchSeek";
 
 interface PlotProps {
   label: string;
+  /** Frames, or with `joinsAll` anything that is counted or measured. */
   frames: readonly number[];
   curves: readonly Curve[];
   /** Frames to shade. */
@@ -33,6 +21,10 @@ interface PlotProps {
   onSeek?: (frame: number) => void;
   /** The left axis by powers of ten; what is not above zero is left out. */
   isLog?: boolean;
+  /** Lines join whatever follows; without it only neighbouring frames, for between others nothing was measured. */
+  joinsAll?: boolean;
+  /** A plot with two axes is above it: the frames of both stand under one another. */
+  isBelowTwoAxes?: boolean;
   /** Names and values of the curves; off where another plot beside this one has them. */
   hasLegend?: boolean;
 }
@@ -42,6 +34,10 @@ const onlyDecades: uPlot.Axis.Filter = (_, splits) => splits.map((split) => (Mat
 
 /** Frames and iterations are counted. */
 const WHOLE = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000, 100_000];
+
+/** Of the numbers at an axis and of what they measure, px. */
+const AXIS_SIZE = 44;
+const TITLE_SIZE = 16;
 
 const compact = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 
@@ -53,7 +49,7 @@ const decades = (low: number | null, high: number | null): [number, number] => {
 };
 
 /** Curves over the frames, or over anything counted; a click goes to the frame, the line shows where one is. */
-export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false, hasLegend = true }: PlotProps) {
+export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false, joinsAll = false, isBelowTwoAxes = false, hasLegend = true }: PlotProps) {
   const { ref: sizeRef, width, height } = useElementSize();
   const holder = useRef<HTMLDivElement | null>(null);
   const plot = useRef<uPlot | null>(null);
@@ -70,23 +66,30 @@ export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false
     const [ink, line, bad] = ["--text-quiet", "--line", "--bad"].map((name) => style.getPropertyValue(name)) as [string, string, string];
     const strong = style.getPropertyValue("--mantine-color-text");
     const font = "11px Inter Variable, sans-serif";
-    const axisOf = (side: "left" | "right"): uPlot.Axis => ({
+    const [left, right] = axesOf(curves);
+    const axisOf = (side: "left" | "right", title: string | undefined): uPlot.Axis => ({
       scale: side,
       side: side === "left" ? 3 : 1,
+      label: title,
+      labelFont: font,
+      labelSize: TITLE_SIZE,
+      labelGap: 0,
       stroke: ink,
       font,
-      size: 44,
+      size: AXIS_SIZE,
       values: (_, splits) => splits.map((split) => (split === null ? "" : compact.format(split))),
       ticks: { show: false },
       grid: { show: side === "left", stroke: line, width: 1, ...(isLog ? { filter: onlyDecades } : {}) },
       ...(isLog && side === "left" ? { filter: onlyDecades } : {}),
     });
-    const hasRight = curves.some((curve) => curve.axis === "right");
+    const hasRight = right !== undefined;
+    const breaks = curves.map((curve) => (joinsAll ? [] : breaksOf(frames, curve.values)));
+    const lone = curves.map((curve) => (joinsAll ? [] : loneOf(frames, curve.values)));
     const made = new uPlot(
       {
         width,
         height,
-        padding: [8, hasRight ? 0 : 12, 0, 0],
+        padding: [8, hasRight ? 0 : isBelowTwoAxes ? AXIS_SIZE + TITLE_SIZE : 12, 0, 0],
         legend: { show: false },
         cursor: { drag: { x: false, y: false }, points: { size: 6 }, y: false },
         scales: {
@@ -98,18 +101,20 @@ export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false
         },
         axes: [
           { stroke: ink, font, size: 26, incrs: WHOLE, ticks: { show: false }, grid: { show: false } },
-          axisOf("left"),
-          ...(hasRight ? [axisOf("right")] : []),
+          axisOf("left", left),
+          ...(hasRight ? [axisOf("right", right)] : []),
         ],
         series: [
           {},
-          ...curves.map((curve) => ({
+          ...curves.map((curve, place) => ({
             label: curve.label,
-            scale: curve.axis,
+            scale: curve.axis === left ? "left" : "right",
             stroke: curve.color,
             width: 1.5,
             ...(curve.dash ? { dash: curve.dash } : {}),
-            points: { show: Boolean(curve.isSparse ?? curve.hasDots), size: curve.isSparse ? 6 : 5, fill: curve.color },
+            points: { show: true, size: curve.isSparse ? 6 : 5, fill: curve.color, filter: () => (curve.isSparse || curve.hasDots ? null : (lone[place] ?? [])) },
+            gaps: (drawn: uPlot, _place: number, _from: number, _to: number, found: uPlot.Series.Gaps) =>
+              joinsAll ? found : (breaks[place] ?? []).map((ends): [number, number] => [drawn.valToPos(frames[ends[0]] ?? 0, "x", true), drawn.valToPos(frames[ends[1]] ?? 0, "x", true)]),
             ...(curve.isSparse ? { paths: () => null } : {}),
           })),
         ],
@@ -155,7 +160,7 @@ export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false
       },
       [
         frames as number[],
-        ...curves.map((curve) => (isLog && curve.axis === "left" ? curve.values.map((value) => (value !== null && value > 0 ? value : null)) : curve.values) as (number | null)[]),
+        ...curves.map((curve) => (isLog && curve.axis === left ? curve.values.map((value) => (value !== null && value > 0 ? value : null)) : curve.values) as (number | null)[]),
       ],
       element,
     );
@@ -164,9 +169,10 @@ export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false
       plot.current = null;
       made.destroy();
     };
-  }, [width, height, frames, curves, lost, scheme, isLog]);
+  }, [width, height, frames, curves, lost, scheme, isLog, joinsAll, isBelowTwoAxes]);
 
   useEffect(() => plot.current?.redraw(false), [frame]);
+  useTouchSeek(holder, plot, seek);
 
   const index = frame === null ? -1 : frames.indexOf(frame);
   return (

@@ -1,4 +1,4 @@
-import type { Curve } from "./Plot";
+import type { Curve } from "./series";
 import classes from "./Plot.module.css";
 
 interface PlotLegendProps {

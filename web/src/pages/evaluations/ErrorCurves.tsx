@@ -3,10 +3,14 @@ import { IconCube, IconPencil } from "@tabler/icons-react";
 import { useMemo, useState } from "react";
 import { Link } from "react-router";
 import type { Comparison } from "../../api/evaluations";
-import { Plot, type Curve } from "../../canvas/Plot";
+import { Plot } from "../../canvas/Plot";
+import type { Curve } from "../../canvas/series";
 import { trackStyle } from "../../model/trackStyle";
 import { formatNumber } from "../../model/format";
 import classes from "./Evaluations.module.css";
+
+/** More of them would only thicken the line. */
+const MOST_DOTS = 60;
 
 interface ErrorCurvesProps {
   comparison: Comparison;
@@ -28,7 +32,7 @@ export function ErrorCurves({ comparison, camera, onWithin }: ErrorCurvesProps) 
     const isOne = own.length === 1;
     const made = own.map(({ track, place }): Curve => {
       const values = new Map(track.curve.frame.map((at, index) => [at, track.curve.mean[index] ?? null]));
-      return { label: track.name, unit: "px", values: all.map((at) => values.get(at) ?? null), axis: "left", digits: 2, ...trackStyle(place) };
+      return { label: track.name, unit: "px", values: all.map((at) => values.get(at) ?? null), axis: "Mean error, px", digits: 2, hasDots: all.length <= MOST_DOTS, ...trackStyle(place) };
     });
     return { frames: all, curves: made, lost: isOne ? (own[0]?.track.lost_frames ?? []) : [] };
   }, [tracks, recording]);
@@ -39,7 +43,7 @@ export function ErrorCurves({ comparison, camera, onWithin }: ErrorCurvesProps) 
         label: recordings.length > 1 ? `${track.name}, ${track.recording}` : track.name,
         unit: "%",
         values: track.shares.map((share) => (share === null ? null : 100 * share)),
-        axis: "left",
+        axis: "Joints below, %",
         ...trackStyle(place),
       })),
     // eslint-disable-next-line react-hooks/exhaustive-deps -- the recordings come from the tracks
@@ -100,7 +104,7 @@ export function ErrorCurves({ comparison, camera, onWithin }: ErrorCurvesProps) 
           </Text>
         </Group>
         <div className={`card ${classes.plot}`}>
-          <Plot label="Share of joints below an error" frames={thresholds} curves={shares} lost={[]} frame={nearest} onSeek={(px) => onWithin(Math.max(0.1, Number(px.toFixed(1))))} />
+          <Plot label="Share of joints below an error" frames={thresholds} curves={shares} lost={[]} frame={nearest} joinsAll onSeek={(px) => onWithin(Math.max(0.1, Number(px.toFixed(1))))} />
         </div>
         <Text size="sm" className="quiet" mt="xs">
           The line stands at {within} px; click to move it.

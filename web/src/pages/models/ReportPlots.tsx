@@ -1,6 +1,7 @@
 import { Text, Title } from "@mantine/core";
 import { useMemo, useState } from "react";
-import { Plot, type Curve } from "../../canvas/Plot";
+import { Plot } from "../../canvas/Plot";
+import type { Curve } from "../../canvas/series";
 import { formatCount, formatDuration, formatName, formatNumber } from "../../model/format";
 import { trackStyle } from "../../model/trackStyle";
 import type { ComponentCurve, HeldOutStudy, NamedValue, TrainingReport } from "../../model/trainingReport";
@@ -13,7 +14,7 @@ interface Line {
 }
 
 /** Curves over the number of components, or of passes; a click reads the values there. */
-function Curves({ title, note, unit, digits, lines }: { title: string; note: string; unit: string; digits: number; lines: readonly Line[] }) {
+function Curves({ title, note, axis, unit, digits, lines }: { title: string; note: string; axis: string; unit: string; digits: number; lines: readonly Line[] }) {
   const [at, setAt] = useState<number | null>(null);
   const shown = useMemo(() => lines.filter(({ curve }) => curve.values.length > 0), [lines]);
   const places = useMemo(() => [...new Set(shown.flatMap(({ curve }) => curve.components))].sort((a, b) => a - b), [shown]);
@@ -25,9 +26,9 @@ function Curves({ title, note, unit, digits, lines }: { title: string; note: str
           const found = curve.values[curve.components.indexOf(component)];
           return found === undefined ? null : scale * found;
         });
-        return { label, unit, values, color, ...(dash ? { dash } : {}), axis: "left", digits, hasDots: curve.values.length <= MOST_DOTS };
+        return { label, unit, values, color, ...(dash ? { dash } : {}), axis, digits, hasDots: curve.values.length <= MOST_DOTS };
       }),
-    [shown, places, unit, digits],
+    [shown, places, axis, unit, digits],
   );
   if (shown.length === 0) return null;
   const common = Math.min(...shown.map(({ curve }) => curve.components.at(-1) ?? 0));
@@ -39,7 +40,7 @@ function Curves({ title, note, unit, digits, lines }: { title: string; note: str
           {note}
         </Text>
       </div>
-      <Plot label={title} frames={places} curves={curves} lost={NONE} frame={at ?? common} onSeek={setAt} />
+      <Plot label={title} frames={places} curves={curves} lost={NONE} frame={at ?? common} onSeek={setAt} joinsAll />
     </section>
   );
 }
@@ -112,9 +113,9 @@ export function ReportPlots({ report }: { report: TrainingReport }) {
           What it has learnt
         </Title>
         <div className={classes.plots}>
-          <Curves title="Compactness" note="Variance that so many components hold, %" unit="%" digits={1} lines={compactness} />
-          <Curves title="Generalisation of shapes" note="Mean error of templates, by number of shape components, mm" unit="mm" digits={2} lines={shapes} />
-          <Curves title="Passes" note="Distance of the model to what it learns from after each pass, mm" unit="mm" digits={3} lines={passes} />
+          <Curves title="Compactness" note="Variance that so many components hold" axis="Variance, %" unit="%" digits={1} lines={compactness} />
+          <Curves title="Generalisation of shapes" note="Mean error of templates, by number of shape components" axis="Mean error, mm" unit="mm" digits={2} lines={shapes} />
+          <Curves title="Passes" note="Distance of the model to what it learns from after each pass" axis="Distance, mm" unit="mm" digits={3} lines={passes} />
           <Bars title="By hand" note="Distance to the registrations, and how many" rows={report.byHand} show={mm} />
           <Bars title="By pose" note="Distance to the registrations, and how many" rows={report.byPose} show={mm} />
           <Bars title="Time" note="What training spent where" rows={report.seconds} show={formatDuration} />
@@ -141,7 +142,7 @@ function HeldOut({ study }: { study: HeldOutStudy | null }) {
             <Bars title="Scan to mesh, own template" note="A template of each person, the pose fitted" rows={study.ownTemplate.scanToMesh} show={mm3} />
             <Bars title="Vertices" note="To those of the registration; pose and shape fitted" rows={study.models.vertices} show={mm3} />
             <Bars title="Vertices, own template" note="To those of the registration; the pose fitted" rows={study.ownTemplate.vertices} show={mm3} />
-            <Curves title="Generalisation of poses" note="Scan to mesh, by number of pose components, mm" unit="mm" digits={2} lines={poses} />
+            <Curves title="Generalisation of poses" note="Scan to mesh, by number of pose components" axis="Scan to mesh, mm" unit="mm" digits={2} lines={poses} />
           </div>
           {study.notCompared.map(({ name, why }) => (
             <Text key={name} size="xs" className="quiet" mt={4}>

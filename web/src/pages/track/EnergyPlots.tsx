@@ -3,7 +3,8 @@ import { useDebouncedValue } from "@mantine/hooks";
 import { useMemo } from "react";
 import { useFrameEnergy } from "../../api/tracks";
 import type { FrameEnergy, Track, TrackFrames } from "../../api/types";
-import { Plot, type Curve } from "../../canvas/Plot";
+import { Plot } from "../../canvas/Plot";
+import type { Curve } from "../../canvas/series";
 import { PlotLegend } from "../../canvas/PlotLegend";
 import { formatName } from "../../model/format";
 import { termStyle } from "../../model/terms";
@@ -26,9 +27,8 @@ const curvesOf = (costs: Record<string, (number | null)[]>): Curve[] =>
     unit: "",
     values,
     ...termStyle(term),
-    axis: "left",
+    axis: "Energy, mm²",
     digits: 0,
-    isSparse: values.filter((value) => value !== null).length === 1,
   }));
 
 /** Energy of each term over the frames and, beside it, over the iterations of the frame one is at. */
@@ -39,7 +39,7 @@ export function EnergyPlots({ track, frames, lost, frame, isLog, onSeek }: Energ
     <PlotLegend curves={curves} index={frames.frame.indexOf(frame)} />
     <div className={classes.pair}>
       <div className={classes.half} style={{ flex: "none", width: "50%" }}>
-        <div className={classes.caption}>mm² by frame, last iteration</div>
+        <div className={classes.caption}>By frame, last iteration</div>
         <Plot label="Energy of each term by frame" frames={frames.frame} curves={curves} lost={lost} frame={frame} onSeek={onSeek} isLog={isLog} hasLegend={false} />
       </div>
       <Iterations track={track} frame={frame} isLog={isLog} />
@@ -57,7 +57,7 @@ function Iterations({ track, frame, isLog }: { track: Track; frame: number; isLo
 
   return (
     <div className={classes.half}>
-      <div className={classes.caption}>mm² by iteration, frame {data?.frame ?? settled}</div>
+      <div className={classes.caption}>By iteration, frame {data?.frame ?? settled}</div>
       {why ? (
         <p className={classes.nothing}>{why}</p>
       ) : data ? (

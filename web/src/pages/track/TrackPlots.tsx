@@ -3,7 +3,8 @@ import { useLocalStorage } from "@mantine/hooks";
 import { useMemo } from "react";
 import { useEvaluation } from "../../api/tracks";
 import type { Track, TrackFrames } from "../../api/types";
-import { Plot, type Curve } from "../../canvas/Plot";
+import { Plot } from "../../canvas/Plot";
+import type { Curve } from "../../canvas/series";
 import { formatNumber } from "../../model/format";
 import { EnergyPlots } from "./EnergyPlots";
 import classes from "./TrackReview.module.css";
@@ -24,25 +25,28 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
   const evaluation = useEvaluation(track.id).data;
   const [isLog, setLog] = useLocalStorage({ key: "handloom/energy-log", defaultValue: true, getInitialValueInEffect: false });
 
-  const errorCurves = useMemo<Curve[]>(() => {
-    const curves: Curve[] = [
-      { label: "Depth residual", unit: "mm", values: frames.depth_residual_mm, color: "#e8795a", axis: "left" },
-      { label: "Silhouette IoU", unit: "", values: frames.silhouette_iou, color: "#5f9bd6", dash: [5, 3], axis: "right", digits: 2 },
-    ];
+  const fitCurves = useMemo<Curve[]>(
+    () => [
+      { label: "Depth residual", unit: "mm", values: frames.depth_residual_mm, color: "#e8795a", axis: "Residual, mm" },
+      { label: "Silhouette IoU", unit: "", values: frames.silhouette_iou, color: "#5f9bd6", dash: [5, 3], axis: "IoU, 0 to 1", digits: 2 },
+    ],
+    [frames],
+  );
+
+  /** Of the frames that somebody annotated; empty without any. */
+  const annotatedCurves = useMemo<Curve[]>(() => {
     const errors = new Map<number, number>();
     for (const item of evaluation?.items ?? []) {
       if (item.camera === camera && item.mean_px !== null) errors.set(item.frame, Math.max(item.mean_px, errors.get(item.frame) ?? 0));
     }
-    if (errors.size > 0) {
-      curves.push({ label: "Annotated error", unit: "px", values: frames.frame.map((at) => errors.get(at) ?? null), color: "#b08cff", axis: "left", isSparse: true });
-    }
-    return curves;
+    if (errors.size === 0) return [];
+    return [{ label: "Annotated error", unit: "px", values: frames.frame.map((at) => errors.get(at) ?? null), color: "#b08cff", axis: "Error, px", isSparse: true }];
   }, [frames, evaluation, camera]);
 
   const timingCurves = useMemo<Curve[]>(
     () => [
-      { label: "Time", unit: "ms", values: frames.seconds.map((value) => (value === null ? null : 1000 * value)), color: "#36b8a8", axis: "left" },
-      { label: "Iterations", unit: "", values: frames.iterations, color: "#9aa7b5", dash: [5, 3], axis: "right", digits: 0 },
+      { label: "Time", unit: "ms", values: frames.seconds.map((value) => (value === null ? null : 1000 * value)), color: "#36b8a8", axis: "Time, ms" },
+      { label: "Iterations", unit: "", values: frames.iterations, color: "#9aa7b5", dash: [5, 3], axis: "Iterations", digits: 0 },
     ],
     [frames],
   );
@@ -50,7 +54,7 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
   const hasEnergy = Object.keys(frames.costs).length > 0;
   const stages = Object.entries(track.summary.stages_ms ?? {});
   return (
-    <Tabs value={tab} onChange={(next) => next && onTab(next)} className={classes.plots} data-tall={tab === "energy" || undefined} keepMounted={false}>
+    <Tabs value={tab} onChange={(next) => next && onTab(next)} className={classes.plots} data-tall={tab === "energy" || (tab === "error" && annotatedCurves.length > 0) || undefined} keepMounted={false}>
       <Tabs.List style={{ flexWrap: "nowrap" }}>
         <Tabs.Tab value="error">Error</Tabs.Tab>
         {hasEnergy && <Tabs.Tab value="energy">Energy</Tabs.Tab>}
@@ -67,7 +71,10 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
         </Text>
       </Tabs.List>
       <Tabs.Panel value="error" className={classes.plot}>
-        <Plot label="Error by frame" frames={frames.frame} curves={errorCurves} lost={lost} frame={frame} onSeek={onSeek} />
+        <Plot label="Error by frame" frames={frames.frame} curves={fitCurves} lost={lost} frame={frame} onSeek={onSeek} />
+        {annotatedCurves.length > 0 && (
+          <Plot label="Error against the annotations by frame" frames={frames.frame} curves={annotatedCurves} lost={lost} frame={frame} onSeek={onSeek} isBelowTwoAxes />
+        )}
       </Tabs.Panel>
       <Tabs.Panel value="energy" className={classes.plot}>
         <EnergyPlots track={track} frames={frames} lost={lost} frame={frame} isLog={isLog} onSeek={onSeek} />

@@ -164,6 +164,41 @@ def test_the_energy_of_a_frame_is_drawn_by_iteration_and_a_click_goes_to_another
     assert not np.array_equal(_labels_ink(figure), logarithmic), "another scale is another picture"
 
 
+def test_keys_go_on_working_after_a_layer_is_ticked_and_after_a_click_into_the_3d_view(studio, track, open_page):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/tracks/{track['id']}?frame=3&layers=mesh")
+    frame = page.get_by_test_id("frame")
+    bar = page.get_by_role("group", name="Layers of the 3D view")
+    inner = page.frame_locator("iframe").locator("canvas").first
+    inner.wait_for(timeout=60_000)
+    for press, then in (("f", 4), ("Right", 5), ("d", 4), ("Home", 0), ("v", 10)):
+        bar.get_by_label("Cloud").click()
+        page.keyboard.press(press.replace("Right", "ArrowRight"))
+        expect(frame).to_have_text(f"frame {then}")
+    # Space goes on ticking the box that has the focus, and plays nothing.
+    was = bar.get_by_label("Cloud").is_checked()
+    page.keyboard.press("Space")
+    expect(bar.get_by_label("Cloud")).to_be_checked(checked=not was)
+    mesh = page.get_by_role("checkbox", name="Mesh", exact=True).last
+    mesh.click()
+    page.keyboard.press("Space")
+    expect(mesh).to_be_checked()
+    expect(page.get_by_role("button", name="Play")).to_be_visible()
+    page.get_by_role("button", name="Next frame", exact=True).click()
+    page.keyboard.press("ArrowRight")
+    expect(frame).to_have_text("frame 12")
+
+    inner.click()
+    expect(page.locator("iframe")).to_be_focused()
+    for press, then in (("d", 11), ("ArrowRight", 12), ("Home", 0)):
+        page.keyboard.press(press)
+        expect(frame).to_have_text(f"frame {then}")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog")).to_contain_text("Next annotated frame")
+
+
 def test_a_track_from_before_iterations_were_kept_says_so(studio, track, open_page):
     from playwright.sync_api import expect
 

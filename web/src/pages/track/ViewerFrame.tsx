@@ -1,5 +1,6 @@
 import { Checkbox, Loader, Stack, Text } from "@mantine/core";
-import { useEffect, useState } from "react";
+import { useEffect, useState, type SyntheticEvent } from "react";
+import { shareKeys } from "../../actions/shareKeys";
 import { LAYERS, type Layer, type Viewer } from "../../api/tracks";
 import { countOf } from "../../model/evidence";
 import { formatName } from "../../model/format";
@@ -30,19 +31,11 @@ const HELP: Partial<Record<Layer, string>> = {
 export function ViewerFrame({ viewer, layers, terms, onLayers, onTerms }: ViewerFrameProps) {
   const { session, told, isBusy, failure, retry } = viewer;
   const [isLoaded, setLoaded] = useState(false);
-  const [hasKeys, setHasKeys] = useState(false);
   useEffect(() => setLoaded(false), [session?.id]);
-  useEffect(() => {
-    // Keys typed into the 3D view do not reach this page; say so instead of seeming broken.
-    const look = (): void => setHasKeys(document.activeElement?.tagName === "IFRAME");
-    const later = (): void => void setTimeout(look, 0);
-    window.addEventListener("blur", later);
-    window.addEventListener("focus", later);
-    return () => {
-      window.removeEventListener("blur", later);
-      window.removeEventListener("focus", later);
-    };
-  }, []);
+  const load = (event: SyntheticEvent<HTMLIFrameElement>): void => {
+    setLoaded(true);
+    if (event.currentTarget.contentWindow) shareKeys(event.currentTarget.contentWindow);
+  };
 
   return (
     <section className={classes.viewer} aria-label="3D view">
@@ -69,11 +62,10 @@ export function ViewerFrame({ viewer, layers, terms, onLayers, onTerms }: Viewer
         })}
       </div>
       <div className={classes.stage}>
-        {session && !failure && <iframe className={classes.page3d} src={session.url} title="3D view of the track" onLoad={() => setLoaded(true)} />}
+        {session && !failure && <iframe className={classes.page3d} src={session.url} title="3D view of the track" onLoad={load} />}
         {session && !failure && isLoaded && (
           <EvidenceCard told={told} layers={layers} isBusy={isBusy} terms={terms} onTerms={onTerms} />
         )}
-        {hasKeys && <span className={classes.note}>keys go to the 3D view; click outside it to bring them back</span>}
         {failure && (
           <div className={classes.waiting} style={{ background: "var(--mantine-color-body)" }}>
             <Failure what="The 3D view could not be opened" error={failure} safe="The image, the curves and the timeline work without it." onRetry={retry} />

@@ -44,7 +44,17 @@ class JointSourceOut(BaseModel):
     label: SourceText = Field(default="", description="For people.", examples=["Track 2", "model fit of 7 joints"])
     track_id: uuid.UUID | None = None
     model: SourceText = Field(default="", description="The hand model behind it.")
+    is_independent: bool = Field(
+        default=False,
+        description="Of a triangulation, an interpolation or a copy: no track and no model fit had a part in any joint "
+        "that it was made of. Only such joints judge a track, unless others are asked for.",
+    )
 
+
+SourceChoice = Literal[
+    "independent", "all", "hand", "unknown", "track", "fit", "triangulation", "interpolation", "copy", "import"
+]
+"""Which joints are meant, by where they came from; a test holds it equal to the tracker's SOURCE_CHOICES."""
 
 Sources = Annotated[
     list[JointSourceOut | None],

@@ -28,7 +28,7 @@ class Verdict:
     """A track judged by labels; neither changes ever.
 
     Attributes:
-        evaluation: The errors.
+        evaluation: The errors of all joints, whatever they came from; `select` takes those that are to count.
         parameters: Of the run that made the track.
         labels: Where the labels come from.
         track_sha256: Of `track.npz`.
@@ -78,7 +78,7 @@ class Judge:
         folder = self._storage.folder("tracks", track_id)
         track = load_track(folder)
         return Verdict(
-            evaluation=evaluate_track(track, labels.annotations),
+            evaluation=evaluate_track(track, labels.annotations, ("all",)),
             parameters=track.setup.options.to_json(),
             labels=labels.facts,
             track_sha256=hashlib.sha256((folder / "track.npz").read_bytes()).hexdigest(),

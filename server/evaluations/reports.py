@@ -58,4 +58,5 @@ def _say_choice(query: EvaluationQuery) -> str:
     ]
     said = ", ".join(part for part in parts if part)
     start = "The frame that a track began at is left out." if query.without_start else ""
-    return " ".join(part for part in (said and f"Only {said}.", start) if part)
+    sources = "" if query.source == ["independent"] else f"Joints that count: {', '.join(query.source)}."
+    return " ".join(part for part in (said and f"Only {said}.", start, sources) if part)

@@ -11,18 +11,21 @@ from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from sqlalchemy.orm import Session
 
 from server.accounts.service import CurrentAccount
+from server.annotations.schemas import SourceChoice
 from server.database import DatabaseDep
 from server.errors import InvalidError, error_responses
 from server.evaluations import service
 from server.evaluations.judge import JudgeDep
 from server.evaluations.reports import write_html_report
-from server.evaluations.schemas import Comparison, EvaluationQuery, Hand
+from server.evaluations.schemas import SOURCES_HELP, Comparison, EvaluationQuery, Hand
 from server.storage import StorageDep
 from server.tracks.guard import SeenTrack, SightDep, check_sight
 
 router = APIRouter(tags=["evaluations"], responses=error_responses(404))
 
 QueryDep = Annotated[EvaluationQuery, Query()]
+SourceQuery = Annotated[list[SourceChoice], Query(min_length=1, max_length=10, description=SOURCES_HELP)]
+JUDGING: list[SourceChoice] = ["independent"]
 
 
 def get_sight_check(account: CurrentAccount, guards: SightDep) -> Callable[[Session, uuid.UUID], None]:
@@ -37,9 +40,14 @@ REPORT_POLICY = "sandbox; default-src 'none'; img-src data:; style-src 'unsafe-i
 
 
 @router.get("/tracks/{track_id}/evaluation")
-def get_track_evaluation(track: SeenTrack, database: DatabaseDep, judge: JudgeDep) -> dict[str, Any]:
-    """Errors of a track against the annotations as they are now, px, for each joint and frame."""
-    return service.evaluate(database, judge, track)
+def get_track_evaluation(
+    track: SeenTrack, database: DatabaseDep, judge: JudgeDep, source: SourceQuery = JUDGING
+) -> dict[str, Any]:
+    """Errors of a track against the annotations as they are now, px, for each joint and frame.
+
+    Joints that a track had a part in do not count unless `source` asks for them; `sources` says how many that are.
+    """
+    return service.evaluate(database, judge, track, source)
 
 
 @router.get(
@@ -60,13 +68,14 @@ def get_evaluation_picture(
     database: DatabaseDep,
     storage: StorageDep,
     judge: JudgeDep,
+    source: SourceQuery = JUDGING,
 ) -> Response:
     """An annotated hand cut out of its image: what was marked, and where the track has it."""
-    tag = f'"{hashlib.sha256(request.url.path.encode()).hexdigest()[:24]}"'
+    tag = f'"{hashlib.sha256(f"{request.url.path}?{request.url.query}".encode()).hexdigest()[:24]}"'
     headers = {"Cache-Control": IMMUTABLE, "ETag": tag}
     if tag in request.headers.get("if-none-match", ""):
         return Response(status_code=304, headers=headers)
-    data = service.draw_picture(database, storage, judge, track, labels, (camera, frame, hand))
+    data = service.draw_picture(database, storage, judge, track, labels, (camera, frame, hand), source)
     return Response(data, media_type="image/jpeg", headers=headers)
 
 

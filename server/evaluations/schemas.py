@@ -8,8 +8,16 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from server.annotations.schemas import SourceChoice
+
 Hand = Literal["right", "left"]
 MAX_TRACKS = 60
+SOURCES_HELP = (
+    "Joints that count, by where they came from; given several times, a joint counts that is one of them. "
+    "`independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: "
+    "whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, "
+    "`copy`, `fit`, `track`."
+)
 
 
 class EvaluationQuery(BaseModel):
@@ -30,6 +38,7 @@ class EvaluationQuery(BaseModel):
     )
     camera: str = Field(default="", max_length=64, description="This camera alone.")
     hand: Hand | None = Field(default=None, description="This hand alone.")
+    source: list[SourceChoice] = Field(default=["independent"], min_length=1, max_length=10, description=SOURCES_HELP)
     visibility: Literal["visible", "occluded"] | None = Field(default=None, description="Joints marked so alone.")
     without_start: bool = Field(
         default=False, description="Leave out the frame that each track began at: its annotation may have helped."
@@ -61,6 +70,15 @@ class PairedDifferenceOut(BaseModel):
     low: float = Field(description="Of the 95 % interval of the difference: a bootstrap over frames.")
     high: float
     better: float = Field(description="Share of the joints that are nearer than the reference's.")
+
+
+class JointsOfSource(BaseModel):
+    """Placed joints of one origin."""
+
+    origin: str = Field(description="`hand`, `unknown`, or the kind of the source.")
+    words: str = Field(description="For people: `accepted from Track 2`.")
+    joints: int
+    is_counted: bool = Field(description="They judge; otherwise they are left out because of where they came from.")
 
 
 class ErrorCurve(BaseModel):
@@ -99,9 +117,11 @@ class JudgedTrackOut(BaseModel):
     lost: int
     lost_frames: list[int]
     annotated: int = Field(description="Annotated hands in images.")
-    evaluated: int = Field(description="Those of them that the track holds.")
+    evaluated: int = Field(description="Those of them that the track holds and that have joints which count.")
     annotated_frames: int
     untracked: int
+    sources: list[JointsOfSource] = Field(description="Where the joints came from that count, or are left out.")
+    left_out_joints: int = Field(description="Placed joints that do not count because of where they came from.")
     error: ErrorStatistics
     visible: ErrorStatistics
     occluded: ErrorStatistics
@@ -151,6 +171,7 @@ class Comparison(BaseModel):
     made_at: datetime
     within_px: float
     thresholds_px: list[float]
+    source: list[SourceChoice] = Field(description="Joints that count, as asked for.")
     reference: uuid.UUID | None
     joints: list[str]
     cameras: list[str] = Field(description="That `camera` may name.")

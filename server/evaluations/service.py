@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
+from urllib.parse import quote, urlencode
 
 from sqlalchemy.orm import Session
 
@@ -24,18 +24,23 @@ if TYPE_CHECKING:
 VISIBILITIES = {"occluded": 1, "visible": 2}
 
 
-def evaluate(database: Database, judge: Judge, row: TrackRow) -> dict[str, Any]:
-    """Evaluate a track against the annotations of its recording; its mean error is kept with its row."""
+def evaluate(database: Database, judge: Judge, row: TrackRow, source: Sequence[str]) -> dict[str, Any]:
+    """Evaluate a track against the annotations of its recording.
+
+    Its mean error by joints that no track had a part in is kept with its row.
+    """
+    from tracker import JUDGING
+
     with database.reading() as session:
         labels = find_current_labels(session, row.sequence_id)
-    result = judge.find(row.id, labels).evaluation.to_json()
-    error_px = result["joint_error_px"].get("mean") if result["evaluated"] else None
+    evaluation = judge.find(row.id, labels).evaluation
+    error_px = evaluation.select(sources=JUDGING).statistics.mean
     if error_px != row.error_px:
         with database.writing() as session:
             track = session.get(TrackRow, row.id)
             assert track is not None
             track.error_px = error_px
-    return result
+    return evaluation.select(sources=source).to_json()
 
 
 def compare(
@@ -53,9 +58,10 @@ def compare(
     document = compare_tracks(judged, reference=None if reference is None else str(reference), within_px=query.within)
     for one, described in zip(chosen, document["tracks"], strict=True):
         for item in described["worst"]:
-            item["picture"] = write_picture_address(one, item["camera"], item["frame"], item["hand"])
+            item["picture"] = write_picture_address(one, item["camera"], item["frame"], item["hand"], query.source)
     cameras = dict.fromkeys(camera["id"] for one in chosen for camera in one.sequence.cameras)
-    return Comparison.model_validate(document | {"made_at": utc_now(), "cameras": list(cameras)}), judged
+    more = {"made_at": utc_now(), "cameras": list(cameras), "source": query.source}
+    return Comparison.model_validate(document | more), judged
 
 
 def _judge(judge: Judge, one: Chosen, query: EvaluationQuery) -> JudgedTrack:
@@ -73,6 +79,7 @@ def _judge(judge: Judge, one: Chosen, query: EvaluationQuery) -> JudgedTrack:
             hand=query.hand or "",
             visibility=None if query.visibility is None else VISIBILITIES[query.visibility],
             without_start=query.without_start,
+            sources=query.source,
         ),
         labels=verdict.labels,
         origin={
@@ -84,10 +91,13 @@ def _judge(judge: Judge, one: Chosen, query: EvaluationQuery) -> JudgedTrack:
     )
 
 
-def write_picture_address(one: Chosen, camera: str, frame: int, hand: str) -> str:
+def write_picture_address(one: Chosen, camera: str, frame: int, hand: str, source: Sequence[str]) -> str:
     """Where the picture of an item is; the address names the labels, so what it shows never changes."""
-    place = f"{quote(camera, safe='')}/{frame}/{hand}"
-    return f"/api/v1/tracks/{one.track.id}/evaluation/{one.labels.key}/{place}.jpg"
+    from tracker import JUDGING
+
+    place = f"{quote(camera, safe='')}/{frame}/{hand}.jpg"
+    chosen = "" if tuple(source) == JUDGING else "?" + urlencode({"source": source}, doseq=True)
+    return f"/api/v1/tracks/{one.track.id}/evaluation/{one.labels.key}/{place}{chosen}"
 
 
 def draw_picture(
@@ -97,13 +107,14 @@ def draw_picture(
     track: TrackRow,
     labels_key: str,
     place: tuple[str, int, str],
+    source: Sequence[str],
 ) -> bytes:
     """The picture of one hand in one image: marks and track, cut out."""
     from tracker import draw_item, encode_jpeg, load_sequence
 
     with database.reading() as session:
         labels = _find_labels(session, track.sequence_id, labels_key)
-    evaluation = judge.find(track.id, labels).evaluation
+    evaluation = judge.find(track.id, labels).evaluation.select(sources=source)
     camera, frame, hand = place
     keys = zip(evaluation.camera, evaluation.frame.tolist(), evaluation.hand, strict=True)
     item = next((number for number, key in enumerate(keys) if key == place), None)

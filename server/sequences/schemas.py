@@ -38,7 +38,7 @@ class BestTrack(BaseModel):
 
     id: uuid.UUID
     summary: dict[str, Any]
-    error_px: float | None = Field(description="Mean distance to the annotations, px.")
+    error_px: float | None = Field(description="Mean distance to the annotations that no track had a part in, px.")
 
 
 class SequenceOut(BaseModel):

@@ -29,6 +29,6 @@ class TrackRow(Base):
     hands: Mapped[list[Any]]
     summary: Mapped[dict[str, Any]]
     error_px: Mapped[float | None]
-    """Median distance to the annotations when last evaluated, px."""
+    """Mean distance to the annotations that no track had a part in, when last evaluated, px."""
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     deleted_at: Mapped[datetime | None]

@@ -22,7 +22,9 @@ class TrackOut(BaseModel):
     frame_count: int
     hands: list[Literal["right", "left"]]
     summary: dict[str, Any] = Field(description="As `summary.json`.")
-    error_px: float | None = Field(description="Mean distance to the annotations when last evaluated, px.")
+    error_px: float | None = Field(
+        description="Mean distance to the annotations that no track had a part in, when last evaluated, px."
+    )
     created_at: datetime
     deleted_at: datetime | None
 

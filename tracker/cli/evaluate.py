@@ -29,6 +29,14 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("track", type=Path, metavar="DIR", help="a folder that `handloom track` wrote")
     parser.add_argument("--annotations", type=Path, metavar="FILE", help="an annotations.json")
+    parser.add_argument(
+        "--sources",
+        default="independent",
+        metavar="WORDS",
+        help="annotations: which joints judge, by where they came from: independent (no track had a part in them), "
+        "all, or some of hand, unknown, import, triangulation, interpolation, copy, fit, track with commas between; "
+        "default: independent",
+    )
     parser.add_argument("--truth", type=Path, metavar="FILE", help="a truth.npz of `handloom synthesize`")
     parser.add_argument(
         "--report", type=Path, metavar="FILE", help="write the errors against annotations as .html, .csv or .json"
@@ -45,6 +53,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 def evaluate(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.capture.annotations import load_annotations
+    from tracker.capture.source_choice import choose_sources
     from tracker.capture.truth import load_truth
     from tracker.evaluation import evaluate_against_truth, evaluate_track
     from tracker.tracking.track import load_track
@@ -53,10 +62,11 @@ def evaluate(args: argparse.Namespace) -> dict[str, Any]:
         raise TrackerError("Nothing to compare with: give --annotations FILE, --truth FILE or both.")
     if args.report is not None and args.annotations is None:
         raise TrackerError("A report is about annotations: give --annotations FILE too.")
+    sources = choose_sources(args.sources)
     track = load_track(args.track)
     result: dict[str, Any] = {"track": str(args.track)}
     if args.annotations is not None:
-        evaluation = evaluate_track(track, load_annotations(args.annotations))
+        evaluation = evaluate_track(track, load_annotations(args.annotations), sources)
         result["annotations"] = evaluation.to_json()
         if args.report is not None:
             write_report(args, track, evaluation)
@@ -119,10 +129,18 @@ def _draw_pictures(recording: Sequence, evaluation: Evaluation) -> dict[tuple[st
 
 
 def show(result: dict[str, Any]) -> str:
+    from tracker.capture.source_choice import say_left_out
+
     lines = []
     if "annotations" in result:
         found = result["annotations"]
         lines.append(f"against {found['evaluated']} annotated hands ({len(found['untracked'])} not in the track)")
+        counted, left_out = (
+            [(one["words"], one["joints"]) for one in found["sources"] if one["is_counted"] == is_counted]
+            for is_counted in (True, False)
+        )
+        lines.append("judged by " + (", ".join(f"{count} joints {words}" for words, count in counted) or "no joint"))
+        lines += [f"{say_left_out(left_out)} --sources all counts them too."] if left_out else []
         lines += [
             _row("all joints", found["joint_error_px"], "px"),
             _row("visible", found["visible_error_px"], "px"),

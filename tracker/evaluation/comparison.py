@@ -104,8 +104,10 @@ def _describe_track(
         "lost": len(evaluation.lost_frame),
         "lost_frames": evaluation.lost_frame.tolist(),
         "annotated": len(evaluation.frame) + len(evaluation.untracked),
-        "evaluated": len(evaluation.frame),
-        "annotated_frames": len(np.unique(evaluation.frame)),
+        "evaluated": int(evaluation.is_judged.sum()),
+        "annotated_frames": len(np.unique(evaluation.frame[evaluation.is_judged])),
+        "sources": evaluation.count_sources(),
+        "left_out_joints": int(evaluation.left_out.sum()),
         "untracked": len(evaluation.untracked),
         "error": evaluation.statistics.to_json(),
         "visible": evaluation.where(evaluation.visibility == VISIBLE).to_json(),
@@ -125,7 +127,7 @@ def _describe_track(
 def _describe_curve(evaluation: Evaluation) -> dict[str, Any]:
     """Mean and largest error of the joints of each annotated frame."""
     frames, means, largest = [], [], []
-    for frame in np.unique(evaluation.frame):
+    for frame in np.unique(evaluation.frame[evaluation.is_judged]):
         found = compute_statistics(evaluation.error[evaluation.frame == frame])
         frames.append(int(frame))
         means.append(found.mean)

@@ -1,11 +1,13 @@
 """A track against the joints that people marked, by the protocol of [T16] §4.1.
 
 The error of a joint is the distance in the image, px, between its projection and its annotation. Every annotated joint
-counts, occluded or not; one marked absent does not. Frames that the tracker calls lost count like any other.
+counts, occluded or not; one marked absent does not. Frames that the tracker calls lost count like any other. Joints
+that a track had a part in do not count unless asked for: a track must not judge itself (`source_choice`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.annotations import Annotations
+from tracker.capture.joint_source import JointSources
+from tracker.capture.source_choice import ALL, JUDGING, count_origins, describe_origin, find_counted, find_origin
 from tracker.evaluation.statistics import Statistics, compute_statistics
 from tracker.model.joints import HAND_JOINTS
 
@@ -33,13 +37,16 @@ class Evaluation:
         camera: N ids.
         hand: N of "right", "left".
         status: N, what the tracker said of the frame: "ok", "lost" or "recovered".
-        error: (N, 21) px in the order of HAND_JOINTS; NaN where the joint is marked absent or does not project.
+        error: (N, 21) px in the order of HAND_JOINTS; NaN where the joint is marked absent, does not project or does
+            not count.
         visibility: (N, 21) 0 absent, 1 occluded, 2 visible.
         marked: (N, 21, 2) px, where people marked the joints.
         tracked: (N, 21, 2) px, where the track has them; NaN where one does not project.
         untracked: Annotated (frame, camera, hand) that the track does not hold.
         track_frame: (T,) all frames of the track.
         lost_frame: (L,) those that the tracker calls lost.
+        sources: N, where the joints of each item came from.
+        left_out: (N, 21) joints that do not count because of where they came from.
     """
 
     frame: npt.NDArray[np.int64]
@@ -53,11 +60,14 @@ class Evaluation:
     untracked: tuple[tuple[int, str, str], ...]
     track_frame: npt.NDArray[np.int64]
     lost_frame: npt.NDArray[np.int64]
+    sources: tuple[JointSources | None, ...]
+    left_out: npt.NDArray[np.bool_]
 
     def __post_init__(self) -> None:
         items = len(self.frame)
         assert len(self.camera) == len(self.hand) == len(self.status) == items
-        assert self.error.shape == self.visibility.shape == (items, len(HAND_JOINTS))
+        assert len(self.sources) == items
+        assert self.error.shape == self.visibility.shape == self.left_out.shape == (items, len(HAND_JOINTS))
         assert self.marked.shape == self.tracked.shape == (items, len(HAND_JOINTS), 2)
 
     @property
@@ -72,12 +82,35 @@ class Evaluation:
         total = np.nansum(self.error, axis=1)
         return np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
 
+    @property
+    def is_judged(self) -> npt.NDArray[np.bool_]:
+        """(N,) items that judge: not those whose joints are all left out."""
+        return np.asarray(np.isfinite(self.error).any(axis=1) | ~self.left_out.any(axis=1))
+
+    def count_sources(self) -> list[dict[str, Any]]:
+        """How many joints count, and how many are left out, by where they came from."""
+        counted = (self.visibility > 0) & ~self.left_out & np.isfinite(self.error)
+        return [
+            {"origin": origin, "words": words, "joints": joints, "is_counted": is_counted}
+            for is_counted, mask in ((True, counted), (False, self.left_out))
+            for (origin, words), joints in count_origins(
+                (find_origin(self.sources[item], joint), describe_origin(self.sources[item], joint))
+                for item, joint in np.argwhere(mask).tolist()
+            )
+        ]
+
     def select(
-        self, *, camera: str = "", hand: str = "", visibility: int | None = None, without_start: bool = False
+        self,
+        *,
+        camera: str = "",
+        hand: str = "",
+        visibility: int | None = None,
+        without_start: bool = False,
+        sources: Sequence[str] = (ALL,),
     ) -> Evaluation:
         """What is left with one camera, one hand, joints of one visibility, or without the frame the track began at.
 
-        Empty and None take all.
+        Empty and None take all. `sources` are SOURCE_CHOICES, of which a joint must be one.
         """
         kept = np.ones(len(self.frame), dtype=bool)
         if camera:
@@ -90,13 +123,18 @@ class Evaluation:
         if visibility is not None:
             error = np.where(self.visibility[kept] == visibility, error, np.nan)
         rows = np.flatnonzero(kept)
+        own = tuple(self.sources[row] for row in rows)
+        excluded = ~np.array([find_counted(one, sources) for one in own], dtype=bool).reshape(error.shape)
+        left_out = self.left_out[kept] | (excluded & np.isfinite(error))
         return replace(
             self,
             frame=self.frame[kept],
             camera=tuple(self.camera[row] for row in rows),
             hand=tuple(self.hand[row] for row in rows),
             status=tuple(self.status[row] for row in rows),
-            error=error,
+            error=np.where(left_out, np.nan, error),
+            sources=own,
+            left_out=left_out,
             visibility=self.visibility[kept],
             marked=self.marked[kept],
             tracked=self.tracked[kept],
@@ -141,7 +179,9 @@ class Evaluation:
             "items": [self.describe_item(item) for item in range(len(self.frame))],
             "worst": [self.describe_item(item) for item in self.worst_items()],
             "annotated": len(self.frame) + len(self.untracked),
-            "evaluated": len(self.frame),
+            "evaluated": int(self.is_judged.sum()),
+            "sources": self.count_sources(),
+            "left_out_joints": int(self.left_out.sum()),
             "untracked": [{"frame": f, "camera": c, "hand": h} for f, c, h in self.untracked],
         }
 
@@ -163,8 +203,8 @@ def _is(names: tuple[str, ...], wanted: str) -> npt.NDArray[np.bool_]:
     return np.array([name == wanted for name in names], dtype=bool)[:, None]
 
 
-def evaluate_track(track: Track, annotations: Annotations) -> Evaluation:
-    """Errors of a track at every annotated hand that it holds."""
+def evaluate_track(track: Track, annotations: Annotations, sources: Sequence[str] = JUDGING) -> Evaluation:
+    """Errors of a track at every annotated hand that it holds, by the joints that came from one of `sources`."""
     places = {int(frame): place for place, frame in enumerate(track.frame)}
     cameras = {camera: c for c, camera in enumerate(track.camera_ids)}
     columns = {name: j for j, name in enumerate(track.joint_names)}
@@ -183,7 +223,7 @@ def evaluate_track(track: Track, annotations: Annotations) -> Evaluation:
         visibilities.append(visibility)
         tracked.append(projected)
     shape = (len(evaluated), len(HAND_JOINTS))
-    return Evaluation(
+    everything = Evaluation(
         frame=np.array([item.frame for item in evaluated], dtype=np.int64),
         camera=tuple(item.camera for item in evaluated),
         hand=tuple(item.hand for item in evaluated),
@@ -195,4 +235,7 @@ def evaluate_track(track: Track, annotations: Annotations) -> Evaluation:
         untracked=tuple(untracked),
         track_frame=np.asarray(track.frame, dtype=np.int64),
         lost_frame=np.asarray(track.frame, dtype=np.int64)[track.status == "lost"],
+        sources=tuple(item.sources for item in evaluated),
+        left_out=np.zeros(shape, dtype=bool),
     )
+    return everything.select(sources=sources)

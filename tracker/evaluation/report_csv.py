@@ -8,18 +8,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tracker.capture.source_choice import describe_origin
 from tracker.evaluation.comparison import JudgedTrack
 from tracker.model.joints import HAND_JOINTS
 
 COLUMNS = (
     *("recording", "track", "track_id", "frame", "camera", "hand", "status", "joint", "visibility"),
-    *("marked_x", "marked_y", "tracked_x", "tracked_y", "error_px"),
+    *("marked_x", "marked_y", "tracked_x", "tracked_y", "error_px", "source", "counts"),
 )
 WORDS = ("absent", "occluded", "visible")
 
 
 def write_csv(judged: Sequence[JudgedTrack]) -> str:
-    """The table; joints marked absent are left out, `error_px` is empty where a joint does not project."""
+    """The table; joints marked absent are left out, `error_px` is empty where a joint does not project or count."""
     output = io.StringIO()
     writer = csv.writer(output, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -33,6 +34,10 @@ def write_csv(judged: Sequence[JudgedTrack]) -> str:
                 writer.writerow(
                     [*names, *place, HAND_JOINTS[joint], WORDS[found.visibility[item, joint]]]
                     + [f"{value:.3f}" if np.isfinite(value) else "" for value in positions]
+                    + [
+                        defuse(describe_origin(found.sources[item], int(joint))),
+                        "left out" if found.left_out[item, joint] else "yes",
+                    ]
                 )
     return output.getvalue()
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
+from tracker.capture.source_choice import say_left_out
 from tracker.evaluation.comparison import word_of
 from tracker.evaluation.error_color import ANCHORS
 from tracker.evaluation.report_drawing import Line, draw_bar_cell, draw_curves
@@ -36,6 +37,7 @@ def write_html(document: Document, pictures: Pictures, *, title: str, made_at: s
         f"<p class=quiet>Distance in the image between annotated and tracked joints, px. Made {escape(made_at)}. "
         f"{escape(about)}</p>",
         _summary(document, names),
+        _left_out(tracks, names),
         _paired(document, names),
         _methods(document),
         _sequences(tracks),
@@ -78,6 +80,19 @@ def _summary(document: Document, names: Mapping[str, str]) -> str:
         rows.append(write_row(names[track["key"]], cells))
     head = ["Track", *(label for _, label in STATISTICS), f"Within {within:g} px", "Visible", "Occluded"]
     return "<h2>Error</h2>" + write_table([*head, "Joints", "Annotated frames", "Frames", "Lost"], rows)
+
+
+def _left_out(tracks: Sequence[Document], names: Mapping[str, str]) -> str:
+    """How many joints did not judge, and why."""
+    said = []
+    for track in tracks:
+        told = say_left_out((one["words"], one["joints"]) for one in track["sources"] if not one["is_counted"])
+        judged = ", ".join(f"{one['joints']} {one['words']}" for one in track["sources"] if one["is_counted"])
+        said.append(f"<li>{escape(names[track['key']])}: judged by {escape(judged or 'no joint')}. {escape(told)}</li>")
+    return (
+        "<p class=quiet>What a track had a part in does not judge a track, unless that was asked for.</p>"
+        f"<ul class=quiet>{''.join(said)}</ul>"
+    )
 
 
 def _difference_cells(paired: Document) -> list[str]:

@@ -19,7 +19,7 @@ SMALLEST = 64
 """Width below which nothing is enlarged further, image px."""
 FULL_PX = 20.0
 """Error at which the colour scale ends, px."""
-MARKED = (255, 255, 255)
+MARKED, GREY = (255, 255, 255), (120, 126, 134)
 
 Image = npt.NDArray[np.uint8]
 
@@ -31,13 +31,17 @@ def draw_worst_picture(
     marked: npt.NDArray[np.float64],
     tracked: npt.NDArray[np.float64],
     visibility: npt.NDArray[np.int64],
+    left_out: npt.NDArray[np.bool_],
 ) -> Image:
     """(288, 384, 3) RGB: marks as white rings with solid bones, the track as crosses in the colour of their error.
+
+    Marks that do not count are grey rings, without a line to the track.
 
     Args:
         marked: (21, 2) px.
         tracked: (21, 2) px; NaN where a joint does not project.
         visibility: (21,) 0 absent, 1 occluded, 2 visible.
+        left_out: (21,) marks that do not count.
     """
     image = _load_image(sequence, frame, camera)
     is_marked: npt.NDArray[np.bool_] = np.asarray(visibility > 0)
@@ -51,15 +55,15 @@ def draw_worst_picture(
     error = np.linalg.norm(np.nan_to_num(tracked) - marked, axis=1)
     for start, end in HAND_EDGES:
         if is_tracked[start] and is_tracked[end]:
-            _line(picture, tracks[start], tracks[end], (120, 126, 134), 1)
+            _line(picture, tracks[start], tracks[end], GREY, 1)
         if is_marked[start] and is_marked[end]:
             _line(picture, marks[start], marks[end], MARKED, 1)
-    for joint in np.flatnonzero(is_marked & is_tracked):
+    for joint in np.flatnonzero(is_marked & is_tracked & ~left_out):
         color = compute_error_color(error[joint] / FULL_PX)
         _line(picture, marks[joint], tracks[joint], color, 2)
         _cross(picture, tracks[joint], color)
     for joint in np.flatnonzero(is_marked):
-        _ring(picture, marks[joint], is_filled=visibility[joint] == 2)
+        _ring(picture, marks[joint], GREY if left_out[joint] else MARKED, is_filled=visibility[joint] == 2)
     return picture
 
 
@@ -72,6 +76,7 @@ def draw_item(sequence: Sequence, evaluation: Evaluation, item: int) -> Image:
         evaluation.marked[item],
         evaluation.tracked[item],
         evaluation.visibility[item],
+        evaluation.left_out[item],
     )
 
 
@@ -124,11 +129,11 @@ def _line(
     cv2.line(picture, _at(start), _at(end), color, width, cv2.LINE_AA, shift=4)
 
 
-def _ring(picture: Image, point: npt.NDArray[np.float64], *, is_filled: bool) -> None:
+def _ring(picture: Image, point: npt.NDArray[np.float64], color: tuple[int, ...], *, is_filled: bool) -> None:
     cv2.circle(picture, _at(point), 16 * 4, (0, 0, 0), 3, cv2.LINE_AA, shift=4)
-    cv2.circle(picture, _at(point), 16 * 4, MARKED, 1, cv2.LINE_AA, shift=4)
+    cv2.circle(picture, _at(point), 16 * 4, color, 1, cv2.LINE_AA, shift=4)
     if is_filled:
-        cv2.circle(picture, _at(point), 16 * 1, MARKED, -1, cv2.LINE_AA, shift=4)
+        cv2.circle(picture, _at(point), 16 * 1, color, -1, cv2.LINE_AA, shift=4)
 
 
 def _cross(picture: Image, point: npt.NDArray[np.float64], color: tuple[int, ...]) -> None:

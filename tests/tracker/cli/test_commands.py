@@ -160,6 +160,24 @@ def test_evaluate_writes_a_report_that_says_which_labels_it_judged_by(kind, reco
         assert json.loads(text)["tracks"][0]["error"]["mean"] == mean
 
 
+def test_evaluate_leaves_out_what_a_track_made_and_says_so(recording, tracked, tmp_path, capsys):
+    document = json.loads((recording / "annotations.json").read_text())
+    for item in document["items"][:4]:
+        item["sources"] = [{"kind": "track", "label": "Track 2"}] * 21
+    labels = tmp_path / "annotations.json"
+    labels.write_text(json.dumps(document))
+    arguments = ["evaluate", str(tracked), "--annotations", str(labels)]
+    assert main(arguments) == 0
+    said = capsys.readouterr().out
+    assert "against 8 annotated hands" in said and "judged by 168 joints of unknown origin" in said
+    assert "84 joints are left out because of where they came from: 84 accepted from Track 2." in said
+    assert main([*arguments, "--sources", "all", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["annotations"]
+    assert (found["evaluated"], found["left_out_joints"]) == (12, 0)
+    assert main([*arguments, "--sources", "guesses"]) == 2
+    assert "'guesses'" in capsys.readouterr().err
+
+
 def test_a_report_of_another_kind_is_refused_and_nothing_is_written(recording, tracked, tmp_path, capsys):
     arguments = ["evaluate", str(tracked), "--report", str(tmp_path / "report.pdf")]
     assert main([*arguments, "--annotations", str(recording / "annotations.json")]) == 2

@@ -27,6 +27,8 @@ def make_evaluation(error: np.ndarray, frames: list[int] | None = None, **change
         "untracked": (),
         "track_frame": np.arange(max(items, 1), dtype=np.int64),
         "lost_frame": np.zeros(0, dtype=np.int64),
+        "sources": (None,) * items,
+        "left_out": np.zeros((items, 21), dtype=bool),
     }
     return Evaluation(**(values | changes))
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tracker.capture.annotations import Annotation, Annotations
+from tracker.capture.joint_source import JointSource
 from tracker.evaluation import evaluate_track
 
 
@@ -90,3 +92,26 @@ def test_a_track_without_annotations_has_no_numbers_and_says_so_in_valid_json(kn
     assert document["evaluated"] == 0
     assert document["joint_error_px"]["mean"] is None
     json.dumps(document, allow_nan=False)
+
+
+def test_what_came_from_a_track_does_not_judge_one_unless_asked(known):
+    accepted = JointSource("track", "Track 2")
+    sources = (None, accepted, JointSource("copy", "frame 1"), JointSource("copy", "frame 2", is_independent=True))
+    items = [
+        replace(item, sources=(*sources, JointSource("fit"), JointSource("import", "coco_keypoints"), *(None,) * 15))
+        for item in known.annotations.items
+    ]
+    items[0] = replace(items[0], sources=(accepted,) * 21)
+    found = evaluate_track(known.track(), Annotations(tuple(items)))
+    assert np.isfinite(found.error[0]).sum() == 0
+    assert np.flatnonzero(np.isnan(found.error[1])).tolist() == [1, 2, 4]
+    assert found.left_out.sum() == 21 + 4 * 3
+    document = found.to_json()
+    assert (document["evaluated"], document["left_out_joints"]) == (4, 33)
+    assert {one["words"]: one["joints"] for one in document["sources"] if not one["is_counted"]} == {
+        "accepted from Track 2": 25,
+        "copied from another frame and not known to be free of a track": 4,
+        "accepted from a model fit": 4,
+    }
+    assert evaluate_track(known.track(), Annotations(tuple(items)), ("all",)).statistics.count == 5 * 21
+    assert evaluate_track(known.track(), Annotations(tuple(items)), ("import", "fit")).statistics.count == 8

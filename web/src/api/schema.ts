@@ -2714,6 +2714,8 @@ export interface paths {
         /**
          * Get Track Evaluation
          * @description Errors of a track against the annotations as they are now, px, for each joint and frame.
+         *
+         *     Joints that a track had a part in do not count unless `source` asks for them; `sources` says how many that are.
          */
         get: operations["get_track_evaluation"];
         put?: never;
@@ -3647,7 +3649,7 @@ export interface components {
         BestTrack: {
             /**
              * Error Px
-             * @description Mean distance to the annotations, px.
+             * @description Mean distance to the annotations that no track had a part in, px.
              */
             error_px: number | null;
             /**
@@ -3881,6 +3883,11 @@ export interface components {
             parameters: components["schemas"]["ComparedParameters"];
             /** Reference */
             reference: string | null;
+            /**
+             * Source
+             * @description Joints that count, as asked for.
+             */
+            source: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
             /** Thresholds Px */
             thresholds_px: number[];
             /** Tracks */
@@ -4897,6 +4904,12 @@ export interface components {
          */
         JointSourceOut: {
             /**
+             * Is Independent
+             * @description Of a triangulation, an interpolation or a copy: no track and no model fit had a part in any joint that it was made of. Only such joints judge a track, unless others are asked for.
+             * @default false
+             */
+            is_independent: boolean;
+            /**
              * Kind
              * @enum {string}
              */
@@ -4917,6 +4930,29 @@ export interface components {
             model: string;
             /** Track Id */
             track_id?: string | null;
+        };
+        /**
+         * JointsOfSource
+         * @description Placed joints of one origin.
+         */
+        JointsOfSource: {
+            /**
+             * Is Counted
+             * @description They judge; otherwise they are left out because of where they came from.
+             */
+            is_counted: boolean;
+            /** Joints */
+            joints: number;
+            /**
+             * Origin
+             * @description `hand`, `unknown`, or the kind of the source.
+             */
+            origin: string;
+            /**
+             * Words
+             * @description For people: `accepted from Track 2`.
+             */
+            words: string;
         };
         /**
          * JudgedTrackOut
@@ -4945,7 +4981,7 @@ export interface components {
             error: components["schemas"]["ErrorStatistics"];
             /**
              * Evaluated
-             * @description Those of them that the track holds.
+             * @description Those of them that the track holds and that have joints which count.
              */
             evaluated: number;
             /** Frames */
@@ -4966,6 +5002,11 @@ export interface components {
             labels: {
                 [key: string]: unknown;
             };
+            /**
+             * Left Out Joints
+             * @description Placed joints that do not count because of where they came from.
+             */
+            left_out_joints: number;
             /** Lost */
             lost: number;
             /** Lost Frames */
@@ -4998,6 +5039,11 @@ export interface components {
              * @description Share of the joints within each of `thresholds_px` (PCK).
              */
             shares: (number | null)[];
+            /**
+             * Sources
+             * @description Where the joints came from that count, or are left out.
+             */
+            sources: components["schemas"]["JointsOfSource"][];
             /** Untracked */
             untracked: number;
             visible: components["schemas"]["ErrorStatistics"];
@@ -7113,7 +7159,7 @@ export interface components {
             deleted_at: string | null;
             /**
              * Error Px
-             * @description Mean distance to the annotations when last evaluated, px.
+             * @description Mean distance to the annotations that no track had a part in, when last evaluated, px.
              */
             error_px: number | null;
             /** Frame Count */
@@ -9821,6 +9867,8 @@ export interface operations {
                 camera?: string;
                 /** @description This hand alone. */
                 hand?: ("right" | "left") | null;
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
                 /** @description Joints marked so alone. */
                 visibility?: ("visible" | "occluded") | null;
                 /** @description Leave out the frame that each track began at: its annotation may have helped. */
@@ -9907,6 +9955,8 @@ export interface operations {
                 camera?: string;
                 /** @description This hand alone. */
                 hand?: ("right" | "left") | null;
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
                 /** @description Joints marked so alone. */
                 visibility?: ("visible" | "occluded") | null;
                 /** @description Leave out the frame that each track began at: its annotation may have helped. */
@@ -18959,7 +19009,10 @@ export interface operations {
     };
     get_track_evaluation: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+            };
             header?: never;
             path: {
                 track_id: string;
@@ -19028,7 +19081,10 @@ export interface operations {
     };
     get_evaluation_picture: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+            };
             header?: never;
             path: {
                 labels: string;

@@ -17,11 +17,14 @@ if TYPE_CHECKING:
     from tracker.capture.frame import Frame
     from tracker.capture.import_check import IMPORT_FORMATS, check_import
     from tracker.capture.import_options import ImportOptions
+    from tracker.capture.import_picture import read_import_picture
+    from tracker.capture.import_plan import StreamProbe
     from tracker.capture.import_report import ImportReport
     from tracker.capture.import_run import run_import
     from tracker.capture.joint_source import JointSource, JointSources
     from tracker.capture.relative_path import find_path_fault
     from tracker.capture.scan import SCAN_SUFFIXES, Scan, load_scan, save_scan
+    from tracker.capture.sensor_presets import SENSOR_PRESETS, SensorPreset
     from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
     from tracker.capture.source_choice import (
         JUDGING,
@@ -46,6 +49,7 @@ if TYPE_CHECKING:
         TrackerError,
         TrackingError,
         TrainingError,
+        say_count,
     )
     from tracker.evaluation.comparison import JudgedTrack, compare_tracks
     from tracker.evaluation.evaluation import Evaluation, evaluate_track
@@ -176,6 +180,11 @@ _HOMES = {
     "PRESETS": "tracker.tracking.presets",
     "QuickFit": "tracker.tracking.quick_fit",
     "read_label_files": "tracker.label_formats.label_files",
+    "read_import_picture": "tracker.capture.import_picture",
+    "SENSOR_PRESETS": "tracker.capture.sensor_presets",
+    "SensorPreset": "tracker.capture.sensor_presets",
+    "StreamProbe": "tracker.capture.import_plan",
+    "say_count": "tracker.errors",
     "register_scan": "tracker.registration.register",
     "Registration": "tracker.registration.registration",
     "RegistrationError": "tracker.errors",
@@ -244,6 +253,7 @@ __all__ = [
     "MIN_FIT_JOINTS",
     "PRESETS",
     "SCAN_SUFFIXES",
+    "SENSOR_PRESETS",
     "SOURCE_CHOICES",
     "STUDY_LEVELS",
     "USUAL_PRESET",
@@ -280,8 +290,10 @@ __all__ = [
     "RegistrationStart",
     "Scan",
     "ScanError",
+    "SensorPreset",
     "Sequence",
     "SequenceError",
+    "StreamProbe",
     "Track",
     "TrackChunk",
     "TrackOptions",
@@ -337,6 +349,7 @@ __all__ = [
     "mirror_blend",
     "pack_arrays",
     "pack_files",
+    "read_import_picture",
     "read_label_files",
     "register_scan",
     "render_overlay",
@@ -348,6 +361,7 @@ __all__ = [
     "save_registration",
     "save_scan",
     "save_sequence_json",
+    "say_count",
     "say_left_out",
     "start_tracking",
     "study_held_out",

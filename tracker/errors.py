@@ -8,6 +8,11 @@ from __future__ import annotations
 from pathlib import Path
 
 
+def say_count(count: int, one: str, many: str | None = None) -> str:
+    """`1 file`, `2 files`: a number with the words that fit it."""
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
 class TrackerError(Exception):
     """Base of every error that bad input can cause."""
 

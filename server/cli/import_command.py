@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,6 +28,8 @@ NUMBERS = {
 SCANS = "scans"
 TEXTS = {
     "name": "name of the recording",
+    "preset": "a kind of depth camera whose typical values stand in for what is not told: "
+    + "kinect_v1, kinect_v2, realsense_sr300, ...; the refusal of a recording lists those that fit it",
     "intrinsics": "TUM RGB-D: the camera it was recorded with",
     "depth-pattern": "where the depth images lie, such as 'depth/depth_*.png'",
     "color-pattern": "where the colour images lie; 'none' to import depth alone",
@@ -76,6 +79,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from tracker import ImportRefusedError, say_count
+
     path: Path = args.path.expanduser().absolute()
     if not path.exists():
         raise CommandError(f"{args.path}: does not exist; needed a recording's folder or a video.")
@@ -87,9 +92,53 @@ def run(args: argparse.Namespace) -> int:
     given = {name.replace("-", "_"): getattr(args, name.replace("-", "_")) for name in names}
     options = {name: value for name, value in given.items() if value is not None}
     with open_studio() as studio:
-        row = import_recording(studio, path, options)
+        try:
+            row = import_recording(studio, path, options)
+        except ImportRefusedError as refusal:
+            raise CommandError(describe_refusal(args.path, path, options) or str(refusal)) from None
     result = {"id": str(row.id), "name": row.name, "frames": row.frame_count, "report": row.report}
-    return answer(args, result, f"{row.name}: {row.frame_count} frames imported as {row.id}")
+    return answer(args, result, f"{row.name}: {say_count(row.frame_count, 'frame')} imported as {row.id}")
+
+
+def describe_refusal(told: Path, path: Path, options: dict[str, Any]) -> str:
+    """What is wrong, every option that is needed, and a command that has them all; empty when no option would help."""
+    from tracker import ImportOptions, check_import
+
+    report = check_import(path, options.get("format"), ImportOptions.from_json(options))
+    needed = [question for question in report.questions if question.is_required]
+    if not needed:
+        return ""
+    lines = [f"{told}: nothing was imported.", *(f"  {problem}" for problem in report.problems), "Needed:"]
+    for question in needed:
+        name = f"--{question.field.replace('_', '-')}"
+        lines.append(f"  {name:<16} {question.label}: {question.ask}")
+        lines += [f"  {'':<16}   {choice.value}  ({choice.detail})" for choice in question.choices if choice.count]
+    if report.sensors:
+        lines.append("Or --preset with a kind of camera; its values are typical ones, not this camera's calibration:")
+        lines += [f"  {fit.name:<22} {fit.label}{', a guess' if fit.is_guess else ''}" for fit in report.sensors]
+    lines.append(f"For example: {_write_example(told, options, needed, [fit.name for fit in report.sensors])}")
+    return "\n".join(lines)
+
+
+def _write_example(told: Path, options: dict[str, Any], needed: list[Any], presets: list[str]) -> str:
+    """A command with everything that is needed, the proposals where there are some."""
+    words = ["handloom", "import", shlex.quote(str(told))]
+    values = {name: value for name, value in options.items() if name not in {question.field for question in needed}}
+    if presets and any(question.field in ("fx", "cx", "cy", "preset") for question in needed):
+        values["preset"] = presets[0]
+        needed = [q for q in needed if q.field not in ("fx", "fy", "cx", "cy", "depth_scale", "preset")]
+    for question in needed:
+        values[question.field] = True if question.kind == "boolean" else question.proposal
+        if question.proposal is None and question.kind == "choice" and question.choices:
+            values[question.field] = question.choices[0].value
+    for name, value in values.items():
+        words.append(f"--{name.replace('_', '-')}")
+        if value is None:
+            words.append("N")
+        elif value is not True:
+            text = ",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
+            words.append(shlex.quote(text))
+    return " ".join(words)
 
 
 def holds_scans(path: Path) -> bool:

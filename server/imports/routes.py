@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Annotated, Any, get_type_hints
 
 from anyio import CancelScope
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Depends, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
@@ -16,6 +16,7 @@ from server.database import DatabaseDep
 from server.errors import TooLargeError, error_responses
 from server.imports import service
 from server.imports.models import ImportRow
+from server.imports.pictures import make_picture
 from server.imports.schemas import (
     OPTIONS_HELP,
     ImportCheck,
@@ -23,13 +24,14 @@ from server.imports.schemas import (
     ImportField,
     ImportForm,
     ImportOut,
+    SensorPresetOut,
 )
 from server.imports.service import ImportDesk
 from server.sequences.facts import FactsDep, describe_sequences
 from server.sequences.schemas import SequenceOut
 from server.storage import StorageDep
 from server.storage.upload import receive_upload
-from tracker import IMPORT_FORMATS, ImportOptions
+from tracker import IMPORT_FORMATS, SENSOR_PRESETS, ImportOptions
 
 router = APIRouter(prefix="/imports", tags=["imports"], responses=error_responses())
 
@@ -74,7 +76,8 @@ def get_import_form() -> ImportForm:
         ImportField(name=item.name, type=_name_type(hints[item.name]), help=item.metadata.get("help", ""))
         for item in fields(ImportOptions)
     ]
-    return ImportForm(formats=list(IMPORT_FORMATS), options=options)
+    presets = [SensorPresetOut.model_validate(preset) for preset in SENSOR_PRESETS]
+    return ImportForm(formats=list(IMPORT_FORMATS), options=options, presets=presets)
 
 
 def _name_type(hint: Any) -> str:
@@ -117,6 +120,23 @@ def get_import(import_id: uuid.UUID, desk: DeskDep) -> ImportRow:
     return service.get_import(desk, import_id)
 
 
+@router.get(
+    "/{import_id}/picture",
+    response_class=Response,
+    responses=error_responses(404)
+    | {200: {"content": {"image/jpeg": {"schema": {"type": "string", "format": "binary"}}}}},
+)
+def get_import_picture(
+    import_id: uuid.UUID,
+    name: Annotated[str, Query(max_length=1100, description="As in the report's `pictures`.")],
+    desk: DeskDep,
+) -> Response:
+    """A small picture of an image that would come in; depth in colours, near bright and far dark."""
+    service.get_import(desk, import_id)
+    data = make_picture(desk.source(import_id), name)
+    return Response(data, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=86400, immutable"})
+
+
 @router.post("/{import_id}/check", response_model=ImportOut, dependencies=by_lead, responses=error_responses(404, 409))
 def check_import(import_id: uuid.UUID, body: ImportCheck, desk: DeskDep) -> ImportRow:
     """Check again with other options."""
@@ -128,7 +148,7 @@ def confirm_import(
     import_id: uuid.UUID, body: ImportConfirm, desk: DeskDep, account_id: AccountIdDep, facts: FactsDep
 ) -> SequenceOut:
     """Make it a recording: whole, or not at all."""
-    row = service.confirm_import(desk, import_id, body.name, account_id)
+    row = service.confirm_import(desk, import_id, body.name, account_id, body.options)
     with desk.database.reading() as session:
         return describe_sequences(session, [row], facts)[0]
 

@@ -24,7 +24,11 @@ class ImportOut(BaseModel):
     state: State
     name: str
     options: Options
-    report: dict[str, Any]
+    report: dict[str, Any] = Field(
+        description="What was found: `ok`, `problems`, `warnings`, and `questions`: every option that is missing, "
+        "ambiguous or wrong, each with what it is (`field`, `label`, `kind`, `unit`), why (`ask`), whether nothing is "
+        "stored without it (`is_required`), a `proposal` and its `choices` with `pictures`."
+    )
     file_count: int
     byte_count: int
     sequence_id: uuid.UUID | None = Field(description="The recording that it has become.")
@@ -45,6 +49,9 @@ class ImportConfirm(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     name: Name | None = None
+    options: Options | None = Field(
+        default=None, description="Those of the report that was looked at; with others since, 409 and nothing stored."
+    )
 
 
 class ImportField(BaseModel):
@@ -55,8 +62,36 @@ class ImportField(BaseModel):
     help: str
 
 
+class SensorModeOut(BaseModel):
+    """A size of a sensor's images and its typical camera, px."""
+
+    model_config = ConfigDict(title="SensorMode", from_attributes=True)
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
+
+class SensorPresetOut(BaseModel):
+    """Typical values of a kind of depth camera: not the calibration of anybody's own."""
+
+    model_config = ConfigDict(title="SensorPreset", from_attributes=True)
+
+    name: str
+    label: str
+    modes: list[SensorModeOut]
+    depth_scales: list[float] = Field(description="m per unit: its own, then what programs usually save instead.")
+    reach_m: tuple[float, float]
+    fps: float
+    source: str = Field(description="Where the numbers come from.")
+
+
 class ImportForm(BaseModel):
     """What can be told about an upload."""
 
     formats: list[str]
     options: list[ImportField]
+    presets: list[SensorPresetOut] = Field(description="Values that the option `preset` may name.")

@@ -23,6 +23,7 @@ from server.annotations.service import add_imported_annotations
 from server.database import Database, utc_now
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.imports.models import ImportRow
+from server.imports.probes import find_probes, forget_probes
 from server.sequences import service as sequences
 from server.sequences.models import SequenceRow
 from server.settings import Settings
@@ -125,16 +126,31 @@ _CONFIRMING: WeakValueDictionary[uuid.UUID, threading.Lock] = WeakValueDictionar
 """Of the uploads that are being confirmed; who comes second would read files that the first one drops."""
 
 
-def confirm_import(desk: ImportDesk, import_id: uuid.UUID, name: str | None, account_id: uuid.UUID) -> SequenceRow:
-    """Make an upload a recording. Asked again, it gives the same recording; asked twice at once, one waits."""
+def confirm_import(
+    desk: ImportDesk,
+    import_id: uuid.UUID,
+    name: str | None,
+    account_id: uuid.UUID,
+    seen: dict[str, Any] | None = None,
+) -> SequenceRow:
+    """Make an upload a recording. Asked again, it gives the same recording; asked twice at once, one waits.
+
+    With `seen`, only as it was checked with these options.
+    """
     with _GUARD:
         lock = _CONFIRMING.setdefault(import_id, threading.Lock())
     with lock:
-        return _confirm(desk, import_id, name, account_id)
+        return _confirm(desk, import_id, name, account_id, seen)
 
 
-def _confirm(desk: ImportDesk, import_id: uuid.UUID, name: str | None, account_id: uuid.UUID) -> SequenceRow:
+def _confirm(
+    desk: ImportDesk, import_id: uuid.UUID, name: str | None, account_id: uuid.UUID, seen: dict[str, Any] | None
+) -> SequenceRow:
     row = get_import(desk, import_id)
+    if row.state == "checked" and seen is not None and seen != row.options:
+        raise ConflictError(
+            "Somebody checked this upload with other options meanwhile; nothing was stored. Look at the new report."
+        )
     if row.state == "refused":
         raise ConflictError("The upload was refused; its report says why. Check it again with other options.")
     if row.state == "checked":
@@ -145,6 +161,7 @@ def _confirm(desk: ImportDesk, import_id: uuid.UUID, name: str | None, account_i
             if get_import(desk, import_id).state != "confirmed":
                 raise
         drop_files(desk, import_id)
+        forget_probes(import_id)
         row = get_import(desk, import_id)
     assert row.sequence_id is not None
     with desk.database.reading() as session:
@@ -202,6 +219,7 @@ def drop_import(desk: ImportDesk, import_id: uuid.UUID) -> None:
     with desk.database.writing() as session:
         session.execute(delete(ImportRow).where(ImportRow.id == import_id, ImportRow.state != "confirmed"))
     drop_files(desk, import_id)
+    forget_probes(import_id)
 
 
 def remove_abandoned(desk: ImportDesk) -> int:
@@ -255,7 +273,8 @@ def _unpack(desk: ImportDesk, import_id: uuid.UUID, upload: Upload) -> None:
 
 def _check(desk: ImportDesk, import_id: uuid.UUID, options: dict[str, Any], name: str) -> dict[str, Any]:
     source = desk.source(import_id)
-    report = check_import(source, options.get("format"), ImportOptions.from_json(options | {"name": name}))
+    known = find_probes(import_id)
+    report = check_import(source, options.get("format"), ImportOptions.from_json(options | {"name": name}), known)
     return _clean(report, source)
 
 

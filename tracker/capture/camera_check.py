@@ -9,13 +9,14 @@ import numpy.typing as npt
 
 from tracker.capture.calibration import check_distortion, check_image_size, check_intrinsics, check_rigid
 from tracker.capture.import_plan import DepthSample, PlannedCamera, StreamProbe
+from tracker.capture.import_question import ImportQuestion, make_question
 from tracker.capture.import_report import CalibrationReport, CameraReport, DepthReport, TimestampReport
 from tracker.errors import TrackerError
 
 Array = npt.NDArray[np.float64]
 
-NEAREST_M, FARTHEST_M = 0.03, 20.0
-"""A median depth outside is a wrong scale; no hand is captured there."""
+NEAREST_M, FARTHEST_M = 0.05, 5.0
+"""When the median of the nearest tenth of the depth is outside, the unit is wrong; no hand is captured there."""
 
 USUAL_M = (0.1, 4.0)
 
@@ -27,24 +28,33 @@ def report_camera(
     sizes: dict[str, tuple[int, int]],
     problems: list[str],
     warnings: list[str],
+    questions: list[ImportQuestion],
 ) -> CameraReport:
-    """Report on one camera; its image size goes to `sizes`, faults to `problems`, oddities to `warnings`."""
+    """Report on one camera; its image size goes to `sizes`, faults to `problems`, oddities to `warnings`, and what has
+    to be told to `questions`."""
     seen = {kind: probe.size for kind, probe in probes.items() if probe.size is not None}
     size = next(iter(seen.values()), (0, 0))
     sizes[camera.id] = size
     if len(set(seen.values())) > 1:
         color, of_depth = (f"{seen[kind][0]}x{seen[kind][1]} px" for kind in ("color", "depth"))
-        problems.append(
+        text = (
             f"{camera.id}: colour is {color} and depth {of_depth}; needed colour registered to depth, pixel by pixel. "
             "Register them, or set color_pattern to 'none'."
         )
+        problems.append(text)
+        ask = f"Colour is {color} and depth {of_depth}. Register them, or import depth alone."
+        questions.append(make_question("color_pattern", ask, text))
+    before = len(problems)
     calibration = _check_camera(camera, size, problems, warnings) if size != (0, 0) else None
+    for text in problems[before:]:
+        if name := next((name for name in ("fx", "fy") if f": {name} is " in text), None):
+            questions.append(make_question(name, text.partition(f": {name} is ")[2], text))
     types: dict[str, int] = {}
     for kind, probe in probes.items():
         types |= {f"{kind}: {name}": count for name, count in probe.types.items()}
     depth = None
     if "depth" in probes:
-        depth = _report_depth(camera, probes["depth"].depth, problems, warnings)
+        depth = _report_depth(camera, probes["depth"].depth, problems, warnings, questions)
     return CameraReport(
         id=camera.id,
         width=size[0],
@@ -56,7 +66,13 @@ def report_camera(
         timestamps=_report_times(camera.id, times, problems, warnings),
         depth=depth,
         calibration=calibration,
+        pictures={kind: pick_pictures(stream.name_of, probes[kind].count) for kind, stream in camera.streams()},
     )
+
+
+def pick_pictures(name_of: Callable[[int], str], count: int) -> tuple[str, ...]:
+    """Names of the first, the middle and the last of so many images."""
+    return tuple(name_of(index) for index in sorted({0, count // 2, count - 1})) if count else ()
 
 
 def _check_camera(
@@ -106,14 +122,18 @@ def _check_camera(
 
 
 def _report_depth(
-    camera: PlannedCamera, sample: DepthSample | None, problems: list[str], warnings: list[str]
+    camera: PlannedCamera,
+    sample: DepthSample | None,
+    problems: list[str],
+    warnings: list[str],
+    questions: list[ImportQuestion],
 ) -> DepthReport | None:
     if sample is None:
         return None
     scale = camera.depth_scale
     metres = tuple(value * (scale or 0.0) for value in sample.percentiles)
-    raw = sample.percentiles[2] if sample.percentiles else 0.0
-    middle = raw * (scale or 0.0)
+    raw_near, raw = sample.percentiles[1:3] if sample.percentiles else (0.0, 0.0)
+    nearest, middle = raw_near * (scale or 0.0), raw * (scale or 0.0)
     if not sample.percentiles:
         problems.append(f"{camera.id}: none of {sample.frames} depth images looked at holds a value; all pixels are 0.")
     elif sample.largest <= 255:
@@ -122,15 +142,25 @@ def _report_depth(
             "8-bit depth in 16-bit files; export the raw depth."
         )
     elif scale is None:
-        problems.append(
-            f"{camera.id}: the unit of depth is not known. Give depth_scale, metres per unit: 0.001 puts the scene at "
-            f"{raw * 0.001:.3g} m, 0.000125 at {raw * 0.000125:.3g} m, 0.0002 at {raw * 0.0002:.3g} m (median)."
+        where = (
+            f"0.001 puts the scene at {raw * 0.001:.3g} m, 0.000125 at {raw * 0.000125:.3g} m, "
+            f"0.0002 at {raw * 0.0002:.3g} m (median)."
         )
-    elif not NEAREST_M <= middle <= FARTHEST_M:
-        problems.append(
-            f"{camera.id}: with depth_scale {scale:g} the scene lies at {middle:.3g} m (median); needed {NEAREST_M:g} "
-            f"to {FARTHEST_M:g} m. With 0.001 (millimetres) it would lie at {raw * 0.001:.3g} m."
+        text = f"{camera.id}: the unit of depth is not known. Give depth_scale, metres per unit: {where}"
+        problems.append(text)
+        questions.append(make_question("depth_scale", f"Metres per unit of the depth images: {where}", text))
+    elif not NEAREST_M <= nearest <= FARTHEST_M:
+        text = (
+            f"{camera.id}: with depth_scale {scale:g} the scene lies at {middle:.3g} m (median) and the nearest thing "
+            f"at {nearest:.3g} m; needed {NEAREST_M:g} to {FARTHEST_M:g} m, where hands are captured. With 0.001 "
+            f"(millimetres) it would lie at {raw * 0.001:.3g} m."
         )
+        problems.append(text)
+        ask = (
+            f"Puts the nearest thing at {nearest:.3g} m; needed {NEAREST_M:g} to {FARTHEST_M:g} m. "
+            f"0.001 (millimetres) puts it at {raw_near * 0.001:.3g} m."
+        )
+        questions.append(make_question("depth_scale", ask, text))
     elif not USUAL_M[0] <= middle <= USUAL_M[1]:
         warnings.append(f"{camera.id}: the scene lies at {middle:.3g} m (median); is depth_scale {scale:g} right?")
     if sample.empty_frames and sample.percentiles:
@@ -139,7 +169,12 @@ def _report_depth(
         share = f"{sample.saturated_share:.0%}"
         warnings.append(f"{camera.id}: {share} of the depth pixels are at 65535; 'no value' should be 0.")
     return DepthReport(
-        sample.frames, sample.empty_frames, sample.zero_share, sample.saturated_share, metres if scale else ()
+        sampled_frames=sample.frames,
+        empty_frames=sample.empty_frames,
+        zero_share=sample.zero_share,
+        saturated_share=sample.saturated_share,
+        percentiles_m=metres if scale else (),
+        nearest_m=nearest if scale and metres else None,
     )
 
 

@@ -86,6 +86,11 @@ class ImageFiles:
         depth = self._sample(sound, samples, problems)
         return StreamProbe(len(self.names), usual, dict(types), tuple(problems), depth=depth)
 
+    def sample_depth(self, samples: int = 3) -> DepthSample:
+        """Values of some depth images; of none when none can be read."""
+        found = self._sample(list(self.names), samples, [])
+        return found or DepthSample(0, 0, 0.0, 0.0, (), 0)
+
     def read(self) -> Iterator[SourceImage]:
         """Bytes of every file, unpacked and decoded once to be sure of them."""
         for name in self.names:

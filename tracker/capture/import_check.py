@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
@@ -12,19 +13,24 @@ import numpy.typing as npt
 from tracker.capture.camera_check import report_camera
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import Importer, ImportPlan, PlannedCamera, StreamProbe
+from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question, merge_questions
 from tracker.capture.import_report import ImportReport
 from tracker.capture.importers.recording_folder import RecordingFolder
 from tracker.capture.importers.rgbd_folder import RgbdFolder
 from tracker.capture.importers.synced_videos import SyncedVideos
 from tracker.capture.importers.tum_rgbd import TumRgbd
 from tracker.capture.listed_files import ListedFiles, list_files
+from tracker.capture.sensor_presets import SensorFit, fit_presets
 from tracker.capture.sequence import MAX_FRAMES
-from tracker.errors import ImportRefusedError, TrackerError
+from tracker.errors import ImportRefusedError, TrackerError, say_count
 
 IMPORTERS: tuple[Importer, ...] = (RecordingFolder(), TumRgbd(), SyncedVideos(), RgbdFolder())
 """In the order in which a folder is offered to them."""
 
 IMPORT_FORMATS: tuple[str, ...] = tuple(importer.format for importer in IMPORTERS)
+
+_LABEL_FILES = {"_xyz.json": "FreiHAND", "_joint_3d.json": "InterHand2.6M", "person_keypoints.json": "COCO"}
+"""Ends of names that tell a set of labels from a recording."""
 
 SAMPLES = 12
 DEFAULT_FPS = 30.0
@@ -49,18 +55,27 @@ class CheckedImport:
     root: Path
 
 
-def check_import(source: Path | str, format: str | None = None, options: ImportOptions | None = None) -> ImportReport:
+def check_import(
+    source: Path | str,
+    format: str | None = None,
+    options: ImportOptions | None = None,
+    probes: dict[Hashable, StreamProbe] | None = None,
+) -> ImportReport:
     """What an import of a folder (or a single video) would bring, and whether it is possible. Stores nothing.
 
     Args:
         source: Folder of the recording.
         format: One of IMPORT_FORMATS, or None to recognise it.
         options: What the files do not tell.
+        probes: What earlier looks at the same files gave, which is used again and added to; the files must not have
+            changed meanwhile.
     """
-    return examine(Path(source), format, options or ImportOptions()).report
+    return examine(Path(source), format, options or ImportOptions(), probes).report
 
 
-def examine(source: Path, format: str | None, options: ImportOptions) -> CheckedImport:
+def examine(
+    source: Path, format: str | None, options: ImportOptions, known: dict[Hashable, StreamProbe] | None = None
+) -> CheckedImport:
     """Plan an import and look at every file's header and some pixels."""
     name = options.name or ""
     told = options.to_json() | ({"format": format} if format else {})
@@ -71,18 +86,23 @@ def examine(source: Path, format: str | None, options: ImportOptions) -> Checked
     except (TrackerError, OSError) as fault:
         text = str(fault) if isinstance(fault, TrackerError) else f"Cannot be read: {fault}."
         return CheckedImport(None, ImportReport(format or "", name, problems=(text,), options=told), {}, {}, source)
-    problems, warnings = list(plan.problems), list(plan.warnings)
+    problems, warnings, questions = list(plan.problems), list(plan.warnings), list(plan.questions)
     if files.refused:
         shown = "; ".join(files.refused[:5]) + ("; ..." if len(files.refused) > 5 else "")
-        problems.append(f"{len(files.refused)} names in the folder are not safe: {shown}.")
+        are = say_count(len(files.refused), "name in the folder is", "names in the folder are")
+        problems.append(f"{are} not safe: {shown}.")
     if options.hands is None and plan.format != RecordingFolder.format:
         warnings.append("Which hands are seen was not told; a right hand is assumed.")
-    probes = {camera.id: _probe(camera, problems) for camera in plan.cameras}
-    frame_count = _agree_on_count(plan, probes, problems, warnings, allow=bool(options.allow_gaps))
-    fps = _agree_on_fps(plan, probes, problems, warnings)
+        questions.append(_ask_hands())
+    probes = {camera.id: _probe(camera, problems, known) for camera in plan.cameras}
+    frame_count = _agree_on_count(plan, probes, problems, warnings, questions, allow=bool(options.allow_gaps))
+    fps = _agree_on_fps(plan, probes, problems, warnings, questions)
     sizes: dict[str, tuple[int, int]] = {}
     times = {camera.id: _find_times(camera, probes[camera.id]) for camera in plan.cameras}
-    cameras = tuple(report_camera(c, probes[c.id], times[c.id], sizes, problems, warnings) for c in plan.cameras)
+    cameras = tuple(
+        report_camera(c, probes[c.id], times[c.id], sizes, problems, warnings, questions) for c in plan.cameras
+    )
+    sensors = _fit_sensors(plan, probes, sizes)
     report = ImportReport(
         format=plan.format,
         name=plan.name,
@@ -97,6 +117,9 @@ def examine(source: Path, format: str | None, options: ImportOptions) -> Checked
         warnings=tuple(dict.fromkeys(warnings)),
         left_out=(*plan.left_out, *_find_cut(plan, probes, frame_count)),
         options=told,
+        questions=merge_questions((item for item in questions if item.field in plan.takes), sensors),
+        sensors=sensors,
+        takes=plan.takes,
     )
     return CheckedImport(replace(plan, fps=fps), report, sizes, times, files.root)
 
@@ -109,18 +132,48 @@ def _choose_importer(files: ListedFiles, format: str | None) -> Importer:
     if format is not None:
         raise ImportRefusedError(f"Format {format!r} is not known; known: {known}.")
     kinds = sorted({name.rpartition(".")[2].lower()[:10] for name in files.names})[:8]
-    found = f"{len(files.names)} files ({', '.join(kinds)})" if files.names else "no files"
+    found = f"{say_count(len(files.names), 'file')} ({', '.join(kinds)})" if files.names else "no files"
+    if labels := next((title for end, title in _LABEL_FILES.items() if any(n.endswith(end) for n in files.names)), ""):
+        raise ImportRefusedError(
+            f"These {len(files.names)} files are labels in the form of {labels}, not a recording. Needed a recording's "
+            "images; import labels on the page Labels of the recording they belong to."
+        )
     raise ImportRefusedError(
         f"No recording is recognised: found {found}; needed sequence.json, numbered depth PNGs, "
         "rgb.txt with depth.txt, or videos with a calibration."
     )
 
 
-def _probe(camera: PlannedCamera, problems: list[str]) -> dict[str, StreamProbe]:
+def _ask_hands() -> ImportQuestion:
+    choices = (
+        ImportChoice(["right"], "Right hand"),
+        ImportChoice(["left"], "Left hand"),
+        ImportChoice(["right", "left"], "Both hands"),
+    )
+    return make_question("hands", "A right hand is assumed.", choices=choices)
+
+
+def _fit_sensors(
+    plan: ImportPlan, probes: dict[str, dict[str, StreamProbe]], sizes: dict[str, tuple[int, int]]
+) -> tuple[SensorFit, ...]:
+    """Typical depth cameras with images of this size; none where the files say which camera it was."""
+    if "preset" not in plan.takes or not plan.cameras:
+        return ()
+    camera = plan.cameras[0].id
+    size, sample = sizes[camera], probes[camera]["depth"].depth
+    return fit_presets(size if size != (0, 0) else None, sample.percentiles if sample else ())
+
+
+def _probe(
+    camera: PlannedCamera, problems: list[str], known: dict[Hashable, StreamProbe] | None
+) -> dict[str, StreamProbe]:
     probes = {}
     for kind, stream in camera.streams():
         try:
-            probes[kind] = stream.probe(SAMPLES)
+            probe = None if known is None else known.get(stream)
+            probes[kind] = stream.probe(SAMPLES) if probe is None else probe
+            if known is not None:
+                known[stream] = probes[kind]
         except (TrackerError, OSError) as fault:
             probes[kind] = StreamProbe(0, None, {}, (str(fault),))
         problems += probes[kind].problems
@@ -139,6 +192,7 @@ def _agree_on_count(
     probes: dict[str, dict[str, StreamProbe]],
     problems: list[str],
     warnings: list[str],
+    questions: list[ImportQuestion],
     *,
     allow: bool,
 ) -> int:
@@ -146,7 +200,7 @@ def _agree_on_count(
     counts = {f"{camera} {kind}": p.count for camera, own in probes.items() for kind, p in own.items()}
     fewest, most = min(counts.values(), default=0), max(counts.values(), default=0)
     if fewest == 0 or most > MAX_FRAMES:
-        problems.append(f"{fewest if fewest == 0 else most} frames; a recording has 1 to {MAX_FRAMES}.")
+        problems.append(f"{say_count(fewest if fewest == 0 else most, 'frame')}; a recording has 1 to {MAX_FRAMES}.")
     elif fewest != most:
         text = f"Frame counts differ: {', '.join(f'{name} {count}' for name, count in counts.items())}."
         if allow:
@@ -155,8 +209,11 @@ def _agree_on_count(
             )
         else:
             problems.append(f"{text} Frames are missing, or the cameras did not start together; allow gaps to cut all.")
+            ask = f"{text} All can be cut to the first {fewest}, if frame 0 is the same moment in all."
+            questions.append(make_question("allow_gaps", ask, problems[-1]))
     if plan.frame_count is not None and fewest and plan.frame_count != fewest:
-        problems.append(f"{plan.frame_count} frames are declared and {fewest} are there.")
+        declared = say_count(plan.frame_count, "frame is", "frames are")
+        problems.append(f"{declared} declared and {fewest} {'is' if fewest == 1 else 'are'} there.")
     return fewest
 
 
@@ -173,7 +230,11 @@ def _find_cut(plan: ImportPlan, probes: dict[str, dict[str, StreamProbe]], frame
 
 
 def _agree_on_fps(
-    plan: ImportPlan, probes: dict[str, dict[str, StreamProbe]], problems: list[str], warnings: list[str]
+    plan: ImportPlan,
+    probes: dict[str, dict[str, StreamProbe]],
+    problems: list[str],
+    warnings: list[str],
+    questions: list[ImportQuestion],
 ) -> float:
     """Frame rate that was told, or that of the timestamps, or that of the videos, or 30."""
     said = {f"{c} {kind}": p.fps for c, own in probes.items() for kind, p in own.items() if p.fps}
@@ -181,6 +242,8 @@ def _agree_on_fps(
     if rates and max(rates) > 1.005 * min(rates):
         text = f"Frame rates differ: {', '.join(f'{name} {rate:g}' for name, rate in said.items())}."
         (warnings if plan.fps else problems).append(text + ("" if plan.fps else " Give fps if they ran together."))
+        if not plan.fps:
+            questions.append(make_question("fps", f"{text} Give the rate if the cameras ran together.", problems[-1]))
     if plan.fps:
         return plan.fps
     for camera in plan.cameras:
@@ -189,6 +252,7 @@ def _agree_on_fps(
     if rates:
         return float(np.median(rates))
     warnings.append(f"The frame rate is not known; {DEFAULT_FPS:g} frames per second are assumed.")
+    questions.append(make_question("fps", f"{DEFAULT_FPS:g} are assumed."))
     return DEFAULT_FPS
 
 

@@ -31,6 +31,7 @@ class ImportOptions:
     cy: float | None = _help("Principal point y, px.")
     distortion: tuple[float, ...] | None = _help("OpenCV distortion coefficients; none when empty.")
     intrinsics: str | None = _help("TUM RGB-D: the camera it was recorded with.")
+    preset: str | None = _help("A kind of depth camera whose typical values stand in for what is not told.")
     depth_scale: float | None = _help("Metres per unit of the depth images, 0.001 for millimetres.")
     depth_pattern: str | None = _help("Where the depth images lie, such as depth/depth_*.png.")
     color_pattern: str | None = _help("Where the colour images lie; 'none' to import depth alone.")
@@ -66,6 +67,8 @@ def _parse(key: str, node: Node) -> Any:
         return node.text(200).strip()
     if key in ("depth_pattern", "color_pattern"):
         return node.text(1024)
+    if key == "preset":
+        return node.text(64)
     if key == "intrinsics":
         return node.choice(*TUM_CAMERAS)
     if key == "color_format":

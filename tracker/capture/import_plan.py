@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from tracker.capture.annotations import Annotations
 from tracker.capture.import_options import ImportOptions
+from tracker.capture.import_question import ImportQuestion
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.recorded_object import RecordedObject
 
@@ -150,6 +151,8 @@ class ImportPlan:
         annotations: Already in the source, or None.
         problems: Sentences, each a reason to refuse.
         warnings: Sentences for the report.
+        questions: What has to be told, and what may be.
+        takes: Names of the options that matter to it.
         left_out: Original names of frames that are not imported.
         unit_known: Whether positions of cameras are in metres already.
     """
@@ -165,6 +168,8 @@ class ImportPlan:
     annotations: Annotations | None = None
     problems: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    questions: tuple[ImportQuestion, ...] = ()
+    takes: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     unit_known: bool = True
 

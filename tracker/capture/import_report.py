@@ -5,6 +5,10 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from tracker.capture.import_question import ImportQuestion
+from tracker.capture.sensor_presets import SensorFit
+from tracker.errors import say_count
+
 
 @dataclass(frozen=True)
 class TimestampReport:
@@ -33,6 +37,7 @@ class DepthReport:
         zero_share: Share of pixels without a value.
         saturated_share: Share of pixels at the largest value a file can hold.
         percentiles_m: At 1, 5, 50, 95 and 99 % of the pixels that have a value; empty without a scale or values.
+        nearest_m: Median of the nearest tenth of them: where the nearest thing is; None without a scale or values.
     """
 
     sampled_frames: int
@@ -40,6 +45,7 @@ class DepthReport:
     zero_share: float
     saturated_share: float
     percentiles_m: tuple[float, ...]
+    nearest_m: float | None = None
 
 
 @dataclass(frozen=True)
@@ -76,6 +82,7 @@ class CameraReport:
         timestamps: None when the source has none.
         depth: None without depth images.
         calibration: None when the camera is not known.
+        pictures: Names of the first, the middle and the last image of each kind.
     """
 
     id: str
@@ -88,6 +95,7 @@ class CameraReport:
     timestamps: TimestampReport | None = None
     depth: DepthReport | None = None
     calibration: CalibrationReport | None = None
+    pictures: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -108,6 +116,9 @@ class ImportReport:
         warnings: Things to know; the import is possible.
         left_out: Original names of frames that are not imported.
         options: What was told about the recording.
+        questions: What has to be told, and what may be: all of it at once.
+        sensors: Kinds of depth cameras with images of this size, the likeliest first; their values are typical ones.
+        takes: Names of the options that matter to this import.
     """
 
     format: str = ""
@@ -123,6 +134,9 @@ class ImportReport:
     warnings: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     options: dict[str, Any] = field(default_factory=dict)
+    questions: tuple[ImportQuestion, ...] = ()
+    sensors: tuple[SensorFit, ...] = ()
+    takes: tuple[str, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -143,14 +157,16 @@ def _summarise(report: ImportReport) -> list[str]:
     if not report.cameras:
         return ["Nothing can be imported."]
     sentences = []
-    cameras = "1 camera" if len(report.cameras) == 1 else f"{len(report.cameras)} cameras"
+    cameras = say_count(len(report.cameras), "camera")
     length = f", {report.frame_count / report.fps:.1f} s at {report.fps:g} frames per second" if report.fps else ""
-    sentences.append(f"{report.frame_count} frames of {cameras}{length}.")
+    sentences.append(f"{say_count(report.frame_count, 'frame')} of {cameras}{length}.")
     for camera in report.cameras:
         kinds = [f"{n} {k}" for n, k in ((camera.color_frames, "colour"), (camera.depth_frames, "depth")) if n]
         sentences.append(f"{camera.id}: {camera.width}x{camera.height} px, {' and '.join(kinds) or 'no'} images.")
         if camera.depth and camera.depth.percentiles_m:
             near, far = camera.depth.percentiles_m[0], camera.depth.percentiles_m[-1]
+            if camera.depth.nearest_m is not None:
+                sentences.append(f"{camera.id}: the nearest thing is {camera.depth.nearest_m:.2f} m away.")
             sentences.append(
                 f"{camera.id}: depth from {near:.3f} to {far:.3f} m (1 to 99 %, {camera.depth.sampled_frames} frames "
                 f"looked at), {camera.depth.zero_share:.0%} of the pixels without a value."
@@ -163,5 +179,5 @@ def _summarise(report: ImportReport) -> list[str]:
     what = [*(f"{hand} hand" for hand in report.hands), *report.objects]
     sentences.append(f"Seen: {', '.join(what)}." if what else "No hands or objects are named.")
     if report.annotations:
-        sentences.append(f"{report.annotations} annotated hands come along.")
+        sentences.append(f"{say_count(report.annotations, 'annotated hand comes', 'annotated hands come')} along.")
     return sentences

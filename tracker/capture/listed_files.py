@@ -39,12 +39,7 @@ def list_files(source: Path) -> ListedFiles:
         raise ImportRefusedError(f"{source}: there is no such file or folder.")
     if source.is_file():
         return ListedFiles(source.parent, (source.name,))
-    root = source
-    for _ in range(MAX_DEPTH):
-        entries = [entry for entry in os.scandir(root) if not _is_clutter(entry.name)]
-        if len(entries) != 1 or not entries[0].is_dir(follow_symlinks=False):
-            break
-        root = Path(entries[0].path)
+    root = find_root(source)
     names: list[str] = []
     refused: list[str] = []
     for folder, folders, files in os.walk(root):
@@ -71,6 +66,19 @@ def list_files(source: Path) -> ListedFiles:
         if len(names) > MAX_FILES:
             raise ImportRefusedError(f"{source}: holds more than {MAX_FILES} files.")
     return ListedFiles(root, tuple(sorted(names)), tuple(refused))
+
+
+def find_root(source: Path) -> Path:
+    """The folder that a recording begins in: of a file its own, else the first one that holds more than a folder."""
+    if source.is_file():
+        return source.parent
+    root = source
+    for _ in range(MAX_DEPTH):
+        entries = [entry for entry in os.scandir(root) if not _is_clutter(entry.name)]
+        if len(entries) != 1 or not entries[0].is_dir(follow_symlinks=False):
+            break
+        root = Path(entries[0].path)
+    return root
 
 
 def _is_clutter(name: str) -> bool:

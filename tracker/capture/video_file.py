@@ -10,6 +10,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
 from tracker.capture.calibration import MAX_PIXELS
 from tracker.capture.import_plan import SourceImage, StreamProbe
@@ -87,6 +88,14 @@ class VideoFile:
                     raise FrameError(f"{self.name}, frame {index}: cannot be stored as {self.suffix}.")
                 yield SourceImage(self.name_of(index), data.tobytes(), (image.shape[1], image.shape[0]))
                 index += 1
+
+    def read_frame(self, index: int) -> npt.NDArray[np.uint8]:
+        """One frame (H, W, 3) RGB, near enough for people to look at: seeking is exact in most videos, not in all."""
+        with self._open() as capture:
+            capture.set(cv2.CAP_PROP_POS_FRAMES, index)
+            if not capture.grab():
+                raise FrameError(f"{self.name}, frame {index}: cannot be decoded.")
+            return np.ascontiguousarray(self._retrieve(capture, index)[..., ::-1])
 
     def _retrieve(self, capture: cv2.VideoCapture, index: int) -> np.ndarray:
         done, image = capture.retrieve()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import shutil
 import signal
 import socket
@@ -14,7 +15,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import cv2
 import httpx
+import numpy as np
 import pytest
 
 from tests.server.conftest import GeneratedHand
@@ -270,3 +273,22 @@ def test_a_folder_of_scans_is_imported_once_and_what_is_none_is_named(
     again = json.loads(handloom(tmp_path / "data", "import", str(folder), "--json").stdout)
     assert (again["added"], [item["id"] for item in again["known"]]) == ([], [made["added"][0]["id"]])
     assert handloom(tmp_path / "data", "import", str(folder / "broken.stl")).returncode == 2
+
+
+def test_a_refused_recording_lists_every_option_that_is_needed_with_a_command_that_has_them(tmp_path: Path) -> None:
+    folder = tmp_path / "my take"
+    for kind, far in (("depth", 700), ("infrared", 800)):
+        (folder / kind).mkdir(parents=True)
+        for number in range(3):
+            image = np.full((424, 512), far + number, np.uint16)
+            (folder / kind / f"{number:03d}.png").write_bytes(cv2.imencode(".png", image)[1].tobytes())
+    refused = handloom(tmp_path / "data", "import", str(folder))
+    assert (refused.returncode, refused.stdout) == (2, "")
+    for option in ("--depth-pattern", "--fx", "--cx", "--cy", "--depth-scale", "kinect_v2"):
+        assert option in refused.stderr
+    assert "--fy" not in refused.stderr.split("Needed:")[1]
+    example = shlex.split(refused.stderr.split("For example: handloom ")[1].splitlines()[0])
+    done = handloom(tmp_path / "data", *example, "--json")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["frames"] == 3 and any("typical values of Kinect v2" in text for text in found["report"]["warnings"])

@@ -295,3 +295,43 @@ def test_a_name_is_proposed_from_what_was_dropped() -> None:
     assert propose_name(["a.png", "b.png"]) == "recording"
     assert propose_name(["walk.zip"]) == "walk"
     assert propose_name(["take/a.png"]) == "take"
+
+
+def test_everything_is_asked_in_one_round_with_pictures_of_what_would_come_in(
+    client: TestClient, make_recording
+) -> None:
+    folder = make_recording("bare")
+    (folder / "sequence.json").unlink()
+    (folder / "raw").mkdir()
+    for path in sorted((folder / "depth").iterdir()):
+        (folder / "raw" / path.name).write_bytes(path.read_bytes())
+    found = upload(client, parts_of(folder)).json()
+    url = f"/api/v1/imports/{found['id']}"
+    needed = {q["field"]: q for q in found["report"]["questions"] if q["is_required"]}
+    assert list(needed) == ["depth_pattern", "fx", "cx", "cy", "depth_scale"]
+    for choice in needed["depth_pattern"]["choices"]:
+        picture = client.get(f"{url}/picture", params={"name": choice["pictures"][0]})
+        assert (picture.status_code, picture.headers["content-type"]) == (200, "image/jpeg")
+        assert picture.content.startswith(b"\xff\xd8")
+    for name in ("../../studio.db", "/etc/passwd", "depth", "nothing.png"):
+        assert client.get(f"{url}/picture", params={"name": name}).status_code == 404
+    told = {"depth_pattern": "raw/*.png", "fx": 32, "cx": 16, "cy": 12, "depth_scale": 0.001}
+    again = client.post(f"{url}/check", json={"options": told}).json()
+    assert again["state"] == "checked", again["report"]["problems"]
+    stored = client.post(f"{url}/confirm", json={"name": "raw", "options": told})
+    assert stored.status_code == 201
+
+
+def test_what_somebody_else_told_meanwhile_is_not_stored_unseen(client: TestClient, make_recording) -> None:
+    found = upload(client, parts_of(make_recording()), hands=["right"]).json()
+    url = f"/api/v1/imports/{found['id']}"
+    client.post(f"{url}/check", json={"options": {"hands": ["left"]}})
+    answer = client.post(f"{url}/confirm", json={"options": {"hands": ["right"]}})
+    assert (answer.status_code, client.get("/api/v1/sequences").json()["items"]) == (409, [])
+    assert client.post(f"{url}/confirm", json={"options": {"hands": ["left"]}}).status_code == 201
+
+
+def test_the_form_lists_typical_sensors_with_their_source(client: TestClient) -> None:
+    presets = {item["name"]: item for item in client.get("/api/v1/imports/form").json()["presets"]}
+    for name in ("kinect_v1", "kinect_v2", "azure_kinect_narrow", "realsense_d405", "orbbec_astra", "primesense"):
+        assert presets[name]["source"] and presets[name]["modes"], name

@@ -223,7 +223,7 @@ def test_colour_of_another_size_than_depth_is_refused_and_depth_alone_is_not(fol
 
 def test_colour_with_other_numbers_than_depth_is_refused(folder: Path) -> None:
     (folder / "color/000003.png").unlink()
-    refuse(folder, "1 depth images without colour (3)", RGBD)
+    refuse(folder, "1 depth image without colour (3)", RGBD)
 
 
 def test_two_files_of_one_number_are_refused(folder: Path) -> None:
@@ -271,7 +271,7 @@ def test_annotations_and_models_come_along(recording: Path, tmp_path: Path) -> N
     (recording / "sequence.json").write_text(json.dumps(document))
     report = run_import(recording, tmp_path / "kept/r")
     assert report.annotations == 1 and report.objects == ("ball",)
-    assert report.warnings == ("1 files that sequence.json does not name are left out: objects/other.txt.",)
+    assert report.warnings == ("1 file that sequence.json does not name is left out: objects/other.txt.",)
     sequence = load_sequence(tmp_path / "kept/r")
     assert sequence.annotations_path == tmp_path / "kept/r/annotations.json"
     assert sorted(p.name for p in (tmp_path / "kept/r/objects").iterdir()) == ["ball.OFF", "ball.SKEL"]

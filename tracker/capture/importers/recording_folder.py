@@ -11,7 +11,7 @@ from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.sequence import SEQUENCE_FILE, Sequence, load_sequence
-from tracker.errors import AnnotationError, TrackerError
+from tracker.errors import AnnotationError, TrackerError, say_count
 
 TRUTH_FILE = "truth.npz"
 """What is exactly known of a synthetic recording."""
@@ -55,7 +55,10 @@ class RecordingFolder:
         warnings = []
         if others:
             shown = ", ".join(others[:3]) + (", ..." if len(others) > 3 else "")
-            warnings.append(f"{len(others)} files that sequence.json does not name are left out: {shown}.")
+            are = say_count(
+                len(others), "file that sequence.json does not name is", "files that sequence.json does not name are"
+            )
+            warnings.append(f"{are} left out: {shown}.")
         return ImportPlan(
             format=self.format,
             name=options.name or sequence.name,

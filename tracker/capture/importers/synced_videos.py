@@ -11,6 +11,7 @@ import numpy as np
 from tracker.capture.document import read_regular_file
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
+from tracker.capture.import_question import ImportQuestion, make_question
 from tracker.capture.importers.anipose_calibration import parse_anipose
 from tracker.capture.importers.dat_calibration import parse_dat
 from tracker.capture.importers.opencv_calibration import find_cameras, parse_opencv
@@ -19,7 +20,7 @@ from tracker.capture.importers.video_calibration import MAX_CALIBRATION_BYTES, V
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.numbered_files import sort_naturally
 from tracker.capture.video_file import VIDEO_SUFFIXES, VideoFile
-from tracker.errors import CalibrationError, ImportRefusedError
+from tracker.errors import CalibrationError, ImportRefusedError, say_count
 
 _DAT = re.compile(r"c([0-9]{1,3})\.dat")
 _TABLES = (".yaml", ".yml", ".json", ".npz")
@@ -36,6 +37,7 @@ class SyncedVideos:
     def plan(self, files: ListedFiles, options: ImportOptions) -> ImportPlan:
         problems: list[str] = []
         warnings: list[str] = []
+        questions: list[ImportQuestion] = []
         videos = sort_naturally(name for name in files.names if name.lower().endswith(VIDEO_SUFFIXES))
         if not videos:
             raise ImportRefusedError(f"No videos: needed files of type {', '.join(VIDEO_SUFFIXES)}.")
@@ -43,8 +45,10 @@ class SyncedVideos:
             raise ImportRefusedError(f"{len(videos)} videos; a recording has at most 64 cameras.")
         calibration, used = read_calibration(files)
         lossless = options.color_format == "png"
+        takes: tuple[str, ...] = ("fps", "hands", "allow_gaps", "color_format")
         if not calibration and len(videos) == 1:
-            K = read_intrinsics(options, problems)
+            takes = ("fx", "fy", "cx", "cy", "distortion", *takes)
+            K = read_intrinsics(options, problems, questions)
             stream = VideoFile(files.root, videos[0], lossless)
             lens = np.array(options.distortion or (), dtype=np.float64)
             cameras = (PlannedCamera(_make_id(videos[0]), K, lens, color=stream),)
@@ -54,7 +58,8 @@ class SyncedVideos:
                 "or c0.dat and rot_trans_c0.dat for each camera."
             )
         else:
-            unit = _choose_unit(calibration, options, problems)
+            takes = ("world_unit_m", *takes)
+            unit = _choose_unit(calibration, options, problems, questions)
             cameras = tuple(
                 PlannedCamera(
                     id=_make_id(video),
@@ -69,7 +74,7 @@ class SyncedVideos:
         ignored = [name for name in files.names if name not in {*videos, *used}]
         if ignored:
             shown = ", ".join(ignored[:3]) + (", ..." if len(ignored) > 3 else "")
-            warnings.append(f"{len(ignored)} other files are left out: {shown}.")
+            warnings.append(f"{say_count(len(ignored), 'other file is', 'other files are')} left out: {shown}.")
         ids = [camera.id for camera in cameras]
         if len({i.casefold() for i in ids}) != len(ids):
             cameras = tuple(_rename(camera, f"cam{i}") for i, camera in enumerate(cameras))
@@ -84,6 +89,8 @@ class SyncedVideos:
             hands=options.hands if options.hands is not None else ("right",),
             problems=tuple(problems),
             warnings=tuple(warnings),
+            questions=tuple(questions),
+            takes=takes,
             unit_known=options.world_unit_m is not None or len(cameras) == 1,
         )
 
@@ -160,18 +167,28 @@ def _same_number(video: str, camera: str) -> bool:
     return bool(numbers[0]) and bool(numbers[1]) and int(numbers[0][0]) == int(numbers[1][0])
 
 
-def _choose_unit(cameras: list[VideoCamera], options: ImportOptions, problems: list[str]) -> float:
+def _choose_unit(
+    cameras: list[VideoCamera], options: ImportOptions, problems: list[str], questions: list[ImportQuestion]
+) -> float:
     """Metres per unit of the calibration; must be told when there is a distance between cameras."""
     if options.world_unit_m is not None:
         return options.world_unit_m
     centres = np.array([camera.find_pose(1.0)[:3, 3] for camera in cameras])
     if len(cameras) > 1:
         length = float(np.linalg.norm(centres - centres[0], axis=1).max())
-        problems.append(
-            f"The unit of the calibration is not known: its cameras are {length:.4g} units apart. Give world_unit_m, "
-            f"metres per unit: 0.001 makes it {length / 1000:.4g} m, 1 makes it {length:.4g} m; "
+        hint = (
+            f"0.001 (millimetres) makes it {length / 1000:.4g} m, 1 makes it {length:.4g} m; "
             "when the unit is a checkerboard square, the side of a square."
         )
+        text = (
+            f"The unit of the calibration is not known: its cameras are {length:.4g} units apart. Give world_unit_m, "
+            f"metres per unit: {hint}"
+        )
+        problems.append(text)
+        likely = next((unit for unit in (0.001, 1.0) if 0.1 <= length * unit <= 5), None)
+        by = "" if likely is None else f"it puts the cameras {length * likely:.3g} m apart"
+        ask = f"Metres per unit of the calibration, whose cameras are {length:.4g} units apart: {hint}"
+        questions.append(make_question("world_unit_m", ask, text, proposal=likely, proposed_by=by))
     return 1.0 if float(np.abs(centres).max()) < 900 else 0.001
 
 

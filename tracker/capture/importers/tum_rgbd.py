@@ -15,11 +15,13 @@ from tracker.capture.document import read_regular_file
 from tracker.capture.image_files import ImageFiles
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
+from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question
 from tracker.capture.importers.rgbd_folder import read_intrinsics
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.relative_path import find_path_fault
 from tracker.errors import ImportRefusedError
 
+TAKES = ("intrinsics", "fx", "fy", "cx", "cy", "depth_scale", "fps", "hands", "allow_gaps", "distortion")
 MAX_DIFFERENCE_S = 0.020
 DEPTH_SCALE = 1 / 5000
 MAX_LIST_BYTES = 64 * 1024 * 1024
@@ -44,6 +46,7 @@ class TumRgbd:
     def plan(self, files: ListedFiles, options: ImportOptions) -> ImportPlan:
         problems: list[str] = []
         warnings: list[str] = []
+        questions: list[ImportQuestion] = []
         for name in ("rgb.txt", "depth.txt"):
             if name not in files.names:
                 raise ImportRefusedError(
@@ -63,6 +66,7 @@ class TumRgbd:
                 warnings.append(text + " They are left out.")
             else:
                 problems.append(text + " Allow gaps to leave them out.")
+                questions.append(make_question("allow_gaps", f"{text} They can be left out.", problems[-1]))
         kept = np.flatnonzero(partner >= 0)
         if not kept.size:
             raise ImportRefusedError(
@@ -83,15 +87,19 @@ class TumRgbd:
         times = depth_times[kept]
         camera = PlannedCamera(
             id="cam0",
-            K=read_intrinsics(options, problems),
+            K=read_intrinsics(options, problems, questions),
             distortion=np.array(options.distortion or (), dtype=np.float64),
             color=ImageFiles(files.root, tuple(color_names[i] for i in partner[kept]), False),
             depth=ImageFiles(files.root, tuple(depth_names[i] for i in kept), True),
             depth_scale=options.depth_scale or DEPTH_SCALE,
             timestamps=times - times[0],
         )
-        if options.intrinsics is None and problems:
-            problems.append(f"Or name the benchmark's camera with intrinsics: {', '.join(CAMERAS)}.")
+        if options.intrinsics is None and camera.K is None:
+            text = f"Or name the benchmark's camera with intrinsics: {', '.join(CAMERAS)}."
+            problems.append(text)
+            choices = tuple(ImportChoice(name, name) for name in CAMERAS)
+            ask = "The camera that the benchmark's recording was made with; its published values fill the fields."
+            questions.append(make_question("intrinsics", ask, text, is_required=False, choices=choices))
         return ImportPlan(
             format=self.format,
             name=default_name(files, options),
@@ -100,6 +108,8 @@ class TumRgbd:
             hands=options.hands if options.hands is not None else ("right",),
             problems=tuple(problems),
             warnings=tuple(warnings),
+            questions=tuple(questions),
+            takes=TAKES,
             left_out=tuple(left_out),
         )
 

@@ -896,6 +896,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/imports/{import_id}/picture": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Import Picture
+         * @description A small picture of an image that would come in; depth in colours, near bright and far dark.
+         */
+        get: operations["get_import_picture"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/jobs": {
         parameters: {
             query?: never;
@@ -4554,6 +4574,13 @@ export interface components {
         ImportConfirm: {
             /** Name */
             name?: string | null;
+            /**
+             * Options
+             * @description Those of the report that was looked at; with others since, 409 and nothing stored.
+             */
+            options?: {
+                [key: string]: unknown;
+            } | null;
         };
         /**
          * ImportField
@@ -4576,6 +4603,11 @@ export interface components {
             formats: string[];
             /** Options */
             options: components["schemas"]["ImportField"][];
+            /**
+             * Presets
+             * @description Values that the option `preset` may name.
+             */
+            presets: components["schemas"]["SensorPresetOut"][];
         };
         /**
          * Import
@@ -4602,7 +4634,10 @@ export interface components {
             options: {
                 [key: string]: unknown;
             };
-            /** Report */
+            /**
+             * Report
+             * @description What was found: `ok`, `problems`, `warnings`, and `questions`: every option that is missing, ambiguous or wrong, each with what it is (`field`, `label`, `kind`, `unit`), why (`ask`), whether nothing is stored without it (`is_required`), a `proposal` and its `choices` with `pictures`.
+             */
             report: {
                 [key: string]: unknown;
             };
@@ -6672,6 +6707,53 @@ export interface components {
              * @description Registrations that now need a second person.
              */
             marked: number;
+        };
+        /**
+         * SensorMode
+         * @description A size of a sensor's images and its typical camera, px.
+         */
+        SensorModeOut: {
+            /** Cx */
+            cx: number;
+            /** Cy */
+            cy: number;
+            /** Fx */
+            fx: number;
+            /** Fy */
+            fy: number;
+            /** Height */
+            height: number;
+            /** Width */
+            width: number;
+        };
+        /**
+         * SensorPreset
+         * @description Typical values of a kind of depth camera: not the calibration of anybody's own.
+         */
+        SensorPresetOut: {
+            /**
+             * Depth Scales
+             * @description m per unit: its own, then what programs usually save instead.
+             */
+            depth_scales: number[];
+            /** Fps */
+            fps: number;
+            /** Label */
+            label: string;
+            /** Modes */
+            modes: components["schemas"]["SensorModeOut"][];
+            /** Name */
+            name: string;
+            /** Reach M */
+            reach_m: [
+                number,
+                number
+            ];
+            /**
+             * Source
+             * @description Where the numbers come from.
+             */
+            source: string;
         };
         /**
          * SequenceCamera
@@ -11239,6 +11321,76 @@ export interface operations {
             };
             /** @description Conflict */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    get_import_picture: {
+        parameters: {
+            query: {
+                /** @description As in the report's `pictures`. */
+                name: string;
+            };
+            header?: never;
+            path: {
+                import_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/jpeg": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };

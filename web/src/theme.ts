@@ -55,6 +55,7 @@ export const cssVariables: CSSVariablesResolver = () => ({
     "--warn-text": "#8a5a00",
     "--accent-text": "#046a5f",
     "--pane": "#3a3f46",
+    "--edge": "rgb(0 0 0 / 28%)",
     "--mantine-color-dimmed": "#565d68",
   },
   dark: {
@@ -69,6 +70,7 @@ export const cssVariables: CSSVariablesResolver = () => ({
     "--warn-text": "#f0b45a",
     "--accent-text": "#5fd3c6",
     "--pane": "#0b0c0e",
+    "--edge": "rgb(160 168 179 / 45%)",
     "--mantine-color-dimmed": "#a0a8b3",
   },
 });

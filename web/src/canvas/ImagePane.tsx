@@ -6,6 +6,7 @@ import type { Camera } from "../api/types";
 import type { PointerStore } from "../state/pointer";
 import { CursorLayer } from "./CursorLayer";
 import { usePaneGestures, type PaneGestures } from "./usePaneGestures";
+import { useTouch, type TouchGestures } from "./useTouch";
 import type { Picture } from "./usePictures";
 import { fitView, type View } from "./view";
 import classes from "./ImagePane.module.css";
@@ -15,7 +16,7 @@ export interface PaneLayer {
   readonly opacity: number;
 }
 
-interface ImagePaneProps extends PaneGestures {
+interface ImagePaneProps extends PaneGestures, TouchGestures {
   label: string;
   camera: Camera;
   /** Drawn in order, the first one below. */
@@ -54,7 +55,8 @@ export function ImagePane(props: ImagePaneProps) {
   const surface = useRef<HTMLDivElement | null>(null);
   const imageLayer = useRef<Konva.Layer>(null);
   const shownView = view ?? fitView(camera, { width, height });
-  const handlers = usePaneGestures(surface, shownView, { width, height }, camera, onView, pointer, props);
+  const mouse = usePaneGestures(surface, shownView, { width, height }, camera, onView, pointer, props);
+  const handlers = useTouch(mouse, { view: shownView, isFitted: view === null, pane: { width, height }, image: camera, onView }, props);
 
   useEffect(() => {
     // The browser's own filter on the picture's layer costs nothing; Konva's filters would redo every pixel.

@@ -18,9 +18,11 @@ export interface ViewOptions {
   readonly palette: Palette;
   /** Of depth over colour, 0..1. */
   readonly depthOpacity: number;
+  /** A finger places and drags joints; without it it only looks, so that nothing is marked by accident. */
+  readonly isTouchMarking: boolean;
 }
 
-const DEFAULTS: ViewOptions = { arrangement: "color", brightness: 1, contrast: 1, areHandsShown: true, areNamesShown: false, placeMode: "joint", palette: "warm", depthOpacity: 0.55 };
+const DEFAULTS: ViewOptions = { arrangement: "color", brightness: 1, contrast: 1, areHandsShown: true, areNamesShown: false, placeMode: "joint", palette: "warm", depthOpacity: 0.55, isTouchMarking: false };
 
 export function useViewOptions(): [ViewOptions, (change: Partial<ViewOptions>) => void] {
   const [options, setOptions] = useLocalStorage<ViewOptions>({ key: "handloom/view", defaultValue: DEFAULTS, getInitialValueInEffect: false });

@@ -31,6 +31,7 @@ export function FrameBar({ frameField }: FrameBarProps) {
       {arrangements.length > 1 && (
         <SegmentedControl
           size="xs"
+          className={classes.arrange}
           aria-label="Pictures"
           data={arrangements.map((value) => ({ value, label: NAMES[value] }))}
           value={arrangement}
@@ -40,7 +41,7 @@ export function FrameBar({ frameField }: FrameBarProps) {
       {FRAME_TOOLS.map((FrameTool, index) => (
         <FrameTool key={index} />
       ))}
-      <Group gap={4} ml="auto" wrap="nowrap">
+      <Group gap={4} ml="auto" wrap="nowrap" className={classes.frames}>
         <Tooltip label={hint(isPlaying ? "Pause" : "Play", "play")}>
           <ActionIcon aria-label={isPlaying ? "Pause" : "Play"} onClick={() => run("play")}>
             {isPlaying ? <IconPlayerPause size={18} /> : <IconPlayerPlay size={18} />}

@@ -50,6 +50,8 @@ export function Pane({ camera, label, layers, isBusy, shownFrame, overlay }: Pan
       isMagnified={isMagnified}
       isBusy={isBusy}
       shownFrame={shownFrame}
+      isTouchLooking={!options.isTouchMarking}
+      onSwipe={(by) => run(by > 0 ? "frame.next" : "frame.previous")}
       onDrawn={(frame) => noteDrawn(camera.id, frame)}
       hitJoint={(view, screen) => (options.areHandsShown ? jointAt(shown, view, screen, isActive ? state.joint : -1) : -1)}
       onDouble={onDouble}

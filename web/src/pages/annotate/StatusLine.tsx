@@ -6,6 +6,7 @@ import { statusOf, type Pose } from "../../model/pose";
 import type { AnnotatorState } from "../../state/annotator";
 import { usePointer, type PointerStore } from "../../state/pointer";
 import { SaveState } from "../parts/SaveState";
+import { useHasFingers, useIsCompact } from "../parts/useScreen";
 import { useAnnotating } from "./annotating";
 import classes from "./StatusLine.module.css";
 
@@ -38,11 +39,13 @@ function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | n
 
 export function StatusLine() {
   const { state, pose, saving, pointer, pictures, lock, session, options } = useAnnotating();
+  const [isCompact, hasFingers] = [useIsCompact(), useHasFingers()];
+  const isLooking = isCompact && hasFingers && !options.isTouchMarking;
   return (
     <div className={classes.line}>
       <SaveState status={{ ...saving, conflicts: saving.conflicts.size, refusals: saving.refusals.size }} what="Every gesture is saved by itself" action="save.now" onFlush={() => session.queue.flush()} />
       <span className={classes.next} data-testid="next-click">
-        {lock ?? `Next click ${describeClick(state, pose, options.placeMode)}`}
+        {lock ?? (isLooking ? "Swipe for frames, tap to choose a joint" : `Next click ${describeClick(state, pose, options.placeMode)}`)}
       </span>
       <span className={classes.here}>
         <Here pointer={pointer} depth={pictures.depthImage} />

@@ -9,6 +9,7 @@ import {
   IconDiamondFilled,
   IconEye,
   IconEyeOff,
+  IconHandFinger,
   IconHandOff,
   IconHandStop,
   IconLabel,
@@ -30,12 +31,15 @@ import { DepthTool } from "./DepthTool";
 import { TOOLS } from "./mounts";
 import { PropagateTool } from "./PropagateTool";
 import { Tool } from "../parts/Tool";
+import { useHasFingers, useIsCompact } from "../parts/useScreen";
 import classes from "./ToolRail.module.css";
 import { useKeyFrames } from "./useSession";
 
 /** The things one does, as buttons; each says its key. */
 export function ToolRail() {
-  const { state, session, camera, pose, options, run } = useAnnotating();
+  const { state, session, camera, pose, options, setOptions, run } = useAnnotating();
+  const isCompact = useIsCompact();
+  const hasFingers = useHasFingers();
   const [canUndo, canRedo] = [session.undo.canUndo(), session.undo.canRedo()];
   const canBring = annotatedFrames(state, state.hand).some((frame) => frame < state.frame);
   const keys = useKeyFrames(session);
@@ -46,7 +50,16 @@ export function ToolRail() {
   const hasSeveralPictures = arrangementsOf(camera).length > 1;
   const size = 18;
   return (
-    <div className={classes.rail} role="toolbar" aria-label="Tools" aria-orientation="vertical">
+    <div className={classes.rail} role="toolbar" aria-label="Tools" aria-orientation={isCompact ? "horizontal" : "vertical"}>
+      {hasFingers && (
+        <Tool
+          label={options.isTouchMarking ? "Only look by touch" : "Mark joints by touch"}
+          action="touch.mark"
+          icon={<IconHandFinger size={size} />}
+          isOn={options.isTouchMarking}
+          onClick={() => setOptions({ isTouchMarking: !options.isTouchMarking })}
+        />
+      )}
       <Tool label="Undo" action="undo" icon={<IconArrowBackUp size={size} />} isDisabled={!canUndo} onClick={() => run("undo")} />
       <Tool label="Redo" action="redo" icon={<IconArrowForwardUp size={size} />} isDisabled={!canRedo} onClick={() => run("redo")} />
       <Divider w={24} />

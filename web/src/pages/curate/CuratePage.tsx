@@ -72,6 +72,10 @@ export default function CuratePage() {
     decide(decision, why);
     parts.element.current?.focus({ preventScroll: true });
   };
+  const undoByClick = (): void => {
+    curation.undo();
+    parts.element.current?.focus({ preventScroll: true });
+  };
   useKeymap("curate", {
     ...handHandlers("curate", stage, control),
     undo: curation.undo,
@@ -139,7 +143,7 @@ export default function CuratePage() {
           <DecisionRefusals status={status} onGo={curation.goTo} />
         </HandView>
         {item ? (
-          <DecisionPanel item={item} mine={mine} reasons={reasons} mayDecide={mayDecide} onDecide={decideByClick} />
+          <DecisionPanel item={item} mine={mine} reasons={reasons} mayDecide={mayDecide} onDecide={decideByClick} canUndo={state.steps.length > 0} onUndo={undoByClick} />
         ) : (
           !isEnd && <aside className={classes.panel} aria-label="The registration and the decision" />
         )}

@@ -1,5 +1,5 @@
 import { Group, Kbd, Text } from "@mantine/core";
-import { IconCheck, IconEyeOff, IconHelp, IconX } from "@tabler/icons-react";
+import { IconArrowBackUp, IconCheck, IconEyeOff, IconHelp, IconX } from "@tabler/icons-react";
 import { Link } from "react-router";
 import type { Reason, Registration } from "../../api/registrations";
 import { formatCount, formatNumber } from "../../model/format";
@@ -15,6 +15,8 @@ interface DecisionPanelProps {
   reasons: readonly Reason[];
   mayDecide: boolean;
   onDecide: (decision: Standing, reasons?: readonly string[]) => void;
+  canUndo: boolean;
+  onUndo: () => void;
 }
 
 const ACTS = [
@@ -26,7 +28,7 @@ const ACTS = [
 const mm = (value: number | null): string => (value === null ? "–" : `${formatNumber(value, 2)} mm`);
 
 /** What is judged, what the program thinks of it, and what one can say. */
-export function DecisionPanel({ item, mine, reasons, mayDecide, onDecide }: DecisionPanelProps) {
+export function DecisionPanel({ item, mine, reasons, mayDecide, onDecide, canUndo, onUndo }: DecisionPanelProps) {
   const keyOf = useKeyOf();
   const { scan } = item;
   return (
@@ -82,6 +84,13 @@ export function DecisionPanel({ item, mine, reasons, mayDecide, onDecide }: Deci
             </Kbd>
           </button>
         ))}
+        <button type="button" className={classes.act} data-kind="undo" disabled={!canUndo} aria-label="Take the last decision back" onClick={onUndo}>
+          <IconArrowBackUp size={18} aria-hidden />
+          Undo
+          <Kbd size="xs" aria-hidden>
+            {keyOf("curate.undo") || "–"}
+          </Kbd>
+        </button>
       </div>
       <section aria-label="Reject for a reason">
         <Text size="xs" className="quiet" mb={4}>

@@ -9,3 +9,6 @@ export const useIsNarrow = (): boolean => useMediaQuery("(max-width: 1119px)", u
 
 /** A phone, or a tablet held upright: one thing below the other. */
 export const useIsCompact = (): boolean => useMediaQuery("(max-width: 800px)", undefined, now);
+
+/** Something to touch with: what a finger does has to be said. */
+export const useHasFingers = (): boolean => useMediaQuery("(any-pointer: coarse)", undefined, now);

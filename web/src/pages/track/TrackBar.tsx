@@ -88,7 +88,7 @@ export function TrackBar(props: TrackBarProps) {
       {recording.cameras.length > 1 && (
         <Select size="xs" w={136} aria-label="Camera" allowDeselect={false} data={recording.cameras.map((one) => one.id)} value={camera} onChange={(id) => id && onCamera(id)} />
       )}
-      <Group gap={4} ml="auto" wrap="nowrap">
+      <Group gap={4} ml="auto" wrap="nowrap" className={classes.controls}>
         <Group gap={4} wrap="nowrap" className={classes.status} data-status={status ?? ""} role="status">
           {StatusIcon && <StatusIcon size={15} aria-hidden />}
           {status ?? "not tracked"}

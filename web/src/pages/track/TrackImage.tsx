@@ -17,12 +17,13 @@ interface TrackImageProps {
   frame: number;
   isMeshShown: boolean;
   isSkeletonShown: boolean;
+  onStep: (by: 1 | -1) => void;
   onMesh: (isShown: boolean) => void;
   onSkeleton: (isShown: boolean) => void;
 }
 
 /** What the camera saw, with the fitted mesh and joints over it. */
-export function TrackImage({ track, recording, camera, frame, isMeshShown, isSkeletonShown, onMesh, onSkeleton }: TrackImageProps) {
+export function TrackImage({ track, recording, camera, frame, isMeshShown, isSkeletonShown, onStep, onMesh, onSkeleton }: TrackImageProps) {
   const [view, setView] = useState<View | null>(null);
   const [pointer] = useState(createPointerStore);
   const pictures = usePictures(recording, camera, frame, { color: camera.has_color, depth: !camera.has_color, palette: "grey" }, null);
@@ -44,6 +45,8 @@ export function TrackImage({ track, recording, camera, frame, isMeshShown, isSke
         layers={layers}
         view={view}
         onView={setView}
+        isTouchLooking
+        onSwipe={onStep}
         brightness={1}
         contrast={1}
         pointer={pointer}

@@ -1,5 +1,5 @@
-import { useComputedColorScheme } from "@mantine/core";
-import { useCallback, useMemo, useState } from "react";
+import { SegmentedControl, useComputedColorScheme } from "@mantine/core";
+import { useCallback, useMemo, useRef, useState } from "react";
 import { useNavigate, useSearchParams } from "react-router";
 import { useKeymap } from "../../actions/useKeymap";
 import { LAYERS, useViewer, type Layer, type Shown } from "../../api/tracks";
@@ -10,6 +10,7 @@ import { formatNumber } from "../../model/format";
 import { trackRows } from "../../model/trackRows";
 import { usePlayback } from "../annotate/usePlayback";
 import { useLateAddress } from "../parts/useLateAddress";
+import { useIsCompact } from "../parts/useScreen";
 import { ErrorLegend } from "./ErrorLegend";
 import { TrackBar } from "./TrackBar";
 import { TrackImage } from "./TrackImage";
@@ -46,6 +47,11 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const [terms, setTerms] = useState<Record<string, boolean>>({});
   const [isMeshShown, setMeshShown] = useState(true);
   const [isSkeletonShown, setSkeletonShown] = useState(true);
+  // A small screen shows one at a time; the 3D view is opened when somebody wants it, and stays.
+  const isCompact = useIsCompact();
+  const [shown, setShown] = useState<"image" | "space">("image");
+  const hasSpace = useRef(false);
+  hasSpace.current ||= shown === "space";
   const dark = useComputedColorScheme("dark") === "dark";
   const show = useMemo<Shown>(() => ({ ...layers, correspondences: layers.correspondences && (Object.keys(terms).length > 0 ? terms : true), dark }), [layers, terms, dark]);
   const viewer = useViewer(track.id, frame, show);
@@ -108,8 +114,22 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
         onBad={toBad}
         onAnnotate={annotate}
       />
-      <div className={classes.middle}>
-        <ViewerFrame viewer={viewer} layers={layers} terms={terms} onLayers={setLayers} onTerms={setTerms} />
+      {isCompact && (
+        <SegmentedControl
+          fullWidth
+          m={8}
+          mb={0}
+          aria-label="What is shown"
+          data={[
+            { value: "image", label: "Picture" },
+            { value: "space", label: "3D view" },
+          ]}
+          value={shown}
+          onChange={(value) => setShown(value as "image" | "space")}
+        />
+      )}
+      <div className={classes.middle} data-shown={shown}>
+        {(!isCompact || hasSpace.current) && <ViewerFrame viewer={viewer} layers={layers} terms={terms} onLayers={setLayers} onTerms={setTerms} />}
         <div className={classes.side}>
           {camera && (
             <TrackImage
@@ -119,6 +139,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
               frame={frame}
               isMeshShown={isMeshShown}
               isSkeletonShown={isSkeletonShown}
+              onStep={(by) => seek(frame + by)}
               onMesh={setMeshShown}
               onSkeleton={setSkeletonShown}
             />

@@ -56,6 +56,23 @@ SourceChoice = Literal[
 ]
 """Which joints are meant, by where they came from; a test holds it equal to the tracker's SOURCE_CHOICES."""
 
+
+class JointsOfSource(BaseModel):
+    """Placed joints of one origin."""
+
+    origin: str = Field(description="`hand`, `unknown`, or the kind of the source.")
+    words: str = Field(description="For people: `accepted from Track 2`.")
+    joints: int
+    is_counted: bool = Field(description="They count; otherwise they are left out because of where they came from.")
+
+
+SOURCES_HELP = (
+    "Joints that count, by where they came from; given several times, a joint counts that is one of them. "
+    "`independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: "
+    "whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, "
+    "`copy`, `fit`, `track`."
+)
+
 Sources = Annotated[
     list[JointSourceOut | None],
     Field(

@@ -48,6 +48,13 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--snapshot", type=int, metavar="V", help="labels: those of this snapshot's version, not of now"
     )
+    parser.add_argument(
+        "--sources",
+        default="all",
+        metavar="WORDS",
+        help="labels: which joints, by where they came from: all, independent (no track had a part in them), or some "
+        "of hand, unknown, import, triangulation, interpolation, copy, fit, track with commas between; default: all",
+    )
     parser.add_argument("--track", metavar="ID", help="labels in 3D: take the joints in space from this track")
     add_json(parser)
     parser.set_defaults(run=run_guarded(run))
@@ -60,8 +67,10 @@ def run(args: argparse.Namespace) -> int:
     if not out.parent.is_dir():
         raise CommandError(f"{out.parent}: is no folder; make it first.")
     is_labels, names = args.format in LABELS, ", ".join(args.name)
-    if not is_labels and (args.snapshot is not None or args.track is not None):
-        raise CommandError(f"--snapshot and --track are for labels ({', '.join(LABELS)}), not for {args.format}.")
+    if not is_labels and (args.snapshot is not None or args.track is not None or args.sources != "all"):
+        raise CommandError(
+            f"--snapshot, --sources and --track are for labels ({', '.join(LABELS)}), not for {args.format}."
+        )
     if len(args.name) > 1 and (not is_labels or args.snapshot is not None or args.track is not None):
         raise CommandError(f"{len(args.name)} names ({names}); this exports one thing at a time.")
     with open_studio() as studio, studio.database.reading() as session:
@@ -100,8 +109,9 @@ def find_recording(session: Session, name: str) -> SequenceRow:
 def _export_labels(session: Session, storage: Storage, args: argparse.Namespace, out: Path) -> dict[str, Any]:
     from server.exchange.label_sets import check_track, open_label_set, read_labels
     from server.exchange.snapshots import find_snapshot
-    from tracker import export_labels, save_label_files
+    from tracker import choose_sources, export_labels, save_label_files
 
+    sources = choose_sources(args.sources)
     rows = [find_recording(session, name) for name in args.name]
     if len({row.id for row in rows}) != len(rows):
         raise CommandError("A recording is named twice.")
@@ -112,7 +122,7 @@ def _export_labels(session: Session, storage: Storage, args: argparse.Namespace,
         check_track(session, rows[0].id, track_id)
     snapshot = None if args.snapshot is None else find_snapshot(session, rows[0].id, args.snapshot)
     sets = [open_label_set(storage, row, read_labels(session, storage, row.id, snapshot), track_id) for row in rows]
-    made = export_labels(args.format, sets)
+    made = export_labels(args.format, sets, sources)
     for note in made.notes:
         sys.stderr.write(f"handloom: {note}\n")
     _appear(out, lambda path: save_label_files(path, made.files))

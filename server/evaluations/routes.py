@@ -11,13 +11,13 @@ from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from sqlalchemy.orm import Session
 
 from server.accounts.service import CurrentAccount
-from server.annotations.schemas import SourceChoice
+from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import DatabaseDep
 from server.errors import InvalidError, error_responses
 from server.evaluations import service
 from server.evaluations.judge import JudgeDep
 from server.evaluations.reports import write_html_report
-from server.evaluations.schemas import SOURCES_HELP, Comparison, EvaluationQuery, Hand
+from server.evaluations.schemas import Comparison, EvaluationQuery, Hand
 from server.storage import StorageDep
 from server.tracks.guard import SeenTrack, SightDep, check_sight
 

@@ -8,16 +8,10 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.annotations.schemas import SourceChoice
+from server.annotations.schemas import SOURCES_HELP, JointsOfSource, SourceChoice
 
 Hand = Literal["right", "left"]
 MAX_TRACKS = 60
-SOURCES_HELP = (
-    "Joints that count, by where they came from; given several times, a joint counts that is one of them. "
-    "`independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: "
-    "whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, "
-    "`copy`, `fit`, `track`."
-)
 
 
 class EvaluationQuery(BaseModel):
@@ -70,15 +64,6 @@ class PairedDifferenceOut(BaseModel):
     low: float = Field(description="Of the 95 % interval of the difference: a bootstrap over frames.")
     high: float
     better: float = Field(description="Share of the joints that are nearer than the reference's.")
-
-
-class JointsOfSource(BaseModel):
-    """Placed joints of one origin."""
-
-    origin: str = Field(description="`hand`, `unknown`, or the kind of the source.")
-    words: str = Field(description="For people: `accepted from Track 2`.")
-    joints: int
-    is_counted: bool = Field(description="They judge; otherwise they are left out because of where they came from.")
 
 
 class ErrorCurve(BaseModel):

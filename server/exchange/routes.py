@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import uuid
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,6 +14,7 @@ from pydantic import ValidationError
 
 from server.accounts.service import CurrentAccount, LeadAccount
 from server.annotations.guards import GuardsDep
+from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import Database, DatabaseDep
 from server.errors import InvalidError, error_responses
 from server.exchange import importing
@@ -63,6 +65,8 @@ SnapshotQuery = Annotated[uuid.UUID | None, Query(description="Labels of this sn
 TrackQuery = Annotated[
     uuid.UUID | None, Query(description="For formats in 3D: take the joints in space from this track of the recording.")
 ]
+SourceQuery = Annotated[list[SourceChoice], Query(min_length=1, max_length=10, description=SOURCES_HELP)]
+ALL: list[SourceChoice] = ["all"]
 SequencesQuery = Annotated[
     list[uuid.UUID], Query(alias="sequence_id", min_length=1, max_length=MAX_RECORDINGS, description="Each once.")
 ]
@@ -92,9 +96,12 @@ def export_recording_labels(
     format_: FormatQuery,
     snapshot_id: SnapshotQuery = None,
     track_id: TrackQuery = None,
+    source: SourceQuery = ALL,
 ) -> Response:
     """The labels of a recording in a format, as one file: a zip where the format has several."""
-    made = _export(database, storage, account, guards, [sequence_id], format_, snapshot_id, track_id)
+    made = _export(
+        database, storage, account, guards, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id)
+    )
     return _answer(made, format_)
 
 
@@ -108,9 +115,12 @@ def preview_export(
     format_: FormatQuery,
     snapshot_id: SnapshotQuery = None,
     track_id: TrackQuery = None,
+    source: SourceQuery = ALL,
 ) -> ExportNotes:
     """What the export would hold and what would be lost in it."""
-    made = _export(database, storage, account, guards, [sequence_id], format_, snapshot_id, track_id)
+    made = _export(
+        database, storage, account, guards, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id)
+    )
     return ExportNotes(
         format=format_,
         file=LABEL_FORMATS[format_].file,
@@ -129,33 +139,39 @@ def export_several(
     guards: GuardsDep,
     format_: FormatQuery,
     sequence_ids: SequencesQuery,
+    source: SourceQuery = ALL,
 ) -> Response:
     """The labels of several recordings in one file, in a format that can hold several."""
     if len(set(sequence_ids)) != len(sequence_ids):
         raise InvalidError("A recording is named twice.")
-    return _answer(_export(database, storage, account, guards, sequence_ids, format_, None, None), format_)
+    made = _export(database, storage, account, guards, sequence_ids, ExportChoice(format_, source))
+    return _answer(made, format_)
+
+
+@dataclass(frozen=True)
+class ExportChoice:
+    """What is exported: a format, joints of some sources, labels of now or of a snapshot, joints in 3D of a track."""
+
+    format: str
+    source: Sequence[str]
+    snapshot_id: uuid.UUID | None = None
+    track_id: uuid.UUID | None = None
 
 
 def _export(
-    database: Database,
-    storage: Storage,
-    account: Any,
-    guards: Any,
-    ids: Sequence[uuid.UUID],
-    format_: str,
-    snapshot_id: uuid.UUID | None,
-    track_id: uuid.UUID | None,
+    database: Database, storage: Storage, account: Any, guards: Any, ids: Sequence[uuid.UUID], choice: ExportChoice
 ) -> ExportedLabels:
     labels = []
     with database.reading() as session:
-        snapshot = None if snapshot_id is None else get_snapshot(session, snapshot_id)
+        snapshot = None if choice.snapshot_id is None else get_snapshot(session, choice.snapshot_id)
         for sequence_id in ids:
             row = get_sequence(session, sequence_id)
-            if track_id is not None:
-                check_track(session, sequence_id, track_id)
+            if choice.track_id is not None:
+                check_track(session, sequence_id, choice.track_id)
             annotations = read_labels(session, storage, sequence_id, snapshot)
             labels.append((row, keep_visible(guards, session, account, sequence_id, annotations)))
-    return export_labels(format_, [open_label_set(storage, row, found, track_id) for row, found in labels])
+    sets = [open_label_set(storage, row, found, choice.track_id) for row, found in labels]
+    return export_labels(choice.format, sets, choice.source)
 
 
 def _pack(made: ExportedLabels, format_: str) -> bytes:

@@ -26,6 +26,7 @@ class LabelFormatOut(BaseModel):
     file: str = Field(description="Name of an export.")
     several: bool = Field(description="Whether one export can hold several recordings.")
     needs_3d: bool = Field(description="Whether it holds joints in space and nothing else.")
+    carries_sources: bool = Field(description="Whether it says of each joint where it came from.")
 
 
 class LabelFormats(BaseModel):

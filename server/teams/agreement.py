@@ -84,15 +84,17 @@ class Agreement:
     joint_disagreement: tuple[float | None, ...]
 
 
-def measure_agreement(points: Array, is_marked: Array) -> Agreement:
+def measure_agreement(points: Array, is_marked: Array, is_counted: Array | None = None) -> Agreement:
     """Measure it.
 
     Args:
         points: (A, P, 21, 3) px and v (0 absent, 1 occluded, 2 visible), float64.
         is_marked: (A, P) whether the person marked the place at all, bool.
+        is_counted: (A, P, 21) joints that count; the others are as if the person had not looked. All without it.
     """
     assert points.ndim == 4 and points.shape[2:] == (21, 3) and is_marked.shape == points.shape[:2]
-    state = np.where(is_marked[:, :, None], points[..., 2], -1).astype(np.int64)
+    counted = is_marked[:, :, None] & (np.True_ if is_counted is None else is_counted)
+    state = np.where(counted, points[..., 2], -1).astype(np.int64)
     placed = state > 0
     shared = placed & (placed.sum(axis=0) >= 2)
     xy = np.where(placed[..., None], points[..., :2], 0.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import uuid
+from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import datetime
 from html import escape
@@ -16,13 +17,14 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.accounts.service import find_names
+from server.annotations.schemas import JointsOfSource, SourceChoice
 from server.annotations.service import load_annotations
 from server.database import utc_now
 from server.sequences.models import SequenceRow
 from server.teams.agreement import Agreement, measure_agreement
 from server.teams.models import AssignmentRow, ReplicaSetRow
 from server.teams.schemas import Hand
-from tracker import HAND_JOINTS
+from tracker import HAND_JOINTS, Annotation, count_origins, describe_origin, find_counted, find_origin, say_left_out
 
 WORST_PLACES = 50
 T16_STD_PX = 1.46
@@ -88,6 +90,9 @@ class AgreementReport(BaseModel):
     recording: str
     made_at: datetime
     waiting: list[str] = Field(description="Annotators who have not submitted; they are left out.")
+    source: list[SourceChoice] = Field(description="Joints that count, as asked for.")
+    sources: list[JointsOfSource] = Field(description="Where the joints came from that count, or are left out.")
+    left_out_joints: int = Field(description="Placed joints that do not count because of where they came from.")
     overall: SpreadOut
     radial_px: float | None = Field(description="√2 times the overall standard deviation: as a distance.")
     t16_std_px: float = Field(T16_STD_PX, description="Of the four annotators of [T16], for comparison.")
@@ -100,8 +105,11 @@ class AgreementReport(BaseModel):
     worst: list[AgreementPlace] = Field(description="Hands about which they differ most, the worst first.")
 
 
-def make_report(session: Session, replicas: ReplicaSetRow) -> AgreementReport:
-    """Measure the annotators of a replica set who have submitted."""
+def make_report(session: Session, replicas: ReplicaSetRow, source: Sequence[SourceChoice]) -> AgreementReport:
+    """Measure the annotators of a replica set who have submitted, by the joints that came from one of `source`.
+
+    Two people who accepted the same suggestion do not agree: they both believed a machine.
+    """
     query = select(AssignmentRow).where(AssignmentRow.replica_set_id == replicas.id, AssignmentRow.deleted_at.is_(None))
     rows = session.scalars(query.order_by(AssignmentRow.created_at, AssignmentRow.id)).all()
     names = find_names(session, [row.account_id for row in rows])
@@ -110,13 +118,18 @@ def make_report(session: Session, replicas: ReplicaSetRow) -> AgreementReport:
     number = {place: index for index, place in enumerate(places)}
     points = np.zeros((len(done), len(places), 21, 3))
     is_marked = np.zeros(points.shape[:2], dtype=bool)
+    is_counted = np.ones(points.shape[:3], dtype=bool)
+    items: list[Annotation] = []
     for person, row in enumerate(done):
         for item in load_annotations(session, row.sequence_id, str(row.id)).items:
             place = number[item.frame, item.camera, item.hand]
             points[person, place], is_marked[person, place] = item.points, True
+            is_counted[person, place] = find_counted(item.sources, source)
+            items.append(item)
+    sources = _count_sources(items, source)
     sequence = session.get(SequenceRow, replicas.sequence_id)
     assert sequence is not None, "a foreign key"
-    found = measure_agreement(points, is_marked)
+    found = measure_agreement(points, is_marked, is_counted)
     people = [names[row.account_id] for row in done]
     similarities = [pair.oks for pair in found.pairs if pair.oks is not None]
     return AgreementReport.model_validate(
@@ -127,6 +140,9 @@ def make_report(session: Session, replicas: ReplicaSetRow) -> AgreementReport:
             "recording": sequence.name,
             "made_at": utc_now(),
             "waiting": [names[row.account_id] for row in rows if row not in done],
+            "source": list(source),
+            "sources": sources,
+            "left_out_joints": sum(one.joints for one in sources if not one.is_counted),
             "overall": asdict(found.overall),
             "radial_px": None if found.overall.std_px is None else np.sqrt(2) * found.overall.std_px,
             "oks": float(np.mean(similarities)) if similarities else None,
@@ -144,6 +160,25 @@ def make_report(session: Session, replicas: ReplicaSetRow) -> AgreementReport:
             "worst": _find_worst(found, places),
         }
     )
+
+
+def _count_sources(items: Sequence[Annotation], source: Sequence[SourceChoice]) -> list[JointsOfSource]:
+    """Placed joints of all annotators by where they came from: those that count first."""
+    counted = [find_counted(item.sources, source) for item in items]
+    return [
+        JointsOfSource(origin=origin, words=words, joints=joints, is_counted=is_counted)
+        for is_counted in (True, False)
+        for (origin, words), joints in count_origins(
+            (find_origin(item.sources, joint), describe_origin(item.sources, joint))
+            for item, counts in zip(items, counted, strict=True)
+            for joint in np.flatnonzero((item.points[:, 2] > 0) & (counts == is_counted)).tolist()
+        )
+    ]
+
+
+def say_sources(report: AgreementReport) -> str:
+    """How many joints do not count, and why; empty when all do."""
+    return say_left_out((one.words, one.joints) for one in report.sources if not one.is_counted)
 
 
 def _describe_person(found: Agreement, person: int, row: AssignmentRow, name: str, hands: int) -> dict[str, Any]:
@@ -180,6 +215,8 @@ def write_csv(report: AgreementReport) -> str:
         rows.writerow([of, _cell(who), _cell(item), spread.std_px, spread.samples, *more])
 
     add("overall", "", "", report.overall, None, report.oks)
+    for one in report.sources:
+        rows.writerow(["counted" if one.is_counted else "left out", "", _cell(one.words), None, one.joints])
     for state, spread in report.states.items():
         add("state", "", state, spread)
     for joint in report.joints:
@@ -245,7 +282,7 @@ def write_html(report: AgreementReport) -> str:
     pair_head = "<th></th><th class=n>mean distance, px</th><th class=n>OKS</th><th class=n>state differs</th>"
     return f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>Agreement: {escape(report.name)}</title>
 <style>{STYLE}</style><h1>{escape(report.name)}</h1>
-<p class=quiet>{escape(report.recording)} · {count}{waiting}{shared}</p>
+<p class=quiet>{escape(report.recording)} · {count}{waiting}{shared} {escape(say_sources(report))}</p>
 <p><span class=big>{_px(report.overall.std_px)} px</span> standard deviation along an image axis,
 {_px(report.radial_px)} px as a distance, from {report.overall.samples} placed joints. Object keypoint similarity
 (COCO-WholeBody) {_score(report.oks)}. The four annotators of [T16]: {report.t16_std_px} px.</p>

@@ -5,9 +5,10 @@ from __future__ import annotations
 import uuid
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Response
+from fastapi import APIRouter, Depends, Query, Response
 
 from server.accounts.service import CurrentAccount, LeadAccount, ReviewerAccount
+from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import error_responses
@@ -70,11 +71,17 @@ def add_replica_annotator(
     return describe_assignments(session, [replicas.add_annotator(session, account, row, body.account_id)])[0]
 
 
-def get_report(replica_set_id: uuid.UUID, session: SessionDep, account: ReviewerAccount) -> AgreementReport:
+SourceQuery = Annotated[list[SourceChoice], Query(min_length=1, max_length=10, description=SOURCES_HELP)]
+JUDGING: list[SourceChoice] = ["independent"]
+
+
+def get_report(
+    replica_set_id: uuid.UUID, session: SessionDep, account: ReviewerAccount, source: SourceQuery = JUDGING
+) -> AgreementReport:
     """The agreement of those who have submitted, for reviewers who don't mark the set themselves."""
     row = replicas.get_replica_set(session, replica_set_id)
     check_sees_set(session, account, row)
-    return make_report(session, row)
+    return make_report(session, row, source)
 
 
 ReportDep = Annotated[AgreementReport, Depends(get_report)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -54,9 +54,13 @@ class Annotation:
         """Its entry in `annotations.json`."""
         points = [[float(x), float(y), int(v) if v in (0, 1, 2) else float(v)] for x, y, v in self.points]
         document = {"frame": self.frame, "camera": self.camera, "hand": self.hand, "points": points}
-        if self.sources is not None:
-            document["sources"] = [None if source is None else source.to_json() for source in self.sources]
-        return document
+        return document | self.describe_sources("sources")
+
+    def describe_sources(self, member: str) -> dict:
+        """A member of a JSON object that says where each joint came from; none where nobody noted it."""
+        if self.sources is None:
+            return {}
+        return {member: [None if source is None else source.to_json() for source in self.sources]}
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,12 +136,13 @@ def _parse_item(node: Node, order: list[int]) -> Annotation:
         if points[i, 2] not in (0, 1, 2):
             cells[2].fail("0 (absent), 1 (occluded) or 2 (visible)")
     frame = node.get("frame").integer(0, 10**9)
-    sources = _parse_sources(node.get("sources"), order) if node.has("sources") else None
+    sources = parse_sources(node.get("sources"), order) if node.has("sources") else None
     camera, hand = node.get("camera").text(64), node.get("hand").choice("right", "left")
     return Annotation(frame, camera, hand, points[order], sources)
 
 
-def _parse_sources(node: Node, order: list[int]) -> JointSources:
+def parse_sources(node: Node, order: Sequence[int]) -> JointSources:
+    """Where joints came from, null by hand; `order` has for each of our joints its place in the file."""
     found = [parse_source(item) for item in node.items(21)]
     if len(found) != 21:
         needed = "needed 21, null where a joint was placed by hand"

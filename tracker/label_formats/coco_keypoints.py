@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tracker.capture.annotations import Annotation
+from tracker.capture.annotations import Annotation, parse_sources
 from tracker.capture.document import Node
 from tracker.errors import AnnotationError
 from tracker.label_formats.coco_images import MAX_ANNOTATIONS, MAX_ID, list_images, read_images
@@ -35,6 +35,8 @@ PIXEL_CENTRE = 0.0
 """Coordinate of the centre of the top-left pixel in `keypoints`."""
 BOX_CENTRE = 0.5
 """The same in `bbox`."""
+SOURCES = "joint_sources"
+"""Our own member of an annotation: where each joint came from, as in annotations.json. Other programs pass it over."""
 CATEGORIES = {"right": 1, "left": 2}
 
 
@@ -55,6 +57,7 @@ def write_coco_keypoints(sets: list[LabelSet]) -> ExportedLabels:
                     "keypoints": write_points(own.points),
                     "num_keypoints": int((own.points[:, 2] > 0).sum()),
                     **describe_box(own.points),
+                    **own.describe_sources(SOURCES),
                 }
             )
     categories = [
@@ -117,7 +120,8 @@ def read_coco_keypoints(files: dict[str, bytes], sets: list[LabelSet], hints: Im
             points = read_points(item.get("keypoints"), hints)
             ours = np.zeros((len(HAND_JOINTS), 3))
             ours[order] = points
-            collector.add(key, Annotation(frame, camera, hand, ours))
+            sources = parse_sources(item.get(SOURCES), np.argsort(order).tolist()) if item.has(SOURCES) else None
+            collector.add(key, Annotation(frame, camera, hand, ours, sources))
     return collector.finish()
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tracker.capture.annotations import Annotation
+from tracker.capture.annotations import Annotation, parse_sources
 from tracker.capture.document import Node
 from tracker.label_formats.coco_images import MAX_ANNOTATIONS, MAX_ID, list_images, read_images
 from tracker.label_formats.coco_keypoints import describe_box, read_points, write_points
@@ -76,7 +76,9 @@ def _write_person(id_: int, image_id: int, hands: list[Annotation]) -> dict[str,
         **{name: [0] * (3 * count) for name, count in OTHERS.items()},
     }
     for side in ("left", "right"):
-        points = next((hand.points for hand in hands if hand.hand == side), np.zeros((21, 3)))
+        own = next((hand for hand in hands if hand.hand == side), None)
+        points = np.zeros((21, 3)) if own is None else own.points
+        person |= {} if own is None else own.describe_sources(f"{side}hand_sources")
         person[f"{side}hand_valid"] = bool((points[:, 2] > 0).any())
         person[f"{side}hand_box"] = describe_box(points)["bbox"]
         person[f"{side}hand_kpts"] = write_points(to_order(points, "coco_wholebody"))
@@ -105,7 +107,9 @@ def read_coco_wholebody(files: dict[str, bytes], sets: list[LabelSet], hints: Im
             _note_floats(kpts, collector)
             points = from_order(read_points(kpts, hints, float_visibility=True), "coco_wholebody")
             if (points[:, 2] > 0).any():
-                collector.add(key, Annotation(frame, camera, side, points))
+                member = f"{side}hand_sources"  # our own; in our order, which is OpenPose's
+                sources = parse_sources(item.get(member), range(21)) if item.has(member) else None
+                collector.add(key, Annotation(frame, camera, side, points, sources))
         if item.has("num_keypoints") and item.get("num_keypoints").integer(0, 10**6):
             collector.warnings.add("{n} people have a body, which was left out")
     return collector.finish()

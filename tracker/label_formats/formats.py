@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
+from tracker.capture.source_choice import ALL, count_origins, describe_origin, is_independent, keep_joints, say_left_out
 from tracker.errors import AnnotationError
 from tracker.label_formats.coco_keypoints import read_coco_keypoints, write_coco_keypoints
 from tracker.label_formats.coco_wholebody import read_coco_wholebody, write_coco_wholebody
@@ -28,6 +29,7 @@ class LabelFormat:
         file: Name of an export; `.zip` when it is several files.
         several: Whether one export can hold several recordings.
         needs_3d: Whether it holds 3D joints and nothing else.
+        carries_sources: Whether it says of each joint where it came from.
     """
 
     name: str
@@ -39,6 +41,7 @@ class LabelFormat:
     read: Callable[[dict[str, bytes], list[LabelSet], ImportHints], ImportedLabels]
     several: bool = False
     needs_3d: bool = False
+    carries_sources: bool = False
 
 
 _OUTSIDE = "joints outside the image become joints that nobody looked at"
@@ -52,6 +55,7 @@ _FORMATS = (
         "annotations.json",
         write_handloom,
         read_handloom,
+        carries_sources=True,
     ),
     LabelFormat(
         "coco_keypoints",
@@ -62,6 +66,7 @@ _FORMATS = (
         write_coco_keypoints,
         read_coco_keypoints,
         several=True,
+        carries_sources=True,
     ),
     LabelFormat(
         "coco_wholebody",
@@ -72,6 +77,7 @@ _FORMATS = (
         write_coco_wholebody,
         read_coco_wholebody,
         several=True,
+        carries_sources=True,
     ),
     LabelFormat(
         "freihand",
@@ -127,13 +133,34 @@ def find_label_format(name: str) -> LabelFormat:
     return LABEL_FORMATS[name]
 
 
-def export_labels(name: str, sets: list[LabelSet]) -> ExportedLabels:
-    """Files of the labels; raises when there is nothing that the format could hold."""
+def export_labels(name: str, sets: list[LabelSet], sources: Sequence[str] = (ALL,)) -> ExportedLabels:
+    """Files of the labels, with the joints that came from one of `sources` (SOURCE_CHOICES).
+
+    Raises when there is nothing that the format could hold.
+    """
     format_ = find_label_format(name)
     if len(sets) != 1 and not format_.several:
         several = ", ".join(item.name for item in _FORMATS if item.several)
         raise AnnotationError(f"{format_.title} holds one recording a file; {several} hold several.")
-    return format_.write(sets)
+    kept = [keep_joints(item.annotations, sources) for item in sets]
+    left_out = say_left_out(pair for _, gone in kept for pair in gone)
+    chosen = [replace(item, annotations=found) for item, (found, _) in zip(sets, kept, strict=True)]
+    made = format_.write(chosen)
+    notes = [left_out, "" if format_.carries_sources else _note_sources(chosen, format_.title)]
+    return replace(made, notes=(*(note for note in notes if note), *made.notes))
+
+
+def _note_sources(sets: list[LabelSet], title: str) -> str:
+    """That a format does not say where joints came from, where that matters."""
+    words = count_origins(
+        describe_origin(item.sources, joint)
+        for one in sets
+        for item in one.annotations.items
+        for joint, source in enumerate(item.sources or ())
+        if item.points[joint, 2] > 0 and not is_independent(source)
+    )
+    told = ", ".join(f"{count} {word}" for word, count in words)
+    return f"{title} does not say where joints came from: {told}." if words else ""
 
 
 def import_labels(

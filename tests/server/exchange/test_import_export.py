@@ -290,3 +290,48 @@ def test_finished_work_is_left_as_it_is_and_the_report_says_why(studio: Studio, 
     refused = studio.client.post(f"{API}/snapshots/{old['id']}/restore")
     assert refused.status_code == 403 and "is finished" in refused.json()["detail"]
     assert get_labels(studio.client, sequence)[0, "right"] == make_points(12.0)
+
+
+TRACKED = {"kind": "track", "label": "Track 1"}
+FITTED = {"kind": "fit", "label": "model fit of 7 joints"}
+
+
+def put_mixed(studio: Studio, sequence: dict[str, Any]) -> None:
+    """Frame 0: five joints accepted from a track, one from a fit, the others by hand. Frame 1: all from the track."""
+    for frame, sources in ((0, [TRACKED] * 5 + [FITTED] + [None] * 15), (1, [TRACKED] * 21)):
+        body = {"points": make_points(), "sources": sources, "operation_id": str(uuid.uuid4())}
+        place = f"{API}/sequences/{sequence['id']}/annotations/cam0/{frame}/right"
+        assert studio.client.put(place, json=body, headers={"If-None-Match": "*"}).status_code == 200
+
+
+@pytest.mark.parametrize("name", ["annotations", "coco_keypoints", "coco_wholebody"])
+def test_sources_go_out_with_the_labels_and_come_back(studio: Studio, add_recording: AddRecording, name: str) -> None:
+    sequence, copy = add_recording(), add_recording("copy")
+    put_mixed(studio, sequence)
+    files = {FILES[name]: export(studio, sequence, name)}
+    assert take_in(studio.client, f"/sequences/{copy['id']}/labels", files, "keep").status_code == 200
+    back = studio.client.get(f"{API}/sequences/{copy['id']}/annotations").json()["items"]
+    kinds = [[source and source["kind"] for source in item["sources"]] for item in back]
+    assert kinds == [["track"] * 5 + ["fit"] + [None] * 15, ["track"] * 21]
+
+
+@pytest.mark.parametrize("name", FORMATS_2D)
+def test_an_export_holds_the_sources_that_were_chosen_and_says_what_it_left_out(
+    studio: Studio, add_recording: AddRecording, name: str
+) -> None:
+    sequence = add_recording()
+    put_mixed(studio, sequence)
+    address = f"{API}/sequences/{sequence['id']}/labels/export/notes"
+
+    def look(*source: str) -> tuple[int, int, str]:
+        answer = studio.client.get(address, params={"format": name, "source": source}).json()
+        return answer["items"], answer["joints"], " ".join(answer["notes"])
+
+    items, joints, notes = look("independent")
+    assert (items, joints) == (1, 15)
+    assert "27 joints are left out because of where they came from: 26 accepted from Track 1, 1 accepted" in notes
+    assert look("hand", "fit")[:2] == (1, 16)
+    everything = studio.client.get(address, params={"format": name}).json()
+    assert (everything["items"], everything["joints"]) == (2, 42)
+    said = any("does not say where joints came from: 26 accepted from Track 1" in note for note in everything["notes"])
+    assert said == (name in ("deeplabcut", "t16"))

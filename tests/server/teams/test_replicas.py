@@ -72,6 +72,35 @@ def test_machines_do_not_suggest_to_who_marks_blindly(lead, ann, bob, tracked) -
     assert ann.send("POST", f"/sequences/{sequence}/suggestions/cam0/2/right/fit", fit).status_code == 403
 
 
+def test_two_who_accepted_the_same_suggestion_do_not_agree(project, ann, bob, lead) -> None:
+    made = project.replicate([ann, bob], [2, 5])
+    accepted = {"kind": "interpolation", "label": "key frames 1 and 9"}
+    for person, x in ((ann, 10.0), (bob, 13.0)):
+        mine = assignments_of(person, made)
+        for frame, sources in ((2, [None] * 20 + [accepted]), (5, [accepted] * 21)):
+            by_hand = x if frame == 2 else 5.0
+            points = [[by_hand if source is None else 5.0, 2 + 0.9 * joint, 2] for joint, source in enumerate(sources)]
+            body = {"points": points, "sources": sources, "operation_id": str(uuid.uuid4())}
+            place = f"/sequences/{project.sequence}/annotations/cam0/{frame}/right"
+            options = {"headers": {"If-None-Match": "*"}, "params": {"replica": mine["id"]}}
+            assert person.send("PUT", place, body, **options).status_code == 200
+        person.act(mine, "submit")
+    path = f"/replica-sets/{made['id']}/agreement"
+    report = lead.get(path)
+    assert report["overall"]["samples"] == 2 * 20 and report["pairs"][0]["joints"] == 20
+    assert report["pairs"][0]["mean_px"] == pytest.approx(3.0)
+    assert (report["left_out_joints"], report["source"]) == (2 * 22, ["independent"])
+    words = "interpolated between key frames and not known to be free of a track"
+    assert {one["words"]: one["joints"] for one in report["sources"]} == {"placed by hand": 40, words: 44}
+    everything = lead.get(path, source="all")
+    assert everything["overall"]["samples"] == 2 * 42 and everything["left_out_joints"] == 0
+    assert (
+        f"44 joints are left out because of where they came from: 44 {words}." in lead.send("GET", f"{path}.html").text
+    )
+    rows = list(csv.DictReader(io.StringIO(lead.send("GET", f"{path}.csv").text)))
+    assert ("left out", words, "44") in {(row["of"], row["item"], row["samples"]) for row in rows}
+
+
 def test_replicas_hold_their_places_only_and_lock_like_other_work(project, ann, bob) -> None:
     made = project.replicate([ann, bob], [2, 5])
     mine = assignments_of(ann, made)

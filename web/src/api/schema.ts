@@ -3185,6 +3185,11 @@ export interface components {
             /** Joints */
             joints: components["schemas"]["AgreementJoint"][];
             /**
+             * Left Out Joints
+             * @description Placed joints that do not count because of where they came from.
+             */
+            left_out_joints: number;
+            /**
              * Made At
              * Format: date-time
              */
@@ -3216,6 +3221,16 @@ export interface components {
              * Format: uuid
              */
             sequence_id: string;
+            /**
+             * Source
+             * @description Joints that count, as asked for.
+             */
+            source: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+            /**
+             * Sources
+             * @description Where the joints came from that count, or are left out.
+             */
+            sources: components["schemas"]["JointsOfSource"][];
             /** States */
             states: {
                 [key: string]: components["schemas"]["SpreadOut"];
@@ -4973,7 +4988,7 @@ export interface components {
         JointsOfSource: {
             /**
              * Is Counted
-             * @description They judge; otherwise they are left out because of where they came from.
+             * @description They count; otherwise they are left out because of where they came from.
              */
             is_counted: boolean;
             /** Joints */
@@ -5155,6 +5170,11 @@ export interface components {
          * @description A format that labels can be exported to and imported from.
          */
         LabelFormatOut: {
+            /**
+             * Carries Sources
+             * @description Whether it says of each joint where it came from.
+             */
+            carries_sources: boolean;
             /**
              * File
              * @description Name of an export.
@@ -9949,7 +9969,7 @@ export interface operations {
                 camera?: string;
                 /** @description This hand alone. */
                 hand?: ("right" | "left") | null;
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
                 source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
                 /** @description Joints marked so alone. */
                 visibility?: ("visible" | "occluded") | null;
@@ -10037,7 +10057,7 @@ export interface operations {
                 camera?: string;
                 /** @description This hand alone. */
                 hand?: ("right" | "left") | null;
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
                 source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
                 /** @description Joints marked so alone. */
                 visibility?: ("visible" | "occluded") | null;
@@ -12725,6 +12745,8 @@ export interface operations {
                 format: string;
                 /** @description Each once. */
                 sequence_id: string[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path?: never;
@@ -14820,7 +14842,10 @@ export interface operations {
     };
     get_agreement: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+            };
             header?: never;
             path: {
                 replica_set_id: string;
@@ -14887,7 +14912,10 @@ export interface operations {
     };
     get_agreement_csv: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+            };
             header?: never;
             path: {
                 replica_set_id: string;
@@ -14954,7 +14982,10 @@ export interface operations {
     };
     get_agreement_page: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+            };
             header?: never;
             path: {
                 replica_set_id: string;
@@ -17508,6 +17539,8 @@ export interface operations {
                 snapshot_id?: string | null;
                 /** @description For formats in 3D: take the joints in space from this track of the recording. */
                 track_id?: string | null;
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path: {
@@ -17591,6 +17624,8 @@ export interface operations {
                 snapshot_id?: string | null;
                 /** @description For formats in 3D: take the joints in space from this track of the recording. */
                 track_id?: string | null;
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path: {
@@ -19162,7 +19197,7 @@ export interface operations {
     get_track_evaluation: {
         parameters: {
             query?: {
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
                 source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
@@ -19234,7 +19269,7 @@ export interface operations {
     get_evaluation_picture: {
         parameters: {
             query?: {
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent` (without this parameter): no track had a part in it, so that no track judges itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
                 source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;

@@ -6,7 +6,7 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictBool
 
 from server.accounts.models import Role
 
@@ -36,6 +36,9 @@ Name = Annotated[str, Field(min_length=1, max_length=200), AfterValidator(_refus
 Password = Annotated[str, Field(max_length=1000, description="10 to 200 characters; a few words in a row do.")]
 
 
+NewPassword = Annotated[Password, Field(json_schema_extra={"minLength": 10, "maxLength": 200})]
+
+
 class LoginIn(BaseModel):
     """A name and a password."""
 
@@ -47,14 +50,14 @@ class CodeIn(BaseModel):
     """A one-time code and the password that it sets."""
 
     code: Annotated[str, Field(min_length=1, max_length=200)]
-    password: Password
+    password: NewPassword
 
 
 class PasswordIn(BaseModel):
     """A new password of one's own."""
 
     current: Annotated[str, Field(max_length=1000, description="Empty where there is none yet.")] = ""
-    new: Password
+    new: NewPassword
 
 
 class LoginOut(BaseModel):
@@ -74,7 +77,7 @@ class TokenIn(BaseModel):
     """A token to be made."""
 
     name: Name
-    may_write: bool = Field(default=False, description="False: it may only read.")
+    may_write: StrictBool = Field(default=False, description="False: it may only read.")
     days: Annotated[float, Field(gt=0, le=3650)] | None = Field(default=90, description="null: never expires.")
 
 
@@ -110,7 +113,7 @@ class PersonPatch(BaseModel):
     """What is to be changed of an account."""
 
     role: Role | None = None
-    is_disabled: bool | None = None
+    is_disabled: StrictBool | None = None
 
 
 class PersonOut(BaseModel):

@@ -6,15 +6,19 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
 from server.annotations.models import Act
+from server.database.texts import LongLabel
 from server.errors import ErrorBody
 
 Hand = Literal["right", "left"]
 Pixel = Annotated[float, Field(strict=True, ge=-1e6, le=1e6, allow_inf_nan=False)]
 Visibility = Literal[0, 1, 2]
-Point = tuple[Pixel, Pixel, Visibility]
+Point = Annotated[
+    tuple[Pixel, Pixel, Visibility],
+    WithJsonSchema({"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, mode="serialization"),
+]
 Points = Annotated[
     list[Point],
     Field(
@@ -26,24 +30,15 @@ Points = Annotated[
 ]
 
 
-def _check_label(text: str) -> str:
-    if not text.isprintable():
-        raise ValueError("it needs printable characters")
-    return text
-
-
-SourceText = Annotated[str, Field(max_length=200), AfterValidator(_check_label)]
-
-
 class JointSourceOut(BaseModel):
     """What somebody accepted for a joint instead of placing it."""
 
     model_config = ConfigDict(title="JointSource", extra="forbid")
 
     kind: Literal["track", "fit", "triangulation", "interpolation", "copy", "import"]
-    label: SourceText = Field(default="", description="For people.", examples=["Track 2", "model fit of 7 joints"])
+    label: LongLabel = Field(default="", description="For people.", examples=["Track 2", "model fit of 7 joints"])
     track_id: uuid.UUID | None = None
-    model: SourceText = Field(default="", description="The hand model behind it.")
+    model: LongLabel = Field(default="", description="The hand model behind it.")
     is_independent: bool = Field(
         default=False,
         description="Of a triangulation, an interpolation or a copy: no track and no model fit had a part in any joint "

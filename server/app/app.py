@@ -14,9 +14,11 @@ from starlette.routing import BaseRoute
 
 from server.accounts.tries import FailedTries
 from server.app.browser_app import BrowserApp
+from server.app.document import DocumentedApp
 from server.app.door import Door
 from server.app.error_handler import install_error_handler
 from server.app.guard import Guard
+from server.app.methods import Methods
 from server.app.parts import (
     LIFESPANS,
     PAGE_ROUTERS,
@@ -41,7 +43,7 @@ API = "/api/v1"
 def create_app(settings: Settings | None = None) -> FastAPI:
     """The whole application. Its tables are brought up to date when it starts, not here."""
     settings = settings or Settings()
-    app = FastAPI(
+    app = DocumentedApp(
         title="Handloom",
         version="1",
         description="A studio that captures hands in action: recordings, annotations, tracking, scans, hand models.",
@@ -59,6 +61,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     install_error_handler(app)
     app.router.routes.extend(_routes())
     app.router.default = BrowserApp(settings.web_dist)  # what no route takes
+    app.add_middleware(Methods, prefix=API, routers=ROUTERS)
     app.add_middleware(Door, settings=settings)
     app.add_middleware(Guard, settings=settings)  # added last, so it stands outermost
     return app
@@ -69,7 +72,7 @@ def _routes() -> tuple[BaseRoute, ...]:
     """Of all rooms; apps of a process share them, because to read what their functions take is a third of a second."""
     whole = APIRouter(generate_unique_id_function=_operation_id)
     for router in ROUTERS:
-        whole.include_router(router, prefix=API, responses=error_responses(401, 403, 500))
+        whole.include_router(router, prefix=API, responses=error_responses(401, 403, 404, 500, 503, 507))
     for router in PAGE_ROUTERS:
         whole.include_router(router)
     return tuple(whole.routes)

@@ -39,6 +39,8 @@ def answer_error(request: Request, error: Exception) -> Response:
         return _answer(422, type(error).__name__, detail)
     if isinstance(error, RequestValidationError):
         return _answer(422, "InvalidError", describe_faults(error.errors()))
+    if isinstance(error, HTTPException) and error.status_code == 400:  # FastAPI's word for a body that is no text
+        return _answer(422, "InvalidError", f"The body of the request cannot be read: needed {_needed(request)}.")
     if isinstance(error, HTTPException):
         name = _NAMES.get(error.status_code, "RequestError")
         detail = str(error.detail)
@@ -80,6 +82,12 @@ def describe_faults(faults: Sequence[Any]) -> str:
     if len(faults) > 5:
         sentences.append(f"And {len(faults) - 5} more.")
     return " ".join(sentences)
+
+
+def _needed(request: Request) -> str:
+    if request.headers.get("content-type", "").startswith("multipart/"):
+        return "a form as browsers send it, its boundary as in Content-Type"
+    return "JSON in UTF-8"
 
 
 def _answer(status: int, error: str, detail: str, headers: dict[str, str] | None = None) -> Response:

@@ -7,14 +7,23 @@ import binascii
 import json
 import uuid
 from datetime import datetime
-from typing import Annotated, Generic, TypeVar
+from typing import Annotated, Any, Generic, TypeVar
 
 from fastapi import Query
 from pydantic import BaseModel, Field
 
-from server.errors import InvalidError
+from server.errors import NotFoundError
 
 Item = TypeVar("Item")
+
+
+class UnknownCursorError(NotFoundError):
+    """No page of the list begins so."""
+
+    def __init__(self, cursor: str) -> None:
+        super().__init__(
+            f"The cursor {cursor[:80]!r} is none of ours. Give the `next_cursor` of a page, or none for the first page."
+        )
 
 
 class Page(BaseModel, Generic[Item]):
@@ -24,7 +33,9 @@ class Page(BaseModel, Generic[Item]):
     next_cursor: str | None = Field(description="For `?cursor=` to get what follows; null at the end.")
 
 
-Cursor = Annotated[str | None, Query(description="`next_cursor` of the page before.", max_length=1000)]
+Cursor = Annotated[
+    str | None, Query(description="`next_cursor` of the page before.", max_length=1000, pattern="^[A-Za-z0-9_-]+$")
+]
 Limit = Annotated[int, Query(description="Most items of a page.", ge=1, le=1000)]
 
 
@@ -39,9 +50,16 @@ def read_cursor(cursor: str, *kinds: type) -> list:
         place = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
     except (ValueError, binascii.Error, RecursionError):
         place = None
-    if not isinstance(place, list) or [type(part) for part in place] != list(kinds):
-        raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours. Give the `next_cursor` of a page, or none.")
+    if not isinstance(place, list) or [type(part) for part in place] != list(kinds) or not all(map(_is_sound, place)):
+        raise UnknownCursorError(cursor)
     return place
+
+
+def _is_sound(part: Any) -> bool:
+    """Whether a database compares it: no number beyond all, no half a character."""
+    if isinstance(part, str):
+        return "\0" not in part and not any("\ud800" <= letter <= "\udfff" for letter in part)
+    return abs(part) < 2**31  # false of NaN, too
 
 
 def read_moment_cursor(cursor: str) -> tuple[datetime, uuid.UUID]:
@@ -52,5 +70,14 @@ def read_moment_cursor(cursor: str) -> tuple[datetime, uuid.UUID]:
     except ValueError:
         place = None
     if place is None or place[0].tzinfo is None:
-        raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours. Give the `next_cursor` of a page, or none.")
+        raise UnknownCursorError(cursor)
     return place
+
+
+def read_id_cursor(cursor: str, kind: type) -> tuple[Any, uuid.UUID]:
+    """The place in a list ordered by something of this kind and an id, written as `write_cursor(it, str(id))`."""
+    first, id_ = read_cursor(cursor, kind, str)
+    try:
+        return first, uuid.UUID(id_)
+    except ValueError:
+        raise UnknownCursorError(cursor) from None

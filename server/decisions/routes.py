@@ -7,6 +7,7 @@ from datetime import UTC, datetime, time
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
+from pydantic import AwareDatetime, BeforeValidator
 
 from server.accounts.audit import record_act
 from server.accounts.service import AccountIdDep, CurrentAccount, LeadAccount, ReviewerAccount
@@ -26,7 +27,7 @@ from server.decisions.schemas import (
     SecondReviewAsked,
     Throughput,
 )
-from server.errors import InvalidError, error_responses
+from server.errors import error_responses
 from server.registrations.models import RegistrationRow
 from server.registrations.service import describe_registrations, get_registration
 
@@ -91,15 +92,22 @@ def list_reasons() -> Page[ReasonOut]:
     return Page(items=items, next_cursor=None)
 
 
+def _check_moment(text: str) -> str:
+    if "T" not in text.upper():  # pydantic takes a number for seconds since 1970
+        raise ValueError("needed a day, a time and their zone, as in 2026-01-31T00:00:00Z")
+    return text
+
+
+Moment = Annotated[AwareDatetime, BeforeValidator(_check_moment)]
+
+
 @router.get("/curation/throughput")
 def get_throughput(
     session: SessionDep,
-    since: Annotated[datetime | None, Query(description="With its zone; without one, midnight UTC.")] = None,
+    since: Annotated[Moment | None, Query(description="Left out: midnight UTC.")] = None,
 ) -> Throughput:
     """How many registrations everybody decided about, and how fast."""
     since = since or datetime.combine(utc_now().date(), time(), UTC)
-    if since.tzinfo is None:
-        raise InvalidError(f"since is {since.isoformat()}; it needs its zone, as in 2026-01-31T00:00:00Z.")
     return review.measure_throughput(session, since)
 
 

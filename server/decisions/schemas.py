@@ -6,7 +6,7 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictBool
 
 from server.registrations.schemas import RegistrationOut, Standing
 
@@ -22,6 +22,9 @@ REASONS: dict[str, str] = {
     "other": "Other",
 }
 """Reasons to reject, in the order of the keys 1 to 9."""
+
+
+Reason = Annotated[str, Field(json_schema_extra={"enum": list(REASONS)})]
 
 
 def _check_text(text: str) -> str:
@@ -51,7 +54,9 @@ class DecisionMake(BaseModel):
 
     decision: Standing
     reasons: Annotated[
-        list[Annotated[str, Field(max_length=40)]], Field(max_length=9), AfterValidator(_check_reasons)
+        list[Reason],
+        Field(max_length=9),
+        AfterValidator(_check_reasons),
     ] = Field(default_factory=list, description="Names from `/curation/reasons`.")
     note: Annotated[str, Field(max_length=2000), AfterValidator(_check_text)] = ""
     seconds: float | None = Field(
@@ -105,7 +110,7 @@ class SecondReviewAsk(BaseModel):
 
     collection: Annotated[str, Field(max_length=200)] | None = Field(default=None, description="Null: of all.")
     share: float = Field(default=1.0, gt=0, le=1, allow_inf_nan=False, description="Of the registrations there are.")
-    only_decided: bool = Field(default=False, description="Only of those that somebody has decided about.")
+    only_decided: StrictBool = Field(default=False, description="Only of those that somebody has decided about.")
 
 
 class SecondReviewAsked(BaseModel):

@@ -41,7 +41,7 @@ def choose_tracks(session: Session, query: EvaluationQuery) -> list[Chosen]:
     if len(tracks) > MAX_TRACKS:
         raise InvalidError(f"These are {len(tracks)} tracks; at most {MAX_TRACKS} can be compared. Name fewer.")
     if query.reference is not None and query.reference not in {row.id for row in tracks}:
-        raise InvalidError(f"The reference {query.reference} is none of the {len(tracks)} tracks that are compared.")
+        raise NotFoundError(f"The reference {query.reference} is none of the {len(tracks)} tracks that are compared.")
     snapshots = find_snapshots(session, query.snapshot)
     sequences: dict[uuid.UUID, SequenceRow] = {}
     labels: dict[uuid.UUID, LabelsId] = {}

@@ -68,7 +68,14 @@ TrackQuery = Annotated[
 SourceQuery = Annotated[list[SourceChoice], Query(min_length=1, max_length=10, description=SOURCES_HELP)]
 ALL: list[SourceChoice] = ["all"]
 SequencesQuery = Annotated[
-    list[uuid.UUID], Query(alias="sequence_id", min_length=1, max_length=MAX_RECORDINGS, description="Each once.")
+    list[uuid.UUID],
+    Query(
+        alias="sequence_id",
+        min_length=1,
+        max_length=MAX_RECORDINGS,
+        description="Each once.",
+        json_schema_extra={"uniqueItems": True},
+    ),
 ]
 
 

@@ -9,7 +9,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from server.annotations.schemas import Hand
-from server.sequences.schemas import Name
+from server.database.texts import Name
 
 Policy = Literal["keep", "replace"]
 

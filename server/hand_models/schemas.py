@@ -4,16 +4,11 @@ from __future__ import annotations
 
 import uuid
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import AfterValidator, BaseModel, Field
+from pydantic import BaseModel, Field
 
-
-def _check_name(name: str) -> str:
-    name = name.strip()
-    if not name or not name.isprintable():
-        raise ValueError("a name needs 1 to 200 printable characters")
-    return name
+from server.database.texts import Name
 
 
 class HandSkeleton(BaseModel):
@@ -56,7 +51,7 @@ class HandModelOut(BaseModel):
 class HandModelOptions(BaseModel):
     """What the file of a model does not tell."""
 
-    name: Annotated[str, Field(max_length=200), AfterValidator(_check_name)] | None = None
+    name: Name | None = None
     side: Literal["right", "left"] | None = None
 
 

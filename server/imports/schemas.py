@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from server.sequences.schemas import Name
+from server.database.texts import Name
 
 State = Literal["checked", "refused", "confirmed"]
 Options = dict[str, Any]

@@ -6,9 +6,9 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, StrictBool
 
-from server.scans.schemas import Label, Name
+from server.database.texts import Label, Name
 
 JobKind = Literal["track", "register", "train", "loop"]
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
@@ -54,8 +54,8 @@ class TrainingParams(BaseModel):
         description="Shape directions of parts of the hand that follow them, at most: they fit people unlike those "
         "learnt from.",
     )
-    with_pose_shapes: bool = Field(default=True, description="Without: plain linear blend skinning.")
-    with_mirrored: bool = Field(default=True, description="Learn from left hands too, mirrored.")
+    with_pose_shapes: StrictBool = Field(default=True, description="Without: plain linear blend skinning.")
+    with_mirrored: StrictBool = Field(default=True, description="Learn from left hands too, mirrored.")
 
 
 Evaluate = Annotated[

@@ -11,8 +11,8 @@ import numpy as np
 from sqlalchemy import ColumnElement, Select, and_, func, not_, or_, select, tuple_, update
 from sqlalchemy.orm import Session
 
-from server.database.paging import read_cursor, read_moment_cursor, write_cursor
-from server.errors import InvalidError, NotFoundError
+from server.database.paging import read_id_cursor, read_moment_cursor, write_cursor
+from server.errors import NotFoundError
 from server.hand_models.models import HandModelRow
 from server.registrations.models import RegistrationRow
 from server.registrations.schemas import (
@@ -118,11 +118,7 @@ def list_registrations(
 def _read_place(cursor: str, order: Order) -> tuple[Any, uuid.UUID]:
     if order == "newest":
         return read_moment_cursor(cursor)
-    badness, id_ = read_cursor(cursor, float, str)
-    try:
-        return badness, uuid.UUID(id_)
-    except ValueError:
-        raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours.") from None
+    return read_id_cursor(cursor, float)
 
 
 def count_registrations(session: Session, wanted: RegistrationFilter, account_id: uuid.UUID) -> RegistrationCounts:

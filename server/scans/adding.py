@@ -21,10 +21,11 @@ from sqlalchemy.orm import Session
 
 from server.accounts.audit import record_act
 from server.database import Database
+from server.database.texts import Label, Name
 from server.errors import InvalidError, StudioError
 from server.scans.cropping import find_flags
 from server.scans.models import ScanRow
-from server.scans.schemas import Label, Name, ScanCrop, ScanRefusal, Side, UnitScale
+from server.scans.schemas import ScanCrop, ScanRefusal, Side, UnitScale
 from server.scans.service import AREA
 from server.storage import Storage
 from server.storage.digest import compute_digest

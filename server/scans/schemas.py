@@ -6,7 +6,9 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, StrictBool
+
+from server.database.texts import Label, Name
 
 Side = Literal["right", "left"]
 State = Literal["new", "registered", "failed"]
@@ -16,22 +18,6 @@ MOST_STROKES = 200
 MOST_CORNERS = 2000
 
 
-def _check_label(text: str) -> str:
-    text = text.strip()
-    if not text.isprintable():
-        raise ValueError("needed printable characters")
-    return text
-
-
-def _check_name(text: str) -> str:
-    text = _check_label(text)
-    if not text:
-        raise ValueError("a name needs 1 to 200 printable characters")
-    return text
-
-
-Name = Annotated[str, Field(max_length=200), AfterValidator(_check_name)]
-Label = Annotated[str, Field(max_length=100), AfterValidator(_check_label)]
 Finite = Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9)]
 UnitScale = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
 
@@ -152,7 +138,7 @@ class ScanCrop(BaseModel):
     strokes: list[Stroke] = Field(
         max_length=MOST_STROKES, description="All of them; an empty list takes the crop back."
     )
-    drops_objects: bool = Field(
+    drops_objects: StrictBool = Field(
         default=True, description="Leave out points of an object painted green too: G > max(R, 20), [R17] 3.1."
     )
 

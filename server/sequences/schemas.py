@@ -8,6 +8,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from server.database.texts import Name
+
 Hand = Literal["right", "left"]
 
 
@@ -63,20 +65,15 @@ class SequenceOut(BaseModel):
     best_track: BestTrack | None = None
 
 
-def _check_name(name: str) -> str:
-    name = name.strip()
-    if not name or not name.isprintable():
-        raise ValueError("a name needs 1 to 200 printable characters")
-    return name
-
-
 def _check_hands(hands: list[Hand]) -> list[Hand]:
     if len(set(hands)) != len(hands):
         raise ValueError("each hand once")
     return hands
 
 
-Name = Annotated[str, Field(max_length=200), AfterValidator(_check_name)]
+Hands = Annotated[
+    list[Hand], Field(max_length=2, json_schema_extra={"uniqueItems": True}), AfterValidator(_check_hands)
+]
 
 
 class SequencePatch(BaseModel):
@@ -85,4 +82,4 @@ class SequencePatch(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     name: Name | None = None
-    hands: Annotated[list[Hand], Field(max_length=2), AfterValidator(_check_hands)] | None = None
+    hands: Hands | None = None

@@ -5,15 +5,14 @@ from __future__ import annotations
 import dataclasses
 import uuid
 from collections.abc import Sequence as Many
-from datetime import datetime
 from typing import Any
 
 from sqlalchemy import select, tuple_, update
 from sqlalchemy.orm import Session
 
 from server.database import utc_now
-from server.database.paging import read_cursor, write_cursor
-from server.errors import ConflictError, InvalidError, NotFoundError
+from server.database.paging import read_moment_cursor, write_cursor
+from server.errors import ConflictError, NotFoundError
 from server.sequences.content_key import compute_content_key
 from server.sequences.depth_range import measure_depth_range
 from server.sequences.models import SequenceRow
@@ -73,24 +72,13 @@ def list_sequences(
     for word in (search or "").split():
         query = query.where(SequenceRow.name.icontains(word, autoescape=True))
     if cursor is not None:
-        query = query.where(tuple_(SequenceRow.created_at, SequenceRow.id) < _read_place(cursor))
+        query = query.where(tuple_(SequenceRow.created_at, SequenceRow.id) < read_moment_cursor(cursor))
     query = query.order_by(SequenceRow.created_at.desc(), SequenceRow.id.desc()).limit(limit + 1)
     rows = session.scalars(query).all()
     if len(rows) <= limit:
         return rows, None
     last = rows[limit - 1]
     return rows[:limit], write_cursor(last.created_at.isoformat(), str(last.id))
-
-
-def _read_place(cursor: str) -> tuple[Any, Any]:
-    moment, id_ = read_cursor(cursor, str, str)
-    try:
-        place = datetime.fromisoformat(moment), uuid.UUID(id_)
-    except ValueError:
-        raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours.") from None
-    if place[0].tzinfo is None:
-        raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours.")
-    return place
 
 
 def get_sequence(session: Session, id_: uuid.UUID, *, deleted_too: bool = False) -> SequenceRow:

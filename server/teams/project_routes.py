@@ -12,9 +12,9 @@ from sqlalchemy.orm import Session
 from server.accounts.models import Account
 from server.accounts.service import CurrentAccount, LeadAccount
 from server.database import SessionDep
-from server.database.paging import Cursor, Limit, Page, read_cursor, write_cursor
+from server.database.paging import Cursor, Limit, Page, read_id_cursor, write_cursor
 from server.database.revision import IfMatch, read_if_match, write_etag
-from server.errors import ConflictError, InvalidError, error_responses
+from server.errors import ConflictError, error_responses
 from server.sequences.service import get_sequence
 from server.teams import projects
 from server.teams.models import ProjectRow
@@ -30,12 +30,7 @@ def list_people(
     """Everybody who can be given work, by name."""
     query = select(Account).where(Account.disabled_at.is_(None))
     if cursor is not None:
-        name, id_ = read_cursor(cursor, str, str)
-        try:
-            place = name, uuid.UUID(id_)
-        except ValueError:
-            raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours.") from None
-        query = query.where(tuple_(Account.name, Account.id) > place)
+        query = query.where(tuple_(Account.name, Account.id) > read_id_cursor(cursor, str))
     rows = session.scalars(query.order_by(Account.name, Account.id).limit(limit + 1)).all()
     items = [Person(id=row.id, name=row.name, role=row.role) for row in rows[:limit]]
     return Page(items=items, next_cursor=write_cursor(items[-1].name, str(items[-1].id)) if len(rows) > limit else None)

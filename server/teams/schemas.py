@@ -6,31 +6,14 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from server.accounts.models import Role
+from server.database.texts import Name, Text, Words
 from server.teams.models import AssignmentState
 
 Hand = Literal["right", "left"]
 Frame = Annotated[int, Field(ge=0, le=10**9)]
-
-
-def _check_name(name: str) -> str:
-    name = name.strip()
-    if not name or not name.isprintable():
-        raise ValueError("a name needs 1 to 200 printable characters")
-    return name
-
-
-def _check_text(text: str) -> str:
-    text = text.strip()
-    if "\x00" in text:
-        raise ValueError("a text cannot hold the character NUL")
-    return text
-
-
-Name = Annotated[str, Field(max_length=200), AfterValidator(_check_name)]
-Text = Annotated[str, Field(max_length=4000), AfterValidator(_check_text)]
 
 
 class Person(BaseModel):
@@ -156,7 +139,7 @@ class CommentMake(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    text: Annotated[Text, Field(min_length=1)]
+    text: Words
     camera: Annotated[str, Field(max_length=64)] | None = None
     frame: Frame | None = None
     hand: Hand | None = None
@@ -165,8 +148,6 @@ class CommentMake(BaseModel):
     @model_validator(mode="after")
     def check(self) -> CommentMake:
         """A joint is of a hand, a hand is in an image."""
-        if not self.text:
-            raise ValueError("a comment needs words")
         if self.joint is not None and self.hand is None:
             raise ValueError("a joint needs its hand")
         if self.hand is not None and (self.frame is None or self.camera is None):

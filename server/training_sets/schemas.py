@@ -6,9 +6,10 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, StrictBool
 
-from server.scans.schemas import Label, Name, Verdict
+from server.database.texts import Label, Name
+from server.scans.schemas import Verdict
 
 
 class TrainingRule(BaseModel):
@@ -25,7 +26,7 @@ class TrainingRule(BaseModel):
         default_factory=list, max_length=100, description="Of these collections; empty: of all."
     )
     model_id: uuid.UUID | None = Field(default=None, description="By this model only.")
-    needs_two: bool = Field(default=False, description="Only what two people accept, and nobody rejects.")
+    needs_two: StrictBool = Field(default=False, description="Only what two people accept, and nobody rejects.")
     verdicts: list[Verdict] = Field(
         default_factory=list, max_length=3, description="Only with one of these verdicts; empty: with any."
     )

@@ -16,7 +16,7 @@ from sqlalchemy.orm import Session
 
 from server.accounts.audit import record_act
 from server.accounts.service import find_names
-from server.database.paging import read_cursor, read_moment_cursor, write_cursor
+from server.database.paging import read_id_cursor, read_moment_cursor, write_cursor
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.hand_models.models import HandModelRow
 from server.registrations import service as registrations
@@ -216,12 +216,7 @@ def list_members(
         .order_by(ScanRow.name, TrainingMemberRow.id)
     )
     if cursor is not None:
-        name, id_ = read_cursor(cursor, str, str)
-        try:
-            place = name, uuid.UUID(id_)
-        except ValueError:
-            raise InvalidError(f"The cursor {cursor[:80]!r} is none of ours.") from None
-        query = query.where(tuple_(ScanRow.name, TrainingMemberRow.id) > place)
+        query = query.where(tuple_(ScanRow.name, TrainingMemberRow.id) > read_id_cursor(cursor, str))
     found = session.execute(query.limit(limit + 1)).all()
     items = [
         TrainingMember.model_validate(

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import uuid
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, StrictBool
 
 
 class Show(BaseModel):
     """Layers to show or hide; those not named stay as they are."""
 
-    cloud: bool | None = None
-    mesh: bool | None = None
-    skeleton: bool | None = None
-    correspondences: bool | dict[str, bool] | None = Field(None, description="All of them, or term by term.")
-    detections: bool | None = Field(None, description="Fingertips found in the image.")
-    collisions: bool | None = Field(None, description="Crossing triangles and penetrating vertices.")
-    contacts: bool | None = Field(None, description="Finger parts that could hold the object.")
-    distances: bool | None = Field(None, description="The meshes in colours of their distance to the data.")
-    dark: bool | None = Field(None, description="Dark ground.")
+    cloud: StrictBool | None = None
+    mesh: StrictBool | None = None
+    skeleton: StrictBool | None = None
+    correspondences: StrictBool | dict[str, StrictBool] | None = Field(
+        None, description="All of them, or term by term."
+    )
+    detections: StrictBool | None = Field(None, description="Fingertips found in the image.")
+    collisions: StrictBool | None = Field(None, description="Crossing triangles and penetrating vertices.")
+    contacts: StrictBool | None = Field(None, description="Finger parts that could hold the object.")
+    distances: StrictBool | None = Field(None, description="The meshes in colours of their distance to the data.")
+    dark: StrictBool | None = Field(None, description="Dark ground.")
 
 
 class ViewerSessionCreate(BaseModel):

@@ -184,7 +184,7 @@ def test_what_makes_no_sense_is_refused_with_the_next_step(client, tracked) -> N
 
     track = str(tracked.track_id)
     assert "There is no track" in detail(404, track=str(uuid.uuid4()))
-    assert "none of the 1 tracks" in detail(422, track=track, reference=str(uuid.uuid4()))
+    assert "none of the 1 tracks" in detail(404, track=track, reference=str(uuid.uuid4()))
     detail(422, track=[str(uuid.uuid4()) for _ in range(61)])
     detail(422, track=track, within="nan")
     detail(422, track=track, trakc="x")

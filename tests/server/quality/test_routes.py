@@ -119,6 +119,6 @@ def test_pages_give_each_flag_once_the_worst_first(client, labelled):
 
 def test_what_makes_no_sense_is_refused(client, labelled):
     assert client.get(f"{labelled}/flags", params={"kind": "ugly"}).status_code == 422
-    assert client.get(f"{labelled}/flags", params={"cursor": "abc"}).status_code == 422
+    assert client.get(f"{labelled}/flags", params={"cursor": "abc"}).status_code == 404
     assert client.get(f"/api/v1/sequences/{uuid.uuid4()}/flags").status_code == 404
     assert client.put(f"{labelled}/flags/cam0/99/right/jump/dismissal", json={"revision": 1}).status_code == 404

@@ -49,7 +49,7 @@ def test_search_wants_every_word_and_takes_wildcards_for_what_they_are(client: T
 def test_a_cursor_of_somebody_else_is_refused_in_words(client: TestClient) -> None:
     for cursor in ("x", "WzFd", "W10", "-----", "a" * 900, "WyIyMDI2IiwgIngiXQ"):
         answer = client.get("/api/v1/sequences", params={"cursor": cursor})
-        assert (answer.status_code, answer.json()["error"]) == (422, "InvalidError"), cursor
+        assert (answer.status_code, answer.json()["error"]) == (404, "UnknownCursorError"), cursor
 
 
 def test_the_second_of_two_changes_sees_the_first(client: TestClient, add_recording, studio) -> None:

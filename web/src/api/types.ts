@@ -9,13 +9,14 @@ type Schemas = components["schemas"];
 
 export type Side = Schemas["AnnotationOut"]["hand"];
 export type Camera = Schemas["SequenceCamera"];
-export type Annotation = Schemas["AnnotationOut"];
+/** Image pixels, (0, 0) at the centre of the top-left pixel; v is 0 absent, 1 occluded, 2 visible. Of answers the API's document says only that they are three numbers. */
+export type WirePoint = Schemas["AnnotationPut"]["points"][number];
+type WithPoints<T> = Omit<T, "points"> & { points: WirePoint[] };
+export type Annotation = WithPoints<Schemas["AnnotationOut"]>;
 /** What a person accepted for a joint instead of placing it. */
 export type JointSource = Pick<Schemas["JointSourceOut"], "kind"> & Partial<Schemas["JointSourceOut"]>;
 /** What one save made of it. */
-export type AnnotationRevision = Schemas["AnnotationRevision"];
-/** Image pixels, (0, 0) at the centre of the top-left pixel; v is 0 absent, 1 occluded, 2 visible. */
-export type WirePoint = Annotation["points"][number];
+export type AnnotationRevision = Omit<Schemas["AnnotationRevision"], "points"> & { points: WirePoint[] | null };
 export type Job = Schemas["JobOut"];
 export type JobState = Job["state"];
 export type Batch = Schemas["BatchOut"];
@@ -31,9 +32,9 @@ export type TrackFrames = Schemas["TrackFrames"];
 export type FrameEnergy = Schemas["FrameEnergy"];
 export type TrackJoints = Schemas["TrackJoints"];
 /** A machine's proposal as the server gives it; `model/suggestion.ts` has it as the browser keeps it. */
-export type WireSuggestion = Schemas["Suggestion"];
-export type Flag = Schemas["FlagOut"];
-export type FlagPage = Schemas["FlagPage"];
+export type WireSuggestion = Omit<Schemas["Suggestion"], "joints"> & { joints: (Omit<Schemas["SuggestedJoint"], "px"> & { px: [number, number] } | null)[] };
+export type Flag = WithPoints<Schemas["FlagOut"]>;
+export type FlagPage = Omit<Schemas["FlagPage"], "items"> & { items: Flag[] };
 export type ViewerSession = Schemas["ViewerSessionOut"];
 
 export type Me = Schemas["MyAccount"];

@@ -12,6 +12,7 @@ from tracker.errors import FrameError, ImportRefusedError, say_count
 
 _MOST_SERIES = 200
 _MOST_CHOICES = 24
+_ASK_COLOR = "Which colour images belong to the depth images?"
 _NO_COLOR = ImportChoice("none", "No colour: import depth alone")
 
 
@@ -36,30 +37,27 @@ def choose_depth(
     groups = group_by_number(files.names, DEPTH_SUFFIXES)[:_MOST_SERIES]
     headers = {series.pattern: look_at(files, series) for series in groups}
     depths = [series for series in groups if _is_depth(headers[series.pattern])]
+    told, text = None, ""
     if options.depth_pattern:
         told, fault = _match(files, options.depth_pattern, "depth_pattern")
-        if told is not None:
-            return told
-        problems.append(fault)
-        if not depths:
+        if told is None and not depths:
             raise ImportRefusedError(fault)
-    if not depths:
+        text = fault
+    if told is None and not depths:
         raise ImportRefusedError(_describe_missing(groups, headers))
     named = [series for series in depths if "depth" in series.pattern.lower()]
-    likely = (named or depths)[0]
-    if len(depths) > 1 or options.depth_pattern:
-        if options.depth_pattern:
-            text = problems[-1]
-        else:
-            shown = ", ".join(f"{s.pattern} ({len(s.names)})" for s in depths[:5])
-            text = f"Depth images of {len(depths)} kinds: {shown}. Choose one with depth_pattern."
-            problems.append(text)
+    likely = told or (named or depths)[0]
+    if told is None and not text and len(depths) > 1:
+        shown = ", ".join(f"{s.pattern} ({len(s.names)})" for s in depths[:5])
+        text = f"Depth images of {len(depths)} kinds: {shown}. Choose one with depth_pattern."
+    if text:
+        problems.append(text)
+    if text or len(depths) > 1:
         ask = f"The files hold {say_count(len(depths), 'series', 'series')} of 16-bit grey images. Which one is depth?"
         by = "its name" if named else "it has the most images"
         choices = tuple(_make_choice(files, series) for series in depths[:_MOST_CHOICES])
-        questions.append(
-            make_question("depth_pattern", ask, text, proposal=likely.pattern, proposed_by=by, choices=choices)
-        )
+        first = (named or depths)[0].pattern if depths else None
+        questions.append(make_question("depth_pattern", ask, text, proposal=first, proposed_by=by, choices=choices))
     return likely
 
 
@@ -71,11 +69,13 @@ def choose_color(
     questions: list[ImportQuestion],
 ) -> NumberedFiles | None:
     """The colour images with the depth images' numbers: those that were told or the only ones; else a question."""
-    if options.color_pattern == "none":
-        return None
     groups = [s for s in group_by_number(files.names, COLOR_SUFFIXES)[:_MOST_SERIES] if s.names != depth.names]
     colors = [s for s in groups if (header := look_at(files, s)) is not None and header.channels >= 3]
     choices = (*(_make_choice(files, series) for series in colors[:_MOST_CHOICES]), _NO_COLOR)
+    if options.color_pattern == "none":
+        if colors:
+            questions.append(make_question("color_pattern", _ASK_COLOR, choices=choices))
+        return None
     told = None
     if options.color_pattern:
         told, fault = _match(files, options.color_pattern, "color_pattern")
@@ -88,8 +88,7 @@ def choose_color(
         shown = ", ".join(f"{s.pattern} ({len(s.names)})" for s in candidates[:5])
         text = f"Colour images of {len(candidates)} kinds: {shown}. Choose one with color_pattern, or 'none'."
         problems.append(text)
-        ask = f"The files hold {len(candidates)} series of colour images. Which one belongs to the depth images?"
-        questions.append(make_question("color_pattern", ask, text, choices=choices))
+        questions.append(make_question("color_pattern", _ASK_COLOR, text, choices=choices))
         return None
     if candidates and candidates[0].numbers != depth.numbers:
         text = _describe_mismatch(depth, candidates[0])
@@ -97,6 +96,8 @@ def choose_color(
         ask = f"{text} Complete the files, or import depth alone."
         questions.append(make_question("color_pattern", ask, problems[-1], choices=choices))
         return None
+    if told is not None or len(colors) > 1:
+        questions.append(make_question("color_pattern", _ASK_COLOR, choices=choices))
     return candidates[0] if candidates else None
 
 

@@ -38,7 +38,7 @@ class RgbdFolder:
         gaps = _describe_gaps(depth, problems, warnings, questions, allow=bool(options.allow_gaps))
         used = {*depth.names, *(color.names if color else ())}
         ignored = [name for name in files.names if name not in used]
-        if ignored and not any(question.choices for question in questions):
+        if ignored and not any(question.is_required and question.choices for question in questions):
             shown = ", ".join(ignored[:3]) + (", ..." if len(ignored) > 3 else "")
             warnings.append(f"{say_count(len(ignored), 'other file is', 'other files are')} left out: {shown}.")
         stream = ImageFiles(files.root, depth.names, True)

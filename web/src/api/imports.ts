@@ -1,24 +1,10 @@
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
-import { request, upload } from "./client";
+import { API, request, upload } from "./client";
 import { recordingKeys } from "./recordings";
 import type { Import, Recording } from "./types";
 
-/** What a person can say about files that don't say it themselves. */
-export interface ImportOptions {
-  format?: string;
-  name?: string;
-  fps?: number | undefined;
-  fx?: number | undefined;
-  fy?: number | undefined;
-  cx?: number | undefined;
-  cy?: number | undefined;
-  depth_scale?: number | undefined;
-  depth_pattern?: string;
-  color_pattern?: string;
-  world_unit_m?: number | undefined;
-  allow_gaps?: boolean | undefined;
-  hands?: string[];
-}
+/** What a person can say about files that don't say it themselves, by the name of the option. */
+export type ImportOptions = Record<string, string | number | boolean | string[]>;
 
 /** A file with its path below the dropped folder. */
 export interface DroppedFile {
@@ -62,9 +48,12 @@ export function useCheckAgain(id: string) {
 export function useConfirmImport(id: string) {
   const client = useQueryClient();
   return useMutation({
-    mutationFn: (name: string) => request<Recording>("POST", `/imports/${id}/confirm`, { body: { name } }),
+    mutationFn: ({ name, options }: { name: string; options: ImportOptions }) => request<Recording>("POST", `/imports/${id}/confirm`, { body: { name, options } }),
     onSuccess: () => client.invalidateQueries({ queryKey: recordingKeys.all }),
   });
 }
+
+/** A small picture of an image that would come in, by its name in the report. */
+export const importPicture = (id: string, name: string): string => `${API}/imports/${id}/picture?name=${encodeURIComponent(name)}`;
 
 export const discardImport = (id: string): Promise<void> => request("DELETE", `/imports/${id}`);

@@ -86,6 +86,42 @@ export interface ImportReport {
   baselines_m: Record<string, number>;
   problems: string[];
   warnings: string[];
+  /** Absent from reports of older studios. */
+  questions?: ImportQuestion[];
+  sensors?: SensorFit[];
+  takes?: string[];
+}
+
+/** An option that is missing, ambiguous or cannot be right. */
+export interface ImportQuestion {
+  field: string;
+  label: string;
+  kind: "number" | "choice" | "boolean";
+  unit: string;
+  ask: string;
+  /** The report's sentence that the answer mends. */
+  problem: string;
+  is_required: boolean;
+  proposal: unknown;
+  proposed_by: string;
+  choices: ImportChoice[];
+}
+
+export interface ImportChoice {
+  value: unknown;
+  label: string;
+  count: number;
+  detail: string;
+  pictures: string[];
+}
+
+/** A kind of depth camera with images of this size; its values are typical ones. */
+export interface SensorFit {
+  name: string;
+  label: string;
+  source: string;
+  values: Record<string, number>;
+  is_guess: boolean;
 }
 
 export interface CameraReport {
@@ -97,7 +133,7 @@ export interface CameraReport {
   image_types: Record<string, number>;
   gaps: string[];
   timestamps: { monotonic: boolean; median_interval_s: number; jitter_s: number; dropped: number } | null;
-  depth: { sampled_frames: number; empty_frames: number; zero_share: number; saturated_share: number; percentiles_m: number[] } | null;
+  depth: { sampled_frames: number; empty_frames: number; zero_share: number; saturated_share: number; percentiles_m: number[]; nearest_m?: number | null } | null;
   calibration: {
     field_of_view_deg: number[];
     principal_offset: number[];
@@ -105,6 +141,8 @@ export interface CameraReport {
     distortion: number;
     centre_m: number[];
   } | null;
+  /** Names of the first, the middle and the last image of each kind. */
+  pictures?: Record<string, string[]>;
 }
 
 /** Distance of a track's joints to the annotations, px. */

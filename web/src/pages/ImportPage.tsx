@@ -3,30 +3,46 @@ import { notifications } from "@mantine/notifications";
 import { IconCircleCheck } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link, useNavigate, useParams } from "react-router";
-import { discardImport, useCheckAgain, useConfirmImport, useImport, type ImportOptions } from "../api/imports";
-import type { Import } from "../api/types";
+import { discardImport, useConfirmImport, useImport, type ImportOptions } from "../api/imports";
+import type { Import, ImportQuestion } from "../api/types";
 import { formatBytes, formatCount, formatName } from "../model/format";
+import { stillNeeded, withoutField } from "../model/importForm";
 import { EmptyState } from "./parts/EmptyState";
 import { Failure } from "./parts/Failure";
 import { ImportFacts } from "./parts/ImportFacts";
 import { ImportOptionsForm } from "./parts/ImportOptionsForm";
+import { ImportPictures } from "./parts/ImportPictures";
 import { PageSkeleton } from "./parts/PageSkeleton";
 import { Sentences } from "./parts/Sentences";
+import { useLiveCheck } from "./parts/useLiveCheck";
 import { useTitle } from "./parts/useTitle";
 
-function Confirm({ checked }: { checked: Import }) {
+interface ConfirmProps {
+  checked: Import;
+  /** What the report is about; the server stores nothing else. */
+  options: ImportOptions;
+  needed: readonly ImportQuestion[];
+  isBehind: boolean;
+}
+
+function Confirm({ checked, options, needed, isBehind }: ConfirmProps) {
   const [name, setName] = useState(checked.name);
   const confirm = useConfirmImport(checked.id);
   const navigate = useNavigate();
   const store = (): void =>
-    confirm.mutate(name.trim(), {
-      onSuccess: (recording) => {
-        notifications.show({ message: `${recording.name} was imported.`, color: "teal" });
-        void navigate(`/recordings/${recording.id}`, { replace: true });
+    confirm.mutate(
+      { name: name.trim(), options },
+      {
+        onSuccess: (recording) => {
+          notifications.show({ message: `${recording.name} was imported.`, color: "teal" });
+          void navigate(`/recordings/${recording.id}`, { replace: true });
+        },
       },
-    });
+    );
   return (
     <form
+      className="card"
+      style={{ padding: 16 }}
       onSubmit={(event) => {
         event.preventDefault();
         store();
@@ -34,10 +50,15 @@ function Confirm({ checked }: { checked: Import }) {
     >
       <Group align="flex-end" gap="sm">
         <TextInput label="Name of the recording" value={name} onChange={(event) => setName(event.currentTarget.value)} maxLength={200} required flex={1} />
-        <Button type="submit" loading={confirm.isPending} disabled={!name.trim()} leftSection={<IconCircleCheck size={16} aria-hidden />}>
+        <Button type="submit" loading={confirm.isPending} disabled={!name.trim() || !checked.report.ok || isBehind} leftSection={<IconCircleCheck size={16} aria-hidden />}>
           Store the recording
         </Button>
       </Group>
+      {!checked.report.ok && (
+        <Text size="sm" mt="sm" className="quiet" role="status">
+          {needed.length > 0 ? `Still needed: ${needed.map(({ label }) => label.charAt(0).toLowerCase() + label.slice(1)).join(", ")}.` : "It can be stored once what is said above is mended."}
+        </Text>
+      )}
       {confirm.error && (
         <Text size="sm" mt="sm" c="var(--bad-text)" role="alert">
           {confirm.error.message} Nothing was stored; try again.
@@ -47,11 +68,32 @@ function Confirm({ checked }: { checked: Import }) {
   );
 }
 
+const KIND_OF: Record<string, string> = { depth_pattern: "depth", color_pattern: "color" };
+
+/** A report, and the form beside it: one page from the files to the recording. */
+function Checked({ checked }: { checked: Import }) {
+  const live = useLiveCheck(checked);
+  const { report } = checked;
+  const questions = report.questions ?? [];
+  const needed = stillNeeded(questions);
+  const problems = withoutField(report.problems, questions);
+  const isHopeless = !report.ok && report.cameras.length === 0 && needed.length === 0;
+  return (
+    <Stack gap="md">
+      <Sentences title={problems.length === 1 ? "One thing must be mended" : `${formatCount(problems.length, "thing")} must be mended`} sentences={problems} isProblem />
+      {!isHopeless && <ImportPictures importId={checked.id} cameras={report.cameras} open={needed.flatMap(({ field }) => KIND_OF[field] ?? [])} />}
+      {(report.takes ?? []).length > 0 && <ImportOptionsForm importId={checked.id} report={report} live={live} />}
+      {!isHopeless && <Confirm checked={checked} options={checked.options as ImportOptions} needed={needed} isBehind={live.isBehind} />}
+      <Sentences title="Worth knowing" sentences={report.warnings} isProblem={false} />
+      {report.cameras.length > 0 && <ImportFacts report={report} />}
+    </Stack>
+  );
+}
+
 /** What was found in an import, before anything is stored; the address can be sent to a colleague. */
 export function ImportPage() {
   const { importId = "" } = useParams();
   const { data: checked, error, refetch } = useImport(importId);
-  const again = useCheckAgain(importId);
   const navigate = useNavigate();
   useTitle("Import report");
 
@@ -86,7 +128,7 @@ export function ImportPage() {
     void navigate("/recordings");
   };
   return (
-    <div className="page" style={{ maxWidth: 1040 }}>
+    <div className="page" style={{ maxWidth: 1120 }}>
       <Group justify="space-between" mb="lg" align="flex-start" wrap="nowrap">
         <div>
           <Title order={1}>Import report</Title>
@@ -94,28 +136,16 @@ export function ImportPage() {
             {formatCount(checked.file_count, "file")}, {formatBytes(checked.byte_count)}.{" "}
             {report.ok
               ? `Read as: ${formatName(report.format).toLowerCase()}. Nothing is stored until you say so.`
-              : "This cannot be imported as it is. Nothing was stored."}
+              : stillNeeded(report.questions ?? []).length > 0
+                ? `Read as: ${formatName(report.format).toLowerCase()}. Something has to be told first. Nothing is stored until you say so.`
+                : "This cannot be imported as it is. Nothing was stored."}
           </Text>
         </div>
         <Button variant="default" onClick={() => void discard()}>
           Discard
         </Button>
       </Group>
-      <Stack gap="md">
-        <Sentences title={report.problems.length === 1 ? "One thing must be mended" : `${report.problems.length} things must be mended`} sentences={report.problems} isProblem />
-        <Sentences title="Worth knowing" sentences={report.warnings} isProblem={false} />
-        {report.ok && <div className="card" style={{ padding: 16 }}><Confirm key={checked.name} checked={checked} /></div>}
-        {report.ok && <ImportFacts report={report} />}
-        <ImportOptionsForm
-          options={checked.options as ImportOptions}
-          problems={report.problems}
-          isOpen={!report.ok}
-          isBusy={again.isPending}
-          failure={again.error}
-          onCheck={(options) => again.mutate(options, { onSuccess: () => document.getElementById("main")?.scrollTo({ top: 0 }) })}
-        />
-        {!report.ok && report.cameras.length > 0 && <ImportFacts report={report} />}
-      </Stack>
+      <Checked key={checked.id} checked={checked} />
     </div>
   );
 }

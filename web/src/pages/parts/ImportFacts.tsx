@@ -31,6 +31,7 @@ const ROWS: readonly (readonly [string, (camera: CameraReport) => ReactNode])[] 
       `every ${formatNumber(1000 * timestamps.median_interval_s)} ms, jitter ${formatNumber(1000 * timestamps.jitter_s)} ms, ` +
         `${timestamps.dropped > 0 ? `${timestamps.dropped} seem dropped` : "none dropped"}${timestamps.monotonic ? "" : ", not in order"}`,
   ],
+  ["Nearest thing", ({ depth }) => (depth && typeof depth.nearest_m === "number" ? `${formatNumber(depth.nearest_m, 2)} m away` : null)],
   [
     "Depth range",
     ({ depth }) =>

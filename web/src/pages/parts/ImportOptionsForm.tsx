@@ -1,127 +1,148 @@
-import { Button, Checkbox, Collapse, Group, NumberInput, SegmentedControl, Select, SimpleGrid, Stack, Text, TextInput, Title, UnstyledButton } from "@mantine/core";
+import { Button, Checkbox, Collapse, Group, Loader, NumberInput, SegmentedControl, Select, SimpleGrid, Stack, Text, TextInput, Title } from "@mantine/core";
+import { useDisclosure } from "@mantine/hooks";
 import { IconChevronDown, IconChevronRight } from "@tabler/icons-react";
-import { useEffect, useState } from "react";
-import { useImportFormats, type ImportOptions } from "../../api/imports";
+import { useImportFormats } from "../../api/imports";
+import type { ImportQuestion, ImportReport } from "../../api/types";
 import { formatName } from "../../model/format";
+import { numberFields, withSensor } from "../../model/importForm";
+import { DepthPreview } from "./DepthPreview";
 import classes from "./ImportOptionsForm.module.css";
-
-interface ImportOptionsFormProps {
-  /** What has been said so far. */
-  options: ImportOptions;
-  /** Sentences that name the options that are missing. */
-  problems: readonly string[];
-  /** Open from the start, because something has to be said. */
-  isOpen: boolean;
-  isBusy: boolean;
-  failure: Error | null;
-  onCheck: (options: ImportOptions) => void;
-}
-
-type NumberName = "fx" | "fy" | "cx" | "cy" | "fps" | "depth_scale" | "world_unit_m";
-
-const NUMBERS: readonly { name: NumberName; label: string; help: string; step: number }[] = [
-  { name: "fx", label: "fx", help: "Focal length along x, px", step: 1 },
-  { name: "fy", label: "fy", help: "Focal length along y, px", step: 1 },
-  { name: "cx", label: "cx", help: "Principal point x, px", step: 1 },
-  { name: "cy", label: "cy", help: "Principal point y, px", step: 1 },
-  { name: "fps", label: "Frames per second", help: "30 for most depth cameras", step: 1 },
-  { name: "depth_scale", label: "Depth unit, m", help: "depth_scale: 0.001 for millimetres", step: 0.001 },
-  { name: "world_unit_m", label: "Calibration unit, m", help: "world_unit_m: 0.001 for mm", step: 0.001 },
-];
+import { SensorChoice } from "./SensorChoice";
+import { SeriesChoice } from "./SeriesChoice";
+import type { LiveCheck } from "./useLiveCheck";
 
 const HANDS: Record<string, string[]> = { right: ["right"], left: ["left"], both: ["right", "left"] };
+const SERIES = ["depth_pattern", "color_pattern"] as const;
 
-/** What files don't say themselves: intrinsics, units, where images lie. */
-export function ImportOptionsForm({ options: said, problems, isOpen, isBusy, failure, onCheck }: ImportOptionsFormProps) {
-  const [isShown, setShown] = useState(isOpen);
-  const [options, setOptions] = useState<ImportOptions>(said);
-  useEffect(() => setShown(isOpen), [isOpen]);
-  const set = (change: Partial<ImportOptions>): void => setOptions((now) => ({ ...now, ...change }));
-  const hands = Object.keys(HANDS).find((key) => HANDS[key]?.join() === options.hands?.join()) ?? "right";
-  const isNeeded = (name: string): boolean => problems.some((problem) => new RegExp(`\\b${name}\\b`).test(problem));
+interface ImportOptionsFormProps {
+  importId: string;
+  report: ImportReport;
+  live: LiveCheck;
+}
+
+/** What files don't say themselves, all of it at once; what is needed is marked, and the report follows while one types. */
+export function ImportOptionsForm({ importId, report, live }: ImportOptionsFormProps) {
+  const [isMoreShown, more] = useDisclosure(false);
   const formats = useImportFormats().data ?? [];
-  const Chevron = isShown ? IconChevronDown : IconChevronRight;
-
-  const check = (): void => {
-    const known = Object.entries(options).filter(([, value]) => value !== undefined && value !== "" && value !== null);
-    onCheck(Object.fromEntries(known) as ImportOptions);
-  };
+  const { draft, set } = live;
+  const takes = report.takes ?? [];
+  const questions = report.questions ?? [];
+  const ask = (name: string): ImportQuestion | undefined => questions.find(({ field }) => field === name);
+  const isNeeded = (name: string): boolean => ask(name)?.is_required ?? false;
+  const text = (name: string): string => String(draft[name] ?? "");
+  const fault = (name: string): string | undefined => (isNeeded(name) ? (text(name) === "" ? "Needed" : ask(name)?.ask) : undefined);
+  const hands = Object.keys(HANDS).find((key) => HANDS[key]?.join() === String(draft["hands"] ?? "")) ?? "right";
+  const sensors = report.sensors ?? [];
+  const benchmark = ask("intrinsics")?.choices.map(({ label }) => label) ?? [];
+  const gaps = ask("allow_gaps");
+  const hasGaps = gaps !== undefined || draft["allow_gaps"] === true;
+  const Chevron = isMoreShown ? IconChevronDown : IconChevronRight;
 
   return (
     <section className="card" style={{ padding: 16 }} aria-label="What the files do not say">
-      <UnstyledButton onClick={() => setShown(!isShown)} aria-expanded={isShown} w="100%">
+      <Stack gap="md">
         <Group gap="sm">
-          <Chevron size={18} aria-hidden />
           <Title order={2}>What the files do not say</Title>
-        </Group>
-      </UnstyledButton>
-      <Collapse expanded={isShown}>
-        <form
-          onSubmit={(event) => {
-            event.preventDefault();
-            check();
-          }}
-        >
-          <Stack gap="md" pt="md">
-            <Text className="quiet" size="sm">
-              Fill in what you know and look again; what is empty is found out from the files where that is possible. What the report asks for is marked.
-            </Text>
-            <SimpleGrid cols={4} spacing="md">
-              {NUMBERS.map(({ name, label, help, step }) => (
-                <NumberInput
-                  key={name}
-                  name={name}
-                  label={label}
-                  description={help}
-                  value={options[name] ?? ""}
-                  step={step}
-                  withAsterisk={isNeeded(name)}
-                  className={isNeeded(name) ? classes.needed : undefined}
-                  hideControls
-                  onChange={(value) => set({ [name]: typeof value === "number" ? value : undefined })}
-                />
-              ))}
-              <Select
-                label="Format"
-                description="Recognised when empty"
-                data={formats.map((value) => ({ value, label: formatName(value) }))}
-                value={options.format ?? null}
-                clearable
-                onChange={(format) => set({ format: format ?? "" })}
-              />
-            </SimpleGrid>
-            <SimpleGrid cols={2} spacing="md">
-              <TextInput
-                label="Depth images"
-                description="Such as depth/depth_*.png"
-                value={options.depth_pattern ?? ""}
-                onChange={(event) => set({ depth_pattern: event.currentTarget.value })}
-              />
-              <TextInput
-                label="Colour images"
-                description="Such as color/*.png, or none"
-                value={options.color_pattern ?? ""}
-                onChange={(event) => set({ color_pattern: event.currentTarget.value })}
-              />
-            </SimpleGrid>
-            <Group justify="space-between">
-              <Group gap="md">
-                <Text size="sm">Hands seen</Text>
-                <SegmentedControl aria-label="Hands seen" value={hands} data={Object.keys(HANDS)} onChange={(key) => set({ hands: HANDS[key] ?? ["right"] })} />
-                <Checkbox label="Import although frames are missing" checked={options.allow_gaps ?? false} onChange={(event) => set({ allow_gaps: event.currentTarget.checked || undefined })} />
-              </Group>
-              <Button type="submit" variant={isOpen ? "filled" : "default"} loading={isBusy}>
-                Look again
-              </Button>
+          {live.isBehind && !live.failure && (
+            <Group gap={8} role="status">
+              <Loader size={14} />
+              <Text size="sm" className="quiet">
+                Looking again …
+              </Text>
             </Group>
-            {failure && (
-              <Text size="sm" c="var(--bad-text)" role="alert">
-                {failure.message}
+          )}
+        </Group>
+        {SERIES.map((name) => {
+          const question = ask(name);
+          return question && question.choices.length > 0 ? (
+            <SeriesChoice key={name} importId={importId} question={question} chosen={text(name) || null} onChoose={(value) => set({ [name]: value })} />
+          ) : null;
+        })}
+        {sensors.length > 0 && (
+          <SensorChoice
+            sensors={sensors}
+            chosen={text("preset") || null}
+            isOpen={["fx", "cx", "cy", "depth_scale"].some(isNeeded)}
+            onChoose={(sensor) => set(sensor ? withSensor(draft, sensor) : { preset: undefined })}
+          />
+        )}
+        {benchmark.length > 0 && (
+          <Select label="Camera of the benchmark" description={ask("intrinsics")?.ask} data={benchmark} value={text("intrinsics") || null} clearable w={416} onChange={(value) => set({ intrinsics: value ?? undefined })} />
+        )}
+        {numberFields(takes).length > 0 && (
+          <SimpleGrid cols={4} spacing="md">
+            {numberFields(takes).map(({ name, label, unit, hint }) => (
+              <NumberInput
+                key={name}
+                name={name}
+                label={unit ? `${label}, ${unit}` : label}
+                description={hint}
+                value={draft[name] as string | number | undefined ?? ""}
+                withAsterisk={isNeeded(name)}
+                error={fault(name)}
+                className={classes.number}
+                hideControls
+                decimalScale={9}
+                onChange={(value) => set({ [name]: value })}
+              />
+            ))}
+          </SimpleGrid>
+        )}
+        <DepthPreview report={report} hint={isNeeded("depth_scale") && text("depth_scale") === "" ? (ask("depth_scale")?.ask ?? "") : ""} />
+        {isNeeded("world_unit_m") && text("world_unit_m") === "" && (
+          <Text size="sm" className="quiet">
+            {ask("world_unit_m")?.ask}
+          </Text>
+        )}
+        {takes.includes("hands") && (
+          <Group gap="sm">
+            <Text size="sm">Hands seen</Text>
+            <SegmentedControl aria-label="Hands seen" value={hands} data={Object.keys(HANDS)} onChange={(key) => set({ hands: HANDS[key] ?? ["right"] })} />
+            {ask("hands") && (
+              <Text size="sm" className="quiet">
+                {ask("hands")?.ask}
               </Text>
             )}
-          </Stack>
-        </form>
-      </Collapse>
+          </Group>
+        )}
+        {hasGaps && (
+          <Checkbox
+            label={gaps?.label ?? "Import although frames are missing"}
+            description={gaps?.ask}
+            error={gaps?.is_required ? "Needed, or the missing files" : undefined}
+            checked={draft["allow_gaps"] === true}
+            onChange={(event) => set({ allow_gaps: event.currentTarget.checked || undefined })}
+          />
+        )}
+        <Button variant="subtle" size="compact-sm" onClick={more.toggle} aria-expanded={isMoreShown} leftSection={<Chevron size={14} aria-hidden />} style={{ alignSelf: "flex-start" }}>
+          Patterns and format
+        </Button>
+        <Collapse expanded={isMoreShown}>
+          <SimpleGrid cols={3} spacing="md">
+            {SERIES.filter((name) => takes.includes(name)).map((name) => (
+              <TextInput
+                key={name}
+                label={name === "depth_pattern" ? "Depth images lie at" : "Colour images lie at"}
+                description={name === "depth_pattern" ? "Such as depth/depth_*.png" : "Such as color/*.png, or none"}
+                value={text(name)}
+                error={isNeeded(name) && text(name) !== "" ? ask(name)?.problem : undefined}
+                onChange={(event) => set({ [name]: event.currentTarget.value })}
+              />
+            ))}
+            <Select label="Format" description="Recognised when empty" data={formats.map((value) => ({ value, label: formatName(value) }))} value={text("format") || null} clearable onChange={(format) => set({ format: format ?? undefined })} />
+          </SimpleGrid>
+        </Collapse>
+        {live.failure && (
+          <Group gap="sm" role="alert">
+            <Text size="sm" c="var(--bad-text)" style={{ overflowWrap: "anywhere" }}>
+              {live.failure.message} What you typed is kept.
+            </Text>
+            <Button size="xs" variant="default" onClick={live.retry}>
+              Try again
+            </Button>
+          </Group>
+        )}
+      </Stack>
     </section>
   );
 }

@@ -4,6 +4,7 @@ import { useEffect, useRef, useState } from "react";
 import { readDrop } from "../../actions/readDrop";
 import type { DroppedFile } from "../../api/imports";
 import classes from "./DropTarget.module.css";
+import { tellEmpty } from "./tellEmpty";
 
 interface DropTargetProps {
   title: string;
@@ -40,7 +41,7 @@ export function DropTarget({ title, hint, isOpen, onFiles }: DropTargetProps) {
         event.preventDefault();
         depth = 0;
         setOver(false);
-        void readDrop(event.dataTransfer).then((files) => files.length > 0 && current.current.onFiles(files));
+        void readDrop(event.dataTransfer).then((files) => (files.length > 0 ? current.current.onFiles(files) : tellEmpty()));
       },
     };
     const each = Object.entries(listening) as [keyof typeof listening, (event: DragEvent) => void][];

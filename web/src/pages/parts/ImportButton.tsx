@@ -5,6 +5,7 @@ import { useNavigate } from "react-router";
 import { readChoice } from "../../actions/readDrop";
 import { sendIncoming } from "../../state/incoming";
 import { For } from "./For";
+import { tellEmpty } from "./tellEmpty";
 
 /** Choose files or a folder without dragging. */
 export function ImportButton({ label = "Import a recording" }: { label?: string }) {
@@ -14,7 +15,7 @@ export function ImportButton({ label = "Import a recording" }: { label?: string 
   const take = (event: ChangeEvent<HTMLInputElement>): void => {
     const chosen = event.target.files ? readChoice(event.target.files) : [];
     event.target.value = "";
-    if (chosen.length === 0) return;
+    if (chosen.length === 0) return tellEmpty();
     void sendIncoming(chosen);
     void navigate("/imports/new");
   };

@@ -109,7 +109,7 @@ export function ImportOptionsForm({ importId, report, live }: ImportOptionsFormP
           <Checkbox
             label={gaps?.label ?? "Import although frames are missing"}
             description={gaps?.ask}
-            error={gaps?.is_required ? "Needed, or the missing files" : undefined}
+            error={gaps?.is_required ? "Tick it, or import again with the missing files" : undefined}
             checked={draft["allow_gaps"] === true}
             onChange={(event) => set({ allow_gaps: event.currentTarget.checked || undefined })}
           />

@@ -30,7 +30,7 @@ export function SensorChoice({ sensors, chosen, isOpen, onChoose }: SensorChoice
         />
         {isOpen && guess && !sensor && (
           <Group gap="sm" className={classes.guess}>
-            <Text size="sm">The size of the images and the range of depth are those of a {guess.label}.</Text>
+            <Text size="sm">A guess, from the size of the images and the range of depth: {guess.label}.</Text>
             <Button size="xs" variant="light" onClick={() => onChoose(guess)}>
               Use its typical values
             </Button>

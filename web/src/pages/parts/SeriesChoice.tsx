@@ -1,4 +1,4 @@
-import { Badge, Group, Radio, Stack, Text } from "@mantine/core";
+import { Badge, Group, Radio, SimpleGrid, Text } from "@mantine/core";
 import type { ImportQuestion } from "../../api/types";
 import { formatCount } from "../../model/format";
 import { Thumbnails } from "./ImportPictures";
@@ -24,10 +24,10 @@ export function SeriesChoice({ importId, question, chosen, onChoose }: SeriesCho
       error={question.is_required && chosen === null ? "Choose one" : undefined}
       data-needed={question.is_required || undefined}
     >
-      <Stack gap="sm" my="sm">
+      <SimpleGrid cols={2} spacing="sm" my="sm">
         {question.choices.map(({ value, label, count, detail, pictures }) => (
           <Radio.Card key={String(value)} value={String(value)} className={classes.card} aria-label={label}>
-            <Group gap="sm" wrap="nowrap" mb={pictures.length > 0 ? 8 : 0}>
+            <Group gap="sm" mb={pictures.length > 0 ? 8 : 0}>
               <Radio.Indicator size="xs" />
               <Text fw={600}>{label}</Text>
               {count > 0 && (
@@ -44,7 +44,7 @@ export function SeriesChoice({ importId, question, chosen, onChoose }: SeriesCho
             {pictures.length > 0 && <Thumbnails importId={importId} names={pictures} what={label} />}
           </Radio.Card>
         ))}
-      </Stack>
+      </SimpleGrid>
     </Radio.Group>
   );
 }

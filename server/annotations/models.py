@@ -6,7 +6,7 @@ import uuid
 from datetime import datetime
 from typing import Any, Literal
 
-from sqlalchemy import CheckConstraint, ForeignKey, String, UniqueConstraint
+from sqlalchemy import CheckConstraint, ForeignKey, Index, String, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
@@ -20,6 +20,7 @@ class AnnotationRow(Base):
     __tablename__ = "annotations"
     __table_args__ = (
         UniqueConstraint("sequence_id", "replica", "camera", "frame", "hand"),
+        Index(None, "sequence_id", "updated_at"),
         CheckConstraint("hand IN ('right', 'left')", name="hand"),
         CheckConstraint("frame >= 0", name="frame"),
     )

@@ -31,6 +31,8 @@ from server.app.parts import (
 from server.database import Database
 from server.database.migrate import upgrade
 from server.errors import error_responses
+from server.live.visits import Visits
+from server.live.watch import Watches
 from server.sequences.frame_images import FrameImages
 from server.settings import Settings
 from server.storage import open_storage
@@ -54,6 +56,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.settings = settings
     app.state.failed_tries = FailedTries()
+    app.state.visits = Visits()
+    app.state.watches = Watches()
     app.state.place_guards = PLACE_GUARDS
     app.state.sight_guards = SIGHT_GUARDS
     app.state.sequence_facts = SEQUENCE_FACTS

@@ -34,7 +34,7 @@ OPEN = frozenset(
 ACCOUNT_HEADER = "X-Handloom-Account"
 """The id of the account that a page was opened for."""
 
-RECHECK_SECONDS = 30.0
+RECHECK_SECONDS = 5.0
 """A stream or socket that stays open ends so long after its login did, at the latest."""
 
 

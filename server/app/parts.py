@@ -22,6 +22,7 @@ from server.imports import routes as imports
 from server.imports.lifespan import clean_imports
 from server.jobs import routes as jobs
 from server.lineage import routes as lineage
+from server.live import routes as live
 from server.quality import routes as quality
 from server.registrations import model_routes
 from server.registrations import routes as registrations
@@ -62,6 +63,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     suggestions.router,
     quality.router,
     *teams.ROUTERS,
+    live.router,
     exchange.router,
     snapshot_routes.router,
     scans.router,

@@ -7,6 +7,7 @@ import time
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
+from typing import Protocol
 from uuid import UUID
 
 from pydantic import BaseModel
@@ -17,7 +18,7 @@ from server.database import Database, utc_now
 from server.jobs import service
 from server.jobs.describe import describe_job, describe_jobs
 from server.jobs.models import ENDED_STATES, JobLogRow, JobRow
-from server.jobs.schemas import JobLogLine
+from server.jobs.schemas import JobLogLine, JobOut
 
 POLL_SECONDS = 0.25
 HEARTBEAT_SECONDS = 15.0
@@ -32,6 +33,20 @@ OVERLAP = timedelta(seconds=20)
 HEADERS = {"Cache-Control": "no-cache", "X-Accel-Buffering": "no"}
 
 StopFlag = Callable[[], bool]
+
+
+class Feed(Protocol):
+    """What a listener is told; `server/live/feed.py` has another one."""
+
+    has_ended: bool
+
+    def poll(self, database: Database) -> list[str]:
+        """The events since the last time."""
+        ...
+
+    def close(self) -> None:
+        """The listener has gone."""
+        ...
 
 
 def encode_event(event: str, data: BaseModel, event_id: str) -> str:
@@ -59,6 +74,9 @@ class JobFeed:
         if version.isdecimal() and line.isdecimal() and len(version) + len(line) < 30:
             return cls(job_id, int(version), int(line))
         return cls(job_id)
+
+    def close(self) -> None:
+        """Nothing is held."""
 
     def poll(self, database: Database) -> list[str]:
         events = []
@@ -95,7 +113,18 @@ class AllJobsFeed:
             return cls()
         return cls(since) if since.tzinfo is not None else cls()
 
+    def close(self) -> None:
+        """Nothing is held."""
+
     def poll(self, database: Database) -> list[str]:
+        events = []
+        for job in self.find_changes(database):
+            assert self.since is not None
+            events.append(encode_event("job", job, self.since.isoformat()))
+        return events
+
+    def find_changes(self, database: Database) -> list[JobOut]:
+        """Jobs that changed since the last time, the oldest change first."""
         query = select(JobRow).order_by(JobRow.updated_at.desc())
         if self.since is not None:
             query = query.where(JobRow.updated_at > self.since - OVERLAP)
@@ -105,29 +134,30 @@ class AllJobsFeed:
         with database.reading() as session:
             changed = [job for job in session.scalars(query) if self.versions.get(job.id) != job.version]
             described = describe_jobs(session, changed)
-        events = []
-        for job, out in zip(reversed(changed), reversed(described), strict=True):
+        for job in reversed(changed):
             self.versions[job.id] = job.version
             self.since = max(job.updated_at, self.since or job.updated_at)
-            events.append(encode_event("job", out, self.since.isoformat()))
         self.since = self.since or utc_now()
-        return events
+        return described[::-1]
 
 
-async def stream(feed: JobFeed | AllJobsFeed, database: Database, is_stopping: StopFlag) -> AsyncIterator[str]:
-    """The stream of a feed, until the job has ended, the listener goes, or the server stops."""
-    yield f"retry: {RETRY_MILLISECONDS}\n\n"
-    spoken = time.monotonic()
-    while not is_stopping():
-        events = await run_in_threadpool(feed.poll, database)
-        for event in events:
-            yield event
-        if events:
-            spoken = time.monotonic()
-        if feed.has_ended:
-            yield "event: end\ndata: {}\n\n"
-            return
-        if time.monotonic() - spoken > HEARTBEAT_SECONDS:
-            spoken = time.monotonic()
-            yield ": still here\n\n"
-        await asyncio.sleep(POLL_SECONDS)
+async def stream(feed: Feed, database: Database, is_stopping: StopFlag) -> AsyncIterator[str]:
+    """The stream of a feed, until it has ended, the listener goes, or the server stops."""
+    try:
+        yield f"retry: {RETRY_MILLISECONDS}\n\n"
+        spoken = time.monotonic()
+        while not is_stopping():
+            events = await run_in_threadpool(feed.poll, database)
+            for event in events:
+                yield event
+            if events:
+                spoken = time.monotonic()
+            if feed.has_ended:
+                yield "event: end\ndata: {}\n\n"
+                return
+            if time.monotonic() - spoken > HEARTBEAT_SECONDS:
+                spoken = time.monotonic()
+                yield ": still here\n\n"
+            await asyncio.sleep(POLL_SECONDS)
+    finally:
+        feed.close()

@@ -143,7 +143,7 @@ def stream_all_jobs(
     request: Request, database: DatabaseDep, last_event_id: Annotated[str | None, Header()] = None
 ) -> StreamingResponse:
     """Every change of every job: `event: job` with a Job."""
-    return _stream(request, database, events.AllJobsFeed.after(last_event_id))
+    return answer_stream(request, database, events.AllJobsFeed.after(last_event_id))
 
 
 @router.get("/jobs/{job_id}", responses=error_responses(404))
@@ -203,7 +203,7 @@ def stream_job(
         is_over = job.state in service.ENDED_STATES and job.version == feed.version
         if is_over and not service.read_log(session, job_id, feed.line, limit=1):
             return Response(status_code=204)
-    return _stream(request, database, feed)
+    return answer_stream(request, database, feed)
 
 
 @router.get("/workers")
@@ -232,7 +232,9 @@ def _worker(row: WorkerRow, is_alive: bool, job_id: uuid.UUID | None) -> WorkerO
     )
 
 
-def _stream(request: Request, database: DatabaseDep, feed: events.JobFeed | events.AllJobsFeed) -> StreamingResponse:
+def answer_stream(request: Request, database: DatabaseDep, feed: events.Feed) -> StreamingResponse:
+    """The answer that streams a feed until the server stops."""
+
     def is_stopping() -> bool:
         return getattr(request.app.state, "is_stopping", False)
 

@@ -14,6 +14,8 @@ from sqlalchemy import make_url, select
 
 from server.database import Database
 from server.database.migrate import upgrade
+from server.evaluations.judge import Judge
+from server.evaluations.service import evaluate
 from server.jobs import workers
 from server.jobs.dispatcher import Dispatcher
 from server.jobs.models import JobRow
@@ -22,6 +24,7 @@ from server.jobs.slot import WorkerSlot
 from server.jobs.workflow import APPLICATION, APPLICATION_VERSION, QUEUE, register_workflows
 from server.settings import Settings
 from server.storage import Storage, open_storage
+from server.tracks.service import get_track
 
 log = logging.getLogger(__name__)
 
@@ -45,7 +48,9 @@ def run_worker(settings: Settings) -> None:
         signal.signal(number, lambda *_: stopping.set())
     with database.writing() as session:
         worker_id = workers.register_worker(session, slot.name, slot.host).id
-    workflows = register_workflows(WorkerContext(database, storage, worker_id))
+    judge = Judge(database, storage)
+    context = WorkerContext(database, storage, worker_id, lambda track_id: _evaluate(database, judge, track_id))
+    workflows = register_workflows(context)
     config: DBOSConfig = {
         "name": APPLICATION,
         "system_database_url": find_system_database(settings),
@@ -67,6 +72,16 @@ def run_worker(settings: Settings) -> None:
     logging.shutdown()
     # A step in progress is dropped: ended in order it would be recorded as failed. It is done again, as after a crash.
     os._exit(0)
+
+
+def _evaluate(database: Database, judge: Judge, track_id: UUID) -> None:
+    """Find the error of a new track against the labels, so that every list shows it."""
+    try:
+        with database.reading() as session:
+            row = get_track(session, track_id)
+        evaluate(database, judge, row)
+    except Exception:  # the track is stored; whoever opens it is told what is wrong with its evaluation
+        log.exception("track %s could not be evaluated", track_id)
 
 
 def _drop_leftovers(database: Database, storage: Storage) -> None:

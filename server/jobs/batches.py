@@ -29,14 +29,7 @@ def create_batch(
     session: Session, kind: str, sequence_ids: Sequence[UUID], params: dict[str, Any], account_id: UUID
 ) -> tuple[UUID, list[JobRow]]:
     """Queue one job for each recording, or none at all when one of them cannot be."""
-    from tracker import TrackerError
-
-    refused, checked = [], []
-    for sequence_id in dict.fromkeys(sequence_ids):
-        try:
-            checked.append((sequence_id, service.check_track_params(session, sequence_id, params)))
-        except (StudioError, TrackerError) as error:
-            refused.append(BulkRefusal(id=sequence_id, detail=str(error)))
+    checked, refused = check_batch(session, sequence_ids, params)
     if refused:
         raise RefusedBatchError(
             f"{len(refused)} of {len(refused) + len(checked)} recordings cannot be tracked so, and no job was started. "
@@ -49,6 +42,21 @@ def create_batch(
         for sequence_id, options in checked
     ]
     return batch_id, jobs
+
+
+def check_batch(
+    session: Session, sequence_ids: Sequence[UUID], params: dict[str, Any]
+) -> tuple[list[tuple[UUID, dict[str, Any]]], list[BulkRefusal]]:
+    """Recordings that can be tracked so with their options in full, and those that cannot."""
+    from tracker import TrackerError
+
+    checked, refused = [], []
+    for sequence_id in dict.fromkeys(sequence_ids):
+        try:
+            checked.append((sequence_id, service.check_track_params(session, sequence_id, params)))
+        except (StudioError, TrackerError) as error:
+            refused.append(BulkRefusal(id=sequence_id, detail=str(error)))
+    return checked, refused
 
 
 def get_batch(session: Session, batch_id: UUID) -> BatchOut:

@@ -12,9 +12,10 @@ import numpy as np
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID
 from server.jobs.checkpoints import JobCheckpoints
-from server.jobs.making import choose_held_out, make_rule
-from server.jobs.modelling import ScanRun, Span, read_loop
+from server.jobs.held_out import choose_held_out, make_rule
+from server.jobs.modelling import ScanRun, Span
 from server.jobs.progress import JobProgress
+from server.jobs.restarting import read_loop
 from server.jobs.schemas import TrainingParams
 from server.registrations import service as registrations
 from server.scans import service as scans
@@ -124,7 +125,7 @@ def _list_registrations(run: ScanRun, row: HandModelRow, parent_id: UUID, number
     if kept is None:
         with run.context.database.reading() as session:
             if run.row.kind == "loop":
-                asked = read_loop(run.row.params)
+                asked = read_loop(run.row)
                 subjects = asked.leave_out_subjects
                 rule = make_rule(asked, parent_id if asked.by == "verdict" else None)
             else:

@@ -60,6 +60,12 @@ class JobFiles:
         except (OSError, ValueError, KeyError, DamagedFileError):
             return self._fetch_manifest(step)
 
+    def is_done(self, step: str) -> bool:
+        """Whether `step` was finished, here or on another machine; its files are not looked at."""
+        if (self.folder / f"{step}.json").is_file():
+            return True
+        return self._remote is not None and self._remote.read_document(step) is not None
+
     def write_manifest(self, step: str, paths: list[Path], facts: dict[str, Any]) -> dict[str, Any]:
         """Seal `step` with the digests of its files."""
         files = [file for path in paths for file in (sorted(path.rglob("*")) if path.is_dir() else [path])]

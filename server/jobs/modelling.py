@@ -9,7 +9,6 @@ import uuid
 from collections import Counter, OrderedDict
 from dataclasses import replace
 from pathlib import Path
-from statistics import median
 from typing import TYPE_CHECKING, Any
 from uuid import UUID
 
@@ -23,8 +22,11 @@ from server.hand_models.models import HandModelRow
 from server.hand_models.service import get_hand_model
 from server.jobs import making, service
 from server.jobs.checkpoints import JobCheckpoints
+from server.jobs.failure import hide_paths
+from server.jobs.held_out import make_rule
+from server.jobs.restarting import read_loop
 from server.jobs.run import JobRun, WorkerContext
-from server.jobs.schemas import LoopCreate, TrainingParams
+from server.jobs.schemas import TrainingParams
 from server.registrations import service as registrations
 from server.registrations.models import RegistrationRow
 from server.scans import service as scans
@@ -44,9 +46,6 @@ Span = tuple[float, float]
 
 NAMESPACE = UUID("3b7f2f0e-6c8a-4b57-9d55-0a2f4cf1e7d3")
 FAILED = "not read"
-
-RECENT_SCANS = 15
-"""That the time left is judged by."""
 
 
 class ModelShelf:
@@ -104,22 +103,12 @@ class ScanRun(JobRun):
             )
         except TrackerError as error:
             with self.context.database.writing() as session:
-                problem = str(error).replace(f"{self.context.storage.root}/", "")
+                problem = hide_paths(str(error), self.context.storage.root)
                 session.execute(update(ScanRow).where(ScanRow.id == scan_id).values(state="failed", problem=problem))
             progress.log("warning", f"{row.name}: {problem}")
             verdict = FAILED
-        progress.scans_done(number + 1, total, span, self._estimate_seconds_left(model_id, number + 1, total, span))
+        progress.scans_done(number + 1, total, span)
         return verdict
-
-    def _estimate_seconds_left(self, model_id: UUID, done: int, total: int, span: Span) -> float | None:
-        """As the last scans took, and what follows in a loop by its share of the bar."""
-        mine = select(RegistrationRow.seconds).where(
-            RegistrationRow.job_id == self.job_id, RegistrationRow.model_id == model_id
-        )
-        with self.context.database.reading() as session:
-            recent = session.scalars(mine.order_by(RegistrationRow.created_at.desc()).limit(RECENT_SCANS)).all()
-        later = total * (1.0 - span[1]) / (span[1] - span[0])  # in scans
-        return (total - done + later) * median(recent) if recent else None
 
     def _find_start(self, session: Session, scan_id: UUID, model_id: UUID) -> RegistrationStart | None:
         """Where to begin: at the newest registration of the scan, when it seems right and people do not reject it."""
@@ -180,8 +169,8 @@ class ScanRun(JobRun):
 
     def choose(self, attempt: int, model_id: UUID, number: int) -> str:
         """Keep what a round of a loop trains from; gives the id of the training set."""
-        asked = read_loop(self.row.params)
-        rule = making.make_rule(asked, model_id if asked.by == "verdict" else None)
+        asked = read_loop(self.row)
+        rule = make_rule(asked, model_id if asked.by == "verdict" else None)
         with self.context.database.writing() as session:
             row, _ = training_sets.create_training_set(
                 session, self.context.storage, f"{asked.name}, round {number}"[:200], rule, self.row.created_by
@@ -255,11 +244,6 @@ class ScanRun(JobRun):
                 service.append_log(session, self.job_id, "info", f"{len(outcomes)} scans: {told}")
             values = {"frames_done": len(outcomes), "frames_total": len(outcomes)} if outcomes else {}
             self.end(session, attempt, "succeeded", progress=1.0, hand_model_id=model_id, **values)
-
-
-def read_loop(params: dict[str, Any]) -> LoopCreate:
-    """What was asked of a loop."""
-    return LoopCreate.model_validate({name: value for name, value in params.items() if name != "model"})
 
 
 def study_people(trained: Training) -> dict[str, Any]:

@@ -5,9 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import time
-from collections import deque
-from itertools import pairwise
-from statistics import median
+from typing import Any
 from uuid import UUID
 
 from sqlalchemy.exc import OperationalError
@@ -22,11 +20,8 @@ log = logging.getLogger(__name__)
 PUBLISH_SECONDS = 0.2
 """Between two updates of the row; also how soon a cancelled job notices."""
 
-TRACKING_BEGINS, TRACKING_ENDS = 0.1, 0.98
-"""Share of the progress bar when the first frame is tracked, and after the last."""
-
-RECENT_FRAMES = 15
-"""That the time left is judged by."""
+TRACKING_ENDS = 0.98
+"""Share of the progress bar after the last frame."""
 
 LOST_OWNERSHIP_EXIT = 75
 
@@ -38,36 +33,29 @@ class JobStoppedError(Exception):
 class JobProgress:
     """Publishes one attempt of a job on behalf of one worker."""
 
-    def __init__(self, database: Database, job_id: UUID, attempt: int, worker_id: UUID) -> None:
+    def __init__(self, database: Database, job_id: UUID, attempt: int, worker_id: UUID, pace: Pace) -> None:
         self._database, self._job_id, self._attempt, self._worker_id = database, job_id, attempt, worker_id
         self._published = 0.0
-        self._moments: deque[tuple[int, float]] = deque(maxlen=RECENT_FRAMES)
         self._last_stage = ""
-        self._pace = Pace()
-
-    def stage(self, name: str, share: float) -> None:
-        """Name what is being done before the tracking, and how much of it is done, 0 to 1."""
-        self._publish_stage(name, TRACKING_BEGINS * min(max(share, 0.0), 1.0))
+        self._pace = pace
 
     def finishing(self, name: str) -> None:
         """Name what is being done after the tracking."""
         self._publish_stage(name, TRACKING_ENDS)
 
-    def frames(self, done: int, total: int) -> None:
-        """Say that `done` of `total` frames are tracked."""
-        self._moments.append((done, time.monotonic()))
-        self._publish_frames(done, total, at_once=False)
+    def frames(self, done: int, total: int, begins: float) -> None:
+        """Say that `done` of `total` frames are tracked; `begins` is the share of the bar at the first of them."""
+        self._publish_frames(done, total, begins, at_once=False)
 
-    def chunk_done(self, done: int, total: int, message: str) -> None:
+    def chunk_done(self, done: int, total: int, begins: float, message: str) -> None:
         """Say that the frames so far are safe on disk."""
         self.log("info", message)
-        self._publish_frames(done, total, at_once=True, crashes=0)
+        self._publish_frames(done, total, begins, at_once=True, crashes=0)
 
     def part(self, span: tuple[float, float], name: str, share: float) -> None:
         """Name what is being done in one part of the bar, and how much of it is done, 0 to 1."""
         first, last = span
-        progress = first + (last - first) * min(max(share, 0.0), 1.0)
-        self._publish_stage(name, progress, self._pace.estimate(progress))
+        self._publish_stage(name, first + (last - first) * min(max(share, 0.0), 1.0))
 
     def kept(self) -> None:
         """Say that what was done so far is safe on disk."""
@@ -77,12 +65,11 @@ class JobProgress:
         """Say that `done` of `total` scans are registered, and a share of the next; also how a job learns to stop."""
         self._publish(False, **self._describe_scans(done + share, total, span), stage=name, frames_done=done)
 
-    def scans_done(self, done: int, total: int, span: tuple[float, float], seconds_left: float | None) -> None:
-        """Say that another scan is safe on disk, and how long the others will take."""
-        values = self._describe_scans(done, total, span)
-        self._publish(True, **values, frames_done=done, crashes=0, seconds_left=seconds_left)
+    def scans_done(self, done: int, total: int, span: tuple[float, float]) -> None:
+        """Say that another scan is safe on disk."""
+        self._publish(True, **self._describe_scans(done, total, span), frames_done=done, crashes=0)
 
-    def _describe_scans(self, done: float, total: int, span: tuple[float, float]) -> dict[str, float | int]:
+    def _describe_scans(self, done: float, total: int, span: tuple[float, float]) -> dict[str, Any]:
         first, last = span
         return {"progress": first + (last - first) * done / max(total, 1), "frames_total": total}
 
@@ -91,32 +78,23 @@ class JobProgress:
         with self._database.writing() as session:
             service.append_log(session, self._job_id, level, text)
 
-    def _publish_stage(self, name: str, progress: float, seconds_left: float | None = None) -> None:
+    def _publish_stage(self, name: str, progress: float) -> None:
         changed, self._last_stage = name != self._last_stage, name
         if changed:
             self.log("info", name)
-        self._publish(changed, stage=name, progress=progress, seconds_left=seconds_left)
+        self._publish(changed, stage=name, progress=progress)
 
-    def _publish_frames(self, done: int, total: int, *, at_once: bool, **values: object) -> None:
-        if (seconds := self._seconds_per_frame()) is not None:
-            values["seconds_left"] = seconds * (total - done)
-        share = TRACKING_BEGINS + (TRACKING_ENDS - TRACKING_BEGINS) * done / max(total, 1)
+    def _publish_frames(self, done: int, total: int, begins: float, *, at_once: bool, **values: object) -> None:
+        share = begins + (TRACKING_ENDS - begins) * done / max(total, 1)
         self._publish(at_once, stage="tracking", progress=share, frames_done=done, frames_total=total, **values)
 
-    def _seconds_per_frame(self) -> float | None:
-        """Median of the last frames; None until there are two."""
-        steps = [
-            (now - before) / (done - done_before)
-            for (done_before, before), (done, now) in pairwise(self._moments)
-            if done > done_before
-        ]
-        return median(steps) if steps else None
-
-    def _publish(self, at_once: bool, **values: object) -> None:
+    def _publish(self, at_once: bool, progress: float | None = None, **values: object) -> None:
         now = time.monotonic()
         if not at_once and now - self._published < PUBLISH_SECONDS:
             return
         self._published = now
+        if progress is not None:
+            values |= {"progress": progress, "seconds_left": self._pace.estimate(progress)}
         try:
             with self._database.writing() as session:
                 owned = service.update_running(session, self._job_id, self._attempt, self._worker_id, **values)

@@ -15,17 +15,21 @@ from server.accounts.service import ReviewerAccount
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import StudioError, error_responses
-from server.jobs import batches, events, making, service, workers
+from server.jobs import batches, events, making, restarting, service, workers
 from server.jobs.describe import describe_job, describe_jobs
 from server.jobs.form import track_form
-from server.jobs.models import JobRow, WorkerRow
+from server.jobs.models import ENDED_STATES, JobRow, WorkerRow
+from server.jobs.obstacles import find_register_obstacles, find_track_obstacles, make_check, refuse_at
+from server.jobs.scan_choice import list_loop_scans
 from server.jobs.schemas import (
+    BatchCheck,
     BatchCreate,
     BatchMade,
     BatchOut,
     BulkAct,
     BulkDone,
     BulkRefusal,
+    JobCheck,
     JobCreate,
     JobForm,
     JobKind,
@@ -34,10 +38,12 @@ from server.jobs.schemas import (
     JobState,
     LoopCreate,
     RegisterCreate,
+    RestartCheck,
     TrainCreate,
     WorkerOut,
 )
-from server.storage import StorageDep
+from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles
+from server.storage import Storage, StorageDep
 
 router = APIRouter(tags=["jobs"], responses=error_responses())
 
@@ -55,6 +61,20 @@ def create_job(body: JobCreate, session: SessionDep, account: ReviewerAccount) -
     return describe_job(session, job)
 
 
+@router.post("/jobs/check", responses=error_responses(404))
+def check_job(body: JobCreate, session: SessionDep, account: ReviewerAccount) -> JobCheck:
+    """Whether a recording can be tracked so, and why not. Nothing is started."""
+    return make_check(session, find_track_obstacles(session, body.sequence_id, body.params))
+
+
+@router.post("/jobs/register/check", responses=error_responses(404))
+def check_register_job(
+    body: RegisterCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
+) -> JobCheck:
+    """Whether such a job can be started, and why not. Nothing is started."""
+    return make_check(session, find_register_obstacles(session, storage, body))
+
+
 @router.post("/jobs/register", status_code=201, responses=error_responses(404))
 def create_register_job(
     body: RegisterCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
@@ -65,6 +85,12 @@ def create_register_job(
     return describe_job(session, job)
 
 
+@router.post("/jobs/train/check", responses=error_responses(404))
+def check_train_job(body: TrainCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobCheck:
+    """Whether such a job can be started, and why not. Nothing is started."""
+    return make_check(session, find_train_obstacles(session, storage, body))
+
+
 @router.post("/jobs/train", status_code=201, responses=error_responses(404))
 def create_train_job(body: TrainCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
     """Train a hand model from a training set."""
@@ -73,12 +99,24 @@ def create_train_job(body: TrainCreate, session: SessionDep, storage: StorageDep
     return describe_job(session, job)
 
 
+@router.post("/jobs/loop/check", responses=error_responses(404))
+def check_loop_job(body: LoopCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobCheck:
+    """Whether such a job can be started, and why not. Nothing is started."""
+    return make_check(session, find_loop_obstacles(session, storage, body, list_loop_scans(session, body)))
+
+
 @router.post("/jobs/loop", status_code=201, responses=error_responses(404))
 def create_loop_job(body: LoopCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
     """Register all, choose, train, register all again with the new model; several rounds of it when asked."""
     job = making.make_loop_job(session, storage, body, account.id)
     record_act(session, account.id, "job.start", "job", job.id)
     return describe_job(session, job)
+
+
+@router.post("/jobs/batch/check")
+def check_batch(body: BatchCreate, session: SessionDep, account: ReviewerAccount) -> BatchCheck:
+    """Which of the recordings cannot be tracked so, and why. Nothing is started."""
+    return BatchCheck(refused=batches.check_batch(session, body.sequence_ids, body.params)[1])
 
 
 @router.post("/jobs/batch", status_code=201)
@@ -90,12 +128,12 @@ def create_batch(body: BatchCreate, session: SessionDep, account: ReviewerAccoun
 
 
 @router.post("/jobs/bulk")
-def act_on_jobs(body: BulkAct, session: SessionDep, account: ReviewerAccount) -> BulkDone:
+def act_on_jobs(body: BulkAct, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> BulkDone:
     """Cancel, retry or resume several jobs. Each by itself: `refused` says which could not be, and why."""
     done, refused = [], []
     for job_id in dict.fromkeys(body.job_ids):
         try:
-            done.append(_act(session, body.act, job_id, account.id))
+            done.append(_act(session, storage, body.act, job_id, account.id))
         except StudioError as error:
             refused.append(BulkRefusal(id=job_id, detail=error.detail))
     return BulkDone(jobs=describe_jobs(session, done), refused=refused)
@@ -152,27 +190,35 @@ def get_job(job_id: uuid.UUID, session: SessionDep) -> JobOut:
     return describe_job(session, service.get_job(session, job_id))
 
 
+@router.get("/jobs/{job_id}/restart", responses=error_responses(404))
+def check_restart(job_id: uuid.UUID, session: SessionDep, storage: StorageDep) -> RestartCheck:
+    """Whether a job that ended without success can be resumed or tried again, and what is kept of it."""
+    return restarting.check_restart(session, storage, service.get_job(session, job_id))
+
+
 @router.post("/jobs/{job_id}/cancel", responses=error_responses(404, 409))
-def cancel_job(job_id: uuid.UUID, session: SessionDep, account: ReviewerAccount) -> JobOut:
+def cancel_job(job_id: uuid.UUID, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
     """End a job that is queued or running."""
-    return describe_job(session, _act(session, "cancel", job_id, account.id))
+    return describe_job(session, _act(session, storage, "cancel", job_id, account.id))
 
 
 @router.post("/jobs/{job_id}/retry", status_code=201, responses=error_responses(404, 409))
-def retry_job(job_id: uuid.UUID, session: SessionDep, account: ReviewerAccount) -> JobOut:
+def retry_job(job_id: uuid.UUID, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
     """A new job with the parameters of one that has ended."""
-    return describe_job(session, _act(session, "retry", job_id, account.id))
+    return describe_job(session, _act(session, storage, "retry", job_id, account.id))
 
 
 @router.post("/jobs/{job_id}/resume", responses=error_responses(404, 409))
-def resume_job(job_id: uuid.UUID, session: SessionDep, account: ReviewerAccount) -> JobOut:
+def resume_job(job_id: uuid.UUID, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
     """Go on with a cancelled or failed job where it stopped."""
-    return describe_job(session, _act(session, "resume", job_id, account.id))
+    return describe_job(session, _act(session, storage, "resume", job_id, account.id))
 
 
-def _act(session: Session, act: str, job_id: uuid.UUID, account_id: uuid.UUID) -> JobRow:
+def _act(session: Session, storage: Storage, act: str, job_id: uuid.UUID, account_id: uuid.UUID) -> JobRow:
     """Do one thing to one job, and note who did it."""
-    service.get_job(session, job_id)
+    asked = service.get_job(session, job_id)
+    if act in restarting.ACTS and asked.state in ENDED_STATES:
+        refuse_at(restarting.find_restart_obstacles(session, storage, asked))
     if act == "retry":
         job = service.retry_job(session, job_id, account_id)
         making.copy_job_scans(session, job_id, job.id)

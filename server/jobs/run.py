@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import logging
-import traceback
+import uuid
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 from uuid import UUID
 
@@ -14,7 +14,9 @@ from sqlalchemy.orm import Session
 from server.database import Database, utc_now
 from server.errors import StudioError
 from server.jobs import service
+from server.jobs.failure import describe_error
 from server.jobs.files import JobFiles
+from server.jobs.pace import Paces
 from server.jobs.progress import JobProgress, JobStoppedError
 from server.storage import Storage
 
@@ -31,6 +33,9 @@ class WorkerContext:
     database: Database
     storage: Storage
     worker_id: UUID
+    on_track: Callable[[UUID], None] = lambda track_id: None
+    """Told the id of a track that a job has stored."""
+    paces: Paces = field(default_factory=Paces)
 
 
 class JobRun:
@@ -44,7 +49,8 @@ class JobRun:
         self.files = JobFiles(storage.folder("jobs", job_id), storage.remote_folder("jobs", job_id))
 
     def progress(self, attempt: int) -> JobProgress:
-        return JobProgress(self.context.database, self.job_id, attempt, self.context.worker_id)
+        pace = self.context.paces.find(self.job_id, attempt)
+        return JobProgress(self.context.database, self.job_id, attempt, self.context.worker_id, pace)
 
     def attempt(self, number: int, work: Callable[[], None]) -> str:
         """Take the job and do it; whatever happens, say how it ended."""
@@ -84,19 +90,10 @@ class JobRun:
         return claimed is not None
 
     def _fail(self, attempt: int, error: Exception) -> None:
-        """End the job with what went wrong, in words for people; the traceback goes to its log."""
-        message = describe_error(error)
-        log.error("job %s failed: %s", self.job_id, message, exc_info=error)
+        """End the job with what went wrong, in words for people; the traceback goes to the log of this process."""
+        number = uuid.uuid4().hex[:8]
+        log.error("job %s failed, error %s", self.job_id, number, exc_info=error)
+        message = describe_error(error, number, self.context.storage.root)
         with self.context.database.writing() as session:
             if self.end(session, attempt, "failed", error=message):
                 service.append_log(session, self.job_id, "error", message)
-                service.append_log(session, self.job_id, "debug", "".join(traceback.format_exception(error)))
-
-
-def describe_error(error: Exception) -> str:
-    """What went wrong, for people. An error that nobody foresaw is named as such."""
-    from tracker import TrackerError
-
-    if isinstance(error, (StudioError, TrackerError)):
-        return str(error)
-    return f"An unforeseen error, {type(error).__name__}: {error}. The job's log has the details; please report it."

@@ -6,9 +6,10 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool
+from pydantic import BaseModel, ConfigDict, Field, StrictBool, model_validator
 
 from server.database.texts import Label, Name
+from server.training_sets.schemas import TrainingRule
 
 JobKind = Literal["track", "register", "train", "loop"]
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
@@ -73,7 +74,10 @@ class TrainCreate(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    training_set_id: uuid.UUID
+    training_set_id: uuid.UUID | None = Field(default=None, description="To learn from; or else `rule`.")
+    rule: TrainingRule | None = Field(
+        default=None, description="What it chooses now is kept as a training set of this name, and learnt from."
+    )
     name: Name
     model_id: uuid.UUID | None = Field(default=None, description="To begin with; null: the one not trained yet.")
     options: TrainingParams = Field(default_factory=TrainingParams)
@@ -81,6 +85,12 @@ class TrainCreate(BaseModel):
     test_subjects: list[Label] = Field(
         default_factory=list, max_length=1000, description="To judge on; empty: those whom the training set leaves out."
     )
+
+    @model_validator(mode="after")
+    def _names_one_source(self) -> TrainCreate:
+        if (self.training_set_id is None) == (self.rule is None):
+            raise ValueError("needed is one of `training_set_id` and `rule`")
+        return self
 
 
 class LoopCreate(BaseModel):
@@ -108,6 +118,22 @@ class BatchCreate(BaseModel):
     kind: Literal["track"] = "track"
     sequence_ids: list[uuid.UUID] = Field(min_length=1, max_length=500, description="One job for each.")
     params: dict[str, Any] = Field(default_factory=dict, description="As of one job; the same for all.")
+
+
+class JobCheck(BaseModel):
+    """Whether a job can be started, asked before it is."""
+
+    can_start: bool
+    obstacles: list[str] = Field(description="Why not, sentences for people. The request for the job is refused so.")
+    notes: list[str] = Field(description="What one should know, though the job can be started.")
+
+
+class RestartCheck(BaseModel):
+    """What can be done with a job that has ended without success, and what is kept of it."""
+
+    resume: JobCheck
+    retry: JobCheck
+    kept: list[str] = Field(description="What it has done so far and need not do again, for people.")
 
 
 class JobWorker(BaseModel):
@@ -189,6 +215,12 @@ class BulkRefusal(BaseModel):
     detail: str = Field(description="Why, for people.")
 
 
+class BatchCheck(BaseModel):
+    """Which of several recordings cannot be tracked so."""
+
+    refused: list[BulkRefusal]
+
+
 class BulkDone(BaseModel):
     """What became of each."""
 
@@ -201,7 +233,7 @@ class JobLogLine(BaseModel):
 
     n: int
     time: datetime
-    level: Literal["debug", "info", "warning", "error"]
+    level: Literal["info", "warning", "error"]
     text: str
 
 

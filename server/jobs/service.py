@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import CursorResult, Select, func, select, tuple_, update
+from sqlalchemy import CursorResult, Select, case, func, select, tuple_, update
 from sqlalchemy.orm import Session
 
 from server.database import utc_now
@@ -30,6 +30,10 @@ LOG_PAGE = 1000
 
 class JobNotFoundError(NotFoundError):
     """There is no job of this id."""
+
+
+class CannotStartError(InvalidError):
+    """The job would fail; `obstacles` says why, each a sentence for people."""
 
 
 class JobStateError(ConflictError):
@@ -126,12 +130,15 @@ def create_job(
 
 
 def check_track_params(session: Session, sequence_id: UUID, params: dict[str, Any]) -> dict[str, Any]:
-    """The options in full, as they will be used; raises when the recording or an option cannot be."""
-    from tracker import TrackOptions
+    """The options in full, as they will be used; raises when the recording cannot be tracked so."""
+    from tracker import TrackOptions, find_tracking_faults
 
-    get_sequence(session, sequence_id)
-    own = {name: value for name, value in params.items() if name != HAND_MODEL}
-    return TrackOptions.from_json(own).to_json() | _check_hand_model(session, params.get(HAND_MODEL))
+    row = get_sequence(session, sequence_id)
+    options = TrackOptions.from_json({name: value for name, value in params.items() if name != HAND_MODEL})
+    with_depth = [camera["id"] for camera in row.cameras if camera["has_depth"]]
+    if faults := find_tracking_faults(row.frame_count, row.hands, with_depth, options):
+        raise CannotStartError(" ".join(faults), obstacles=faults)
+    return options.to_json() | _check_hand_model(session, params.get(HAND_MODEL))
 
 
 def _check_hand_model(session: Session, value: Any) -> dict[str, str]:
@@ -232,7 +239,16 @@ def claim_job(session: Session, job_id: UUID, attempt: int, worker_id: UUID) -> 
 
 
 def update_running(session: Session, job_id: UUID, attempt: int, worker_id: UUID, **values: Any) -> bool:
-    """Set columns of a running job; False when it no longer runs in this attempt on this worker."""
+    """Set columns of a running job; False when it no longer runs in this attempt on this worker.
+
+    Neither its progress nor its count of frames goes back: what a crash or a cancelled attempt has cost is done again
+    while both stand still. Scans are counted anew by every round of a loop.
+    """
+    if "progress" in values:
+        values["progress"] = case((JobRow.progress > values["progress"], JobRow.progress), else_=values["progress"])
+    if "frames_done" in values:
+        is_behind = (JobRow.kind == "track") & (JobRow.frames_done > values["frames_done"])
+        values["frames_done"] = case((is_behind, JobRow.frames_done), else_=values["frames_done"])
     is_ours = (JobRow.state == "running") & (JobRow.attempt == attempt) & (JobRow.worker_id == worker_id)
     return _change(session, job_id, is_ours, **values)
 

@@ -9,14 +9,21 @@ from typing import Any
 from uuid import UUID
 
 from dbos import DBOS
+from sqlalchemy import select
 
 from server.annotations.service import export_annotations
 from server.hand_models.service import get_hand_model
 from server.hand_models.storing import find_file
+from server.jobs.files import JobFiles
+from server.jobs.models import JobRow
 from server.jobs.run import JobRun, WorkerContext
 from server.jobs.service import HAND_MODEL, TRAINED_HAND
 from server.jobs.tracking import TrackingJob
+from server.sequences.service import get_sequence
 from server.tracks.service import add_track
+
+MOST_OTHERS = 5
+"""Jobs, at most, whose start is looked at."""
 
 TRACK_NAMESPACE = UUID("7a1d4c53-3a0f-4f0e-9a52-6f1d0c9b8e21")
 
@@ -31,7 +38,7 @@ def register_track_workflow(context: WorkerContext):
     @DBOS.step(name="start")
     def start(job_id: str, attempt: int) -> dict[str, Any]:
         run = _TrackRun(context, UUID(job_id))
-        return run.job.start(run.progress(attempt))
+        return run.job.start(run.progress(attempt), run.list_others())
 
     @DBOS.step(name="chunk")
     def chunk(job_id: str, attempt: int, begun: dict[str, Any], number: int) -> dict[str, Any]:
@@ -70,7 +77,25 @@ class _TrackRun(JobRun):
     @property
     def job(self) -> TrackingJob:
         recording = self.context.storage.refresh("sequences", self._sequence_id)
-        return TrackingJob(recording, self.row.params, self.files, self._find_hand_model())
+        with self.context.database.reading() as session:
+            content_key = get_sequence(session, self._sequence_id, deleted_too=True).content_key
+        return TrackingJob(recording, self.row.params, self.files, content_key, self._find_hand_model())
+
+    def list_others(self) -> list[tuple[str, JobFiles]]:
+        """Jobs of the recording that ended without success, the newest first: their files are kept."""
+        storage = self.context.storage
+        query = select(JobRow).where(
+            JobRow.sequence_id == self._sequence_id, JobRow.id != self.job_id, JobRow.state.in_(("cancelled", "failed"))
+        )
+        with self.context.database.reading() as session:
+            rows = session.scalars(query.order_by(JobRow.ended_at.desc()).limit(MOST_OTHERS)).all()
+        return [
+            (
+                f"the job that {'was cancelled' if row.state == 'cancelled' else 'failed'} before",
+                JobFiles(storage.folder("jobs", row.id), storage.remote_folder("jobs", row.id)),
+            )
+            for row in rows
+        ]
 
     def _find_hand_model(self) -> Path | None:
         model_id = self.row.params.get(HAND_MODEL)
@@ -98,4 +123,5 @@ class _TrackRun(JobRun):
         with self.context.database.writing() as session:
             add_track(session, folder, track_id, self._sequence_id, self.job_id)
             self.end(session, attempt, "succeeded", track_id=track_id, progress=1.0, frames_done=begun["frames"])
+        self.context.on_track(track_id)
         return track_id

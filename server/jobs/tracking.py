@@ -7,18 +7,24 @@ exception.
 
 from __future__ import annotations
 
+import hashlib
+import json
 import logging
+import shutil
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from server.errors import StudioError
 from server.jobs.files import JobFiles
-from server.jobs.progress import JobProgress
+from server.jobs.progress import TRACKING_ENDS, JobProgress
 from server.jobs.service import HAND_MODEL, TRAINED_HAND
 
 if TYPE_CHECKING:
-    from tracker import ArticulatedModel, Sequence, TrackOptions
+    from tracker import ArticulatedModel, TrackOptions
+    from tracker import Sequence as Recording
 
 log = logging.getLogger(__name__)
 
@@ -33,6 +39,8 @@ class TrackingJob:
     recording: Path
     params: dict[str, Any]
     files: JobFiles
+    content_key: str
+    """Of the recording: changes with any byte of it."""
     hand_model: Path | None = None
     """File of the hand model to track with; None for a hand that comes with Handloom."""
 
@@ -42,7 +50,7 @@ class TrackingJob:
 
         return TrackOptions.from_json({name: value for name, value in self.params.items() if name != HAND_MODEL})
 
-    def load_recording(self) -> Sequence:
+    def load_recording(self) -> Recording:
         from tracker import load_sequence
 
         return load_sequence(self.recording)
@@ -59,27 +67,80 @@ class TrackingJob:
             return None
         return {hand.side: articulated_of(hand) for hand in (model, mirror_blend(model))}
 
-    def start(self, progress: JobProgress) -> dict[str, Any]:
-        """Find the first pose and the shape; write the setup and the first state."""
-        from tracker import load_annotations, start_tracking
+    def start(self, progress: JobProgress, others: Sequence[tuple[str, JobFiles]] = ()) -> dict[str, Any]:
+        """Find the first pose and the shape; write the setup and the first state.
+
+        Args:
+            progress: Is told.
+            others: Jobs that may have done just this before: what each is called, and its files.
+        """
+        from tracker import load_annotations, plan_start, start_tracking
 
         manifest = self.files.read_manifest("start")
         if manifest is not None:
             return manifest
-        sequence = self.load_recording()
+        recording = self.load_recording()
         options = self.options
+        key = self._find_start_key(recording)
+        if (taken := self._take_over(key, others, progress)) is not None:
+            return taken
         annotations = load_annotations(self.files.annotations) if self.files.annotations.exists() else None
-        setup, state = start_tracking(sequence, options, self.load_hands(), annotations, progress.stage)
+        frames = options.frame_range(recording.frame_count)
+        cost = plan_start(recording, options).frames
+        begins = TRACKING_ENDS * cost / (cost + len(frames))
+        setup, state = start_tracking(
+            recording,
+            options,
+            self.load_hands(),
+            annotations,
+            lambda stage, share: progress.part((0.0, begins), stage, share),
+        )
         self.files.write(self.files.setup, setup.save)
         self.files.write(self.files.state(0), state.save)
-        frames = options.frame_range(sequence.frame_count)
         first, end = frames.start, frames.stop
         borders = [*range(first, end, CHUNK_FRAMES), end]
         return self.files.write_manifest(
             "start",
             [self.files.setup, self.files.state(0)],
-            {"first": first, "frames": end - first, "chunks": [list(pair) for pair in pairwise(borders)]},
+            {
+                "first": first,
+                "frames": end - first,
+                "chunks": [list(pair) for pair in pairwise(borders)],
+                "begins": begins,
+                "key": key,
+            },
         )
+
+    def _find_start_key(self, recording: Recording) -> str:
+        """Names all that the start depends on: two jobs of one key have the same, bit for bit."""
+        options = self.options
+        items = json.loads(self.files.annotations.read_text())["items"] if self.files.annotations.exists() else []
+        parts = {
+            "recording": self.content_key,
+            "hands": list(recording.hands),
+            "params": self.params,
+            "first_frame": [item for item in items if item["frame"] == options.first_frame],
+        }
+        return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+
+    def _take_over(
+        self, key: str, others: Sequence[tuple[str, JobFiles]], progress: JobProgress
+    ) -> dict[str, Any] | None:
+        """What another job has found from just the same, as one's own; None when none has."""
+        for name, files in others:
+            try:
+                manifest = files.read_manifest("start")
+                if manifest is None or manifest.get("key") != key:
+                    continue
+                setup, state = files.setup, files.state(0)
+                self.files.write(self.files.setup, lambda path, source=setup: shutil.copytree(source, path))
+                self.files.write(self.files.state(0), lambda path, source=state: shutil.copyfile(source, path))
+            except (OSError, StudioError):  # that job goes on meanwhile, and its files went with its end
+                continue
+            progress.log("info", f"the start and the hands' shape are taken over from {name}: all was the same there")
+            facts = {name: value for name, value in manifest.items() if name != "files"}
+            return self.files.write_manifest("start", [self.files.setup, self.files.state(0)], facts)
+        return None
 
     def track_chunk(self, start: dict[str, Any], chunk: int, progress: JobProgress) -> dict[str, Any]:
         """Track one chunk of frames; write its results and the state after it."""
@@ -91,18 +152,19 @@ class TrackingJob:
         if manifest is None:
             sequence = self.load_recording()
             setup, state = TrackSetup.load(self.files.setup), TrackState.load(self.files.state(chunk))
-            done = first - start["first"]
+            done, begins = first - start["first"], _find_beginning(start)
             state, results = track_frames(
                 sequence,
                 setup,
                 state,
                 range(first, end),
-                lambda frame, _: progress.frames(done + frame - first + 1, start["frames"]),
+                lambda frame, _: progress.frames(done + frame - first + 1, start["frames"], begins),
             )
             self.files.write(self.files.chunk(chunk), results.save)
             self.files.write(self.files.state(chunk + 1), state.save)
             manifest = self.files.write_manifest(step, [self.files.chunk(chunk), self.files.state(chunk + 1)], {})
-        progress.chunk_done(end - start["first"], start["frames"], f"frames {first} to {end - 1} tracked")
+        message = f"frames {first} to {end - 1} tracked"
+        progress.chunk_done(end - start["first"], start["frames"], _find_beginning(start), message)
         return manifest
 
     def finish(self, start: dict[str, Any], destination: Path, progress: JobProgress) -> None:
@@ -115,3 +177,8 @@ class TrackingJob:
         setup = TrackSetup.load(self.files.setup)
         chunks = [TrackChunk.load(self.files.chunk(number)) for number in range(len(start["chunks"]))]
         self.files.write(destination, join_chunks(self.load_recording(), setup, chunks).save)
+
+
+def _find_beginning(start: dict[str, Any]) -> float:
+    """Share of the bar when tracking begins; jobs of before it was noted have 0.1."""
+    return start.get("begins", 0.1)

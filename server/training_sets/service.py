@@ -86,6 +86,18 @@ def choose_registrations(session: Session, rule: TrainingRule) -> list[Chosen]:
     return sorted(found.values(), key=lambda chosen: (chosen.scan.name, str(chosen.scan.id)))
 
 
+def choose_members(session: Session, set_id: uuid.UUID) -> list[Chosen]:
+    """The registrations of a training set."""
+    query = (
+        select(RegistrationRow, ScanRow)
+        .join(ScanRow, ScanRow.id == RegistrationRow.scan_id)
+        .join(TrainingMemberRow, TrainingMemberRow.registration_id == RegistrationRow.id)
+        .where(TrainingMemberRow.training_set_id == set_id)
+        .order_by(ScanRow.name, ScanRow.id)
+    )
+    return [Chosen(row, scan) for row, scan in session.execute(query)]
+
+
 def _is_accepted_by_two(row: RegistrationRow) -> bool:
     said = [entry["decision"] for entry in row.standing.values()]
     return said.count("accept") >= 2 and "reject" not in said
@@ -237,17 +249,6 @@ def list_members(
         return items, None
     member, _, scan = found[limit - 1]
     return items, write_cursor(scan.name, str(member.id))
-
-
-def list_subjects(session: Session, set_id: uuid.UUID) -> set[str]:
-    """Whose hands a set is of."""
-    query = (
-        select(ScanRow.subject)
-        .join(RegistrationRow, RegistrationRow.scan_id == ScanRow.id)
-        .join(TrainingMemberRow, TrainingMemberRow.registration_id == RegistrationRow.id)
-        .where(TrainingMemberRow.training_set_id == set_id)
-    )
-    return set(session.scalars(query))
 
 
 def read_list(storage: Storage, row: TrainingSetRow) -> dict[str, Any]:

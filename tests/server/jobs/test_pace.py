@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from server.jobs.pace import Pace
@@ -34,3 +36,58 @@ def test_nothing_is_said_before_there_is_something_to_judge_by() -> None:
     pace.estimate(0.0)
     clock.seconds += 0.5
     assert pace.estimate(0.4) is None, "one that jumped over what was kept from before"
+
+
+def run(stages: list[tuple[float, float]], step: float) -> list[tuple[float, float, float | None]]:
+    """Share of the time gone by, seconds left in truth and as told, for stages of (share of the bar, seconds)."""
+    clock = Clock()
+    pace, total, told = Pace(clock), sum(seconds for _, seconds in stages), []
+    began, at = clock.seconds, 0.0
+    for share, seconds in stages:
+        for number in range(round(seconds / step)):
+            said = pace.estimate(at + share * number * step / seconds)
+            gone = clock.seconds - began
+            told.append((gone / total, total - gone, said))
+            clock.seconds += step
+        at += share
+    return told
+
+
+@pytest.mark.parametrize("step", [0.2, 2.5])
+@pytest.mark.parametrize(
+    "stages",
+    [
+        pytest.param([(1.0, 300.0)], id="one stage"),
+        pytest.param([(0.3, 90.0), (0.2, 60.0), (0.5, 150.0)], id="stages of known cost"),
+        pytest.param([(0.1, 90.0), (0.9, 300.0)], id="a first stage that takes three times its share"),
+        pytest.param([(0.5, 40.0), (0.1, 60.0), (0.4, 200.0)], id="each one slower than the one before"),
+    ],
+)
+def test_the_time_left_never_leaps(stages: list[tuple[float, float]], step: float) -> None:
+    told = [said for _, _, said in run(stages, step) if said is not None]
+    assert len(told) > 50
+    for before, after in pairwise(told):
+        assert after <= 1.2 * before, "it rose by more than a fifth between two updates"
+        assert after >= 0.6 * (before - step) - 1.0, "it fell by more than the time that went by and a bit"
+
+
+def test_at_constant_speed_it_is_right() -> None:
+    for gone, truth, said in run([(0.3, 90.0), (0.2, 60.0), (0.5, 150.0)], 0.2):
+        if gone > 0.05:
+            assert said == pytest.approx(truth, rel=0.05, abs=1.0)
+
+
+def test_a_stage_of_another_pace_is_made_up_for() -> None:
+    told = run([(0.1, 90.0), (0.9, 300.0)], 0.2)
+    late = [(truth, said) for gone, truth, said in told if gone > 0.6]
+    assert all(said is not None and said == pytest.approx(truth, rel=0.25, abs=5.0) for truth, said in late)
+
+
+def test_a_bar_that_would_go_back_stands_still() -> None:
+    clock = Clock()
+    pace = Pace(clock)
+    pace.estimate(0.0)
+    clock.seconds += 10.0
+    first = pace.estimate(0.5)
+    clock.seconds += 1.0
+    assert first is not None and (pace.estimate(0.2) or 0.0) <= first, "what is done again was counted before"

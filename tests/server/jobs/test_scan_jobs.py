@@ -106,7 +106,7 @@ def test_a_job_registers_what_was_chosen_when_it_was_made(studio: Studio, genera
     bench = ScanBench(studio.settings, studio.database)
     one = add_registered(studio.app, generated_hand, "one", collection="x")
     add_registered(studio.app, generated_hand, "two", collection="x", subject="Bob")
-    with pytest.raises(Exception, match="no such scan to register"):
+    with pytest.raises(Exception, match="Untrained right hand has registered all 2 scans of x as cropped now"):
         bench.make(making.make_register_job, RegisterCreate(collection="x"))  # this model has registered both
     with studio.database.writing() as session:
         session.get_one(RegistrationRow, one).decision = "accept"
@@ -184,7 +184,7 @@ def test_recordings_are_tracked_with_a_model_of_the_studio_and_its_mirror_image(
         file = find_file(storage, session.get_one(HandModelRow, UNTRAINED_ID))
     recording = storage.folder("sequences", tracked.sequence_id)
     for params, model in ((job["params"], file), (shipped["params"], None)):
-        tracking = TrackingJob(recording, params | {"calibrate": False}, JobFiles(tmp_path / "job"), model)
+        tracking = TrackingJob(recording, params | {"calibrate": False}, JobFiles(tmp_path / "job"), "key", model)
         hands = tracking.load_hands()
         assert hands is not None and hands.keys() == {"right", "left"}
         for side, hand in hands.items():

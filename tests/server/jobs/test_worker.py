@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -10,19 +11,25 @@ import time
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from fastapi.testclient import TestClient
 
 from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.app.app import create_app
 from server.database import Database, utc_now
 from server.database.migrate import upgrade
 from server.imports.service import ImportDesk, import_recording
 from server.jobs import service, workers
 from server.jobs.models import JobRow
+from server.jobs.restarting import list_kept
 from server.settings import Settings
 from server.storage import Storage
+from server.tracks.models import TrackRow
+from tests.server.conftest import BASE_URL
 
 ROOT = Path(__file__).resolve().parents[3]
 PARAMS = {"calibrate": False, "first_iterations": 20}
@@ -208,17 +215,87 @@ def test_a_worker_that_is_stopped_leaves_its_job_to_the_other(bench: Bench) -> N
     assert job.crashes == 0
 
 
-def test_what_cannot_be_tracked_fails_with_the_reason_in_the_job_and_its_log(bench: Bench) -> None:
-    bench.start_worker()
-    job_id = bench.queue(last_frame=999)
+def wait_for_failure(bench: Bench, job_id: uuid.UUID) -> JobRow:
     ends = time.monotonic() + 60
     while bench.job(job_id).state != "failed" and time.monotonic() < ends:
         time.sleep(0.05)
     job = bench.job(job_id)
-    assert job.error is not None
-    assert "the recording has 0 to 44" in job.error
+    assert job.state == "failed" and job.error is not None and job.ended_at is not None
+    return job
+
+
+def test_a_job_that_fails_says_why_in_plain_words_and_its_traceback_is_in_the_log_of_the_worker_only(
+    bench: Bench, capfd: pytest.CaptureFixture[str]
+) -> None:
+    job_id = bench.queue()
+    bench.storage.folder("jobs", job_id).write_text("a file where the job needs a folder")
+    bench.start_worker()
+    job = wait_for_failure(bench, job_id)
     assert job.error in bench.log(job_id)
-    assert job.ended_at is not None
+    with TestClient(create_app(bench.settings), base_url=BASE_URL) as client:
+        shown = client.get(f"/api/v1/jobs/{job_id}").text + client.get(f"/api/v1/jobs/{job_id}/log").text
+    assert "nobody foresaw" in shown
+    for never in ("Traceback", 'File "', "site-packages", ".py", str(bench.settings.data_dir), "/tmp", "Errno"):
+        assert never not in shown, shown
+    number = re.findall(r"error ([0-9a-f]{8})", job.error or "")
+    written = capfd.readouterr().err
+    assert len(number) == 1 and f"error {number[0]}" in written and "Traceback" in written, "by its number it is found"
+
+
+def test_what_is_known_to_be_wrong_is_named_without_the_folders_of_the_machine(bench: Bench) -> None:
+    job_id = bench.queue()
+    (bench.storage.folder("sequences", bench.sequence_id) / "sequence.json").write_text("{}")
+    bench.start_worker()
+    job = wait_for_failure(bench, job_id)
+    assert "sequence.json" in job.error and job.error in bench.log(job_id)
+    assert str(bench.settings.data_dir) not in job.error and "nobody foresaw" not in job.error
+
+
+@pytest.mark.timeout(900)
+def test_progress_never_goes_back_and_a_fitted_shape_is_not_lost_with_a_cancelled_job(bench: Bench) -> None:
+    """One job is cancelled, resumed, killed; then one with the same parameters takes its start over."""
+    worker = bench.start_worker()
+    wanted = {"calibrate": True, "last_frame": 34}
+    first = bench.queue(**wanted)
+    seen: list[tuple[float, int]] = []
+
+    def watch(job_id: uuid.UUID, until: Callable[[JobRow], bool]) -> JobRow:
+        def is_so(job: JobRow) -> bool:
+            seen.append((job.progress, job.frames_done))
+            return until(job)
+
+        return bench.wait(job_id, is_so, 300.0)
+
+    watch(first, lambda job: job.frames_done >= 3)
+    begun = bench.job(first).progress
+    assert 0.5 < begun < 0.98, "the beginning takes longer than these few frames, and the bar knows it"
+    with bench.database.writing() as session:
+        service.cancel_job(session, first)
+        assert list_kept(bench.storage, service.get_job(session, first)) == ["the shape of the hands, fitted"]
+    second = bench.queue(**wanted)
+    bench.wait(second, lambda job: job.frames_done >= 3)
+    log = bench.log(second)
+    assert any("taken over from the job that was cancelled" in line for line in log), log
+    assert not any("fitting the shape" in line for line in log)
+    with bench.database.writing() as session:
+        service.cancel_job(session, second)
+        service.resume_job(session, first)
+    watch(first, lambda job: job.frames_done >= 23)
+    bench.kill(worker)
+    bench.start_worker()
+    watch(first, lambda job: job.state == "succeeded")
+    assert sum("fitting the shape (1 of 2)" in line for line in bench.log(first)) == 1
+    assert all(a <= b for a, b in pairwise(seen)), "neither the bar nor the count of frames goes back"
+    with bench.database.writing() as session:
+        service.resume_job(session, second)
+    bench.wait_for_end(second)
+    assert_same(bench.arrays(first), bench.arrays(second))
+    other = bench.queue(**wanted | {"iterations": 3})
+    bench.wait(other, lambda job: job.stage.startswith("following"))
+    assert not any("taken over" in line for line in bench.log(other)), "its parameters are others"
+    with bench.database.reading() as session:
+        track = session.get_one(TrackRow, bench.job(first).track_id)
+    assert track.error_px is not None and 0.0 < track.error_px < 10.0, "judged as soon as it is there"
 
 
 def test_a_damaged_working_file_fails_the_job_instead_of_its_result(bench: Bench) -> None:

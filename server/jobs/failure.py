@@ -1,0 +1,34 @@
+"""What people read when a job has failed: sentences, without tracebacks and without paths of the machine."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from server.errors import StudioError
+
+PATH = re.compile(r"(?<![\w./])(?:[A-Za-z]:)?/(?:[^\s/'\",;]+/)+")
+"""The folders of an absolute path: what stands before its last part."""
+
+
+def describe_error(error: Exception, number: str, root: Path) -> str:
+    """What went wrong, for people.
+
+    Args:
+        error: What was raised. Of one that nobody foresaw nothing is told but that it happened.
+        number: By which it is found in the log of the worker.
+        root: The data folder.
+    """
+    from tracker import TrackerError
+
+    if isinstance(error, (StudioError, TrackerError)):
+        return hide_paths(str(error), root)
+    return (
+        f"Something went wrong that nobody foresaw (error {number}). What was stored before is untouched. Try again. "
+        f"If it happens again, tell whoever looks after the studio: the worker's log has the details under {number}."
+    )
+
+
+def hide_paths(text: str, root: Path) -> str:
+    """A text without the folders that files lie in: of files of the studio the part below its data folder stays."""
+    return PATH.sub("", text.replace(f"{root.resolve()}/", "").replace(f"{root}/", ""))

@@ -1,0 +1,69 @@
+"""Jobs that ended without success: what is kept of them, and whether they can go on or be tried again."""
+
+from __future__ import annotations
+
+import uuid
+
+from sqlalchemy.orm import Session
+
+from server.jobs.files import JobFiles
+from server.jobs.making import list_job_scans
+from server.jobs.models import JobRow
+from server.jobs.obstacles import find_model_obstacles, find_track_obstacles, make_check
+from server.jobs.schemas import LoopCreate, RestartCheck, TrainCreate
+from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles
+from server.storage import Storage
+
+ACTS = ("retry", "resume")
+
+
+def check_restart(session: Session, storage: Storage, job: JobRow) -> RestartCheck:
+    """What can be done with a job that has ended."""
+    check = make_check(session, find_restart_obstacles(session, storage, job))
+    return RestartCheck(resume=check, retry=check, kept=list_kept(storage, job))
+
+
+def find_restart_obstacles(session: Session, storage: Storage, job: JobRow) -> list[str]:
+    """Why a job would fail if it were done now: what was there when it was made may be gone."""
+    if job.kind == "track":
+        assert job.sequence_id is not None, "a tracking job has a recording"
+        return find_track_obstacles(session, job.sequence_id, job.params)
+    if job.kind == "register":
+        return find_model_obstacles(session, storage, uuid.UUID(job.params["model_id"]), deleted_too=True)
+    if job.kind == "train":
+        asked = {name: value for name, value in job.params.items() if name in TrainCreate.model_fields}
+        return find_train_obstacles(session, storage, TrainCreate.model_validate(asked))
+    return find_loop_obstacles(session, storage, read_loop(job), list_job_scans(session, job.id))
+
+
+def read_loop(job: JobRow) -> LoopCreate:
+    """What was asked of a loop."""
+    return LoopCreate.model_validate({name: value for name, value in job.params.items() if name != "model"})
+
+
+def list_kept(storage: Storage, job: JobRow) -> list[str]:
+    """What a job has done so far, for people; a step that was broken off does not count."""
+    if job.kind == "track":
+        return _list_kept_of_tracking(storage, job)
+    kept = []
+    if job.frames_done > 0:
+        kept.append("1 registration" if job.frames_done == 1 else f"{job.frames_done} registrations")
+    if job.hand_model_id is not None:
+        kept.append("the model that was trained")
+    elif stages := len(list(storage.folder("jobs", job.id).glob("train-*.json"))):
+        kept.append("1 stage of the training" if stages == 1 else f"{stages} stages of the training")
+    return kept
+
+
+def _list_kept_of_tracking(storage: Storage, job: JobRow) -> list[str]:
+    files = JobFiles(storage.folder("jobs", job.id), storage.remote_folder("jobs", job.id))
+    if not files.is_done("start"):
+        return []
+    kept = ["the shape of the hands, fitted" if job.params.get("calibrate", True) else "the first pose"]
+    manifest = files.read_manifest("start") or {"chunks": []}
+    done = 0
+    while done < len(manifest["chunks"]) and files.is_done(f"chunk-{done:04d}"):
+        done += 1
+    if done:
+        kept.append(f"frames {manifest['chunks'][0][0]} to {manifest['chunks'][done - 1][1] - 1}")
+    return kept

@@ -1,0 +1,200 @@
+"""What cannot be done is told before it is tried: the answer to a form and to the request are the same."""
+
+from __future__ import annotations
+
+import uuid
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from sqlalchemy import select
+
+from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.decisions.schemas import DecisionMake
+from server.decisions.service import decide
+from server.hand_models.models import HandModelRow
+from server.hand_models.storing import UNTRAINED_ID
+from server.registrations.models import RegistrationRow
+from tests.server.conftest import AddRecording, GeneratedHand, Studio
+from tests.server.curation import add_registered, make_true_hand
+
+API = "/api/v1"
+NO_WORKER = "No worker is running: the job waits until one is started with `handloom worker`."
+
+
+def refused(client: TestClient, path: str, body: dict[str, Any]) -> str:
+    """Why a job cannot be started; the check and the request say the same, and nothing is stored."""
+    jobs, sets = client.get(f"{API}/jobs").json(), client.get(f"{API}/training-sets").json()
+    checked = client.post(f"{API}/jobs{path}/check", json=body)
+    assert checked.status_code == 200, checked.text
+    answer = client.post(f"{API}/jobs{path}", json=body)
+    assert answer.status_code in (404, 422), answer.text
+    obstacles = checked.json()["obstacles"]
+    assert not checked.json()["can_start"] and obstacles
+    assert answer.json()["detail"] == " ".join(obstacles)
+    assert (client.get(f"{API}/jobs").json(), client.get(f"{API}/training-sets").json()) == (jobs, sets)
+    return answer.json()["detail"]
+
+
+def may_start(client: TestClient, path: str, body: dict[str, Any]) -> None:
+    checked = client.post(f"{API}/jobs{path}/check", json=body).json()
+    assert (checked["can_start"], checked["obstacles"]) == (True, []), checked
+    answer = client.post(f"{API}/jobs{path}", json=body)
+    assert answer.status_code == 201, answer.text
+
+
+def test_a_recording_that_cannot_be_tracked_is_not_queued(client: TestClient, add_recording: AddRecording) -> None:
+    flat = add_recording("colour only", depth=False)
+    deep = add_recording("with depth")
+    for recording, params, told in (
+        (flat, {}, "None of its cameras has depth images"),
+        (deep, {"camera": "cam7"}, "Camera cam7 has no depth images. Choose cam0."),
+        (deep, {"last_frame": 999}, f"the recording has 0 to {deep['frame_count'] - 1}"),
+        (deep, {"first_frame": 5, "last_frame": 3}, "last_frame 3 comes before first_frame 5"),
+        (deep, {"iterations": 0}, "needed a number from 1 to 200"),
+        (deep, {"hand_model_id": str(uuid.uuid4())}, "There is no hand model"),
+        ({"id": str(uuid.uuid4())}, {}, "does not exist"),
+    ):
+        assert told in refused(client, "", {"sequence_id": recording["id"], "params": params})
+    ids = [flat["id"], deep["id"]]
+    found = client.post(f"{API}/jobs/batch/check", json={"sequence_ids": ids}).json()["refused"]
+    assert [one["id"] for one in found] == [flat["id"]] and "depth images" in found[0]["detail"]
+    may_start(client, "", {"sequence_id": deep["id"]})
+
+
+def test_who_asks_hears_that_nobody_is_there_to_do_it(client: TestClient, add_recording: AddRecording) -> None:
+    body = {"sequence_id": add_recording("with depth")["id"]}
+    assert client.post(f"{API}/jobs/check", json=body).json()["notes"] == [NO_WORKER]
+
+
+def test_what_is_gone_meanwhile_keeps_a_job_from_being_tried_again(
+    client: TestClient, add_recording: AddRecording
+) -> None:
+    recording = add_recording("with depth")
+    job = client.post(f"{API}/jobs", json={"sequence_id": recording["id"]}).json()
+    client.post(f"{API}/jobs/{job['id']}/cancel")
+    found = client.get(f"{API}/jobs/{job['id']}/restart").json()
+    assert (found["retry"]["can_start"], found["resume"]["can_start"], found["kept"]) == (True, True, [])
+    revision = client.get(f"{API}/sequences/{recording['id']}").headers["etag"]
+    assert client.delete(f"{API}/sequences/{recording['id']}", headers={"If-Match": revision}).status_code < 300
+    found = client.get(f"{API}/jobs/{job['id']}/restart").json()
+    assert "was deleted" in found["retry"]["obstacles"][0]
+    for act in ("retry", "resume"):
+        answer = client.post(f"{API}/jobs/{job['id']}/{act}")
+        assert answer.status_code == 422 and "was deleted" in answer.json()["detail"]
+    done = client.post(f"{API}/jobs/bulk", json={"act": "retry", "job_ids": [job["id"]]}).json()
+    assert "was deleted" in done["refused"][0]["detail"]
+
+
+def test_registering_needs_scans_that_are_not_done(
+    client: TestClient, studio: Studio, generated_hand: GeneratedHand
+) -> None:
+    assert "There is no scan to register. Add scans first" in refused(client, "/register", {})
+    add_registered(studio.app, generated_hand, "one", collection="x")
+    assert "has registered the one scan of x as cropped now" in refused(client, "/register", {"collection": "x"})
+    accept(studio)
+    body = {"only": "not_accepted"}
+    assert "Somebody has accepted the newest registration of the one scan" in refused(client, "/register", body)
+    assert "There is no hand model" in refused(client, "/register", {"model_id": str(uuid.uuid4())})
+    may_start(client, "/register", {"only": "all", "collection": "x"})
+
+
+def accept(studio: Studio) -> None:
+    """Accept every registration about which nobody has decided."""
+    with studio.database.writing() as session:
+        for row in session.scalars(select(RegistrationRow).where(RegistrationRow.reviewer_count == 0)).all():
+            made = DecisionMake(decision="accept", operation_id=uuid.uuid4())
+            decide(session, row.id, LOCAL_ACCOUNT_ID, made)
+
+
+def test_training_says_how_many_registrations_and_people_are_missing(
+    client: TestClient, studio: Studio, generated_hand: GeneratedHand, tmp_path: Path
+) -> None:
+    hands = [make_true_hand(tmp_path / str(pose), 1, pose) for pose in (0, 5, 9, 20)]
+    rule = {"by": "decisions"}
+    body = {"name": "Our hand", "rule": rule}
+    assert "There are 0 registrations of 0 people; a model needs 20" in refused(client, "/train", body)
+    for number in range(6):
+        add_registered(studio.app, hands[number % 4], f"a{number}", subject=f"S{number % 2}")
+    told = refused(client, "/train", body)
+    assert "There are 0 registrations of 0 people" in told
+    assert "6 registrations wait for a decision on the page Curate." in told
+    accept(studio)
+    assert refused(client, "/train", body) == (
+        "There are 6 registrations of 2 people; a model needs 20 of at least 2 people. Register and accept more scans."
+    )
+    for number in range(17):
+        add_registered(studio.app, hands[number % 4], f"b{number}", subject="S0")
+    for number in range(2):
+        add_registered(studio.app, hands[number], f"c{number}", subject="S7")
+    accept(studio)
+    told = refused(client, "/train", {**body, "rule": {**rule, "leave_out_subjects": ["S1"]}})
+    assert "There are 20 registrations of 1 person; a model needs 20 of at least 2 people" in told
+    assert "Of 22 registrations the others do not count: a hand needs at least 3 of its own." in told
+    for left_out, tested, said in (
+        ([], [], "Nobody is kept for testing"),
+        ([], ["S1"], "S1 is in the training set"),
+        (["S9"], ["S9"], "S9 has no registration that was accepted"),
+    ):
+        asked = {**body, "rule": {**rule, "leave_out_subjects": left_out}, "evaluate": "quick"}
+        assert said in refused(client, "/train", {**asked, "test_subjects": tested})
+    may_start(client, "/train", body)
+    [kept] = client.get(f"{API}/training-sets").json()["items"]
+    assert (kept["name"], kept["registration_count"], kept["subject_count"]) == ("Our hand", 25, 3)
+    assert client.post(f"{API}/jobs/train", json={"name": "x"}).status_code == 422
+
+
+def test_training_needs_the_same_mesh_a_right_hand_and_fingers_that_bend(
+    client: TestClient, studio: Studio, generated_hand: GeneratedHand
+) -> None:
+    for number in range(20):
+        add_registered(studio.app, generated_hand, f"{number}", subject=f"S{number % 2}")
+    body = {"name": "Our hand", "rule": {"by": "verdict"}}
+    assert "The hands hardly move" in refused(client, "/train", body), "all are of one scan"
+    with studio.database.writing() as session:
+        untrained = session.get_one(HandModelRow, UNTRAINED_ID)
+        columns = {
+            "kind": "uploaded",
+            "digest": untrained.digest,
+            "facts": {**untrained.facts, "vertices": 778},
+            "report": None,
+        }
+        other = HandModelRow(name="MANO", side="left", **columns)
+        session.add(other)
+        session.flush()
+        folder = studio.app.state.storage.folder("models", other.id)
+        folder.mkdir()
+        (folder / "model.npz").write_bytes(
+            (studio.app.state.storage.folder("models", UNTRAINED_ID) / "model.npz").read_bytes()
+        )
+    told = refused(client, "/train", {**body, "model_id": str(other.id)})
+    assert "MANO is a left hand; training begins with a right one" in told
+    assert f"Some registrations have {untrained.facts['vertices']} vertices, MANO has 778" in told
+    (folder / "model.npz").write_bytes(b"x")
+    assert "gone or not what it was" in refused(client, "/train", {**body, "model_id": str(other.id)})
+
+
+def test_a_loop_needs_scans_enough_that_training_could_work(
+    client: TestClient, studio: Studio, generated_hand: GeneratedHand
+) -> None:
+    body: dict[str, Any] = {"name": "Our hand"}
+    assert "There are no scans" in refused(client, "/loop", body)
+    for number in range(20):
+        add_registered(studio.app, generated_hand, f"{number}", subject=f"S{number % 3}")
+    for more, told in (
+        ({"leave_out_subjects": ["S0"]}, "There are 13 registrations of 2 people; a model needs 20"),
+        ({"by": "decisions"}, "20 registrations wait for a decision on the page Curate."),
+        ({"by": "decisions", "rounds": 2}, "by people's decisions it is 1"),
+        ({"evaluate": "quick"}, "Nobody is kept for testing"),
+        ({"evaluate": "quick", "leave_out_subjects": ["Zoe"]}, "There is no scan of Zoe"),
+    ):
+        assert told in refused(client, "/loop", {**body, **more})
+    may_start(client, "/loop", body)
+
+
+@pytest.mark.parametrize("path", ["", "/register", "/train", "/loop", "/batch"])
+def test_a_check_is_refused_as_the_request_is_where_it_makes_no_sense(client: TestClient, path: str) -> None:
+    assert client.post(f"{API}/jobs{path}/check", json={"nonsense": [1]}).status_code == (
+        client.post(f"{API}/jobs{path}", json={"nonsense": [1]}).status_code
+    )

@@ -3,6 +3,7 @@ import { IconKeyboard, IconPlugConnectedX, IconSearch } from "@tabler/icons-reac
 import { useQueryClient } from "@tanstack/react-query";
 import { Suspense, useEffect, useRef, useState } from "react";
 import { Link, Outlet, useLocation } from "react-router";
+import icon from "../icon.svg?no-inline";
 import { useKeymap } from "../actions/useKeymap";
 import { useActiveJobs, useJobStream } from "../api/jobs";
 import { useHint } from "../state/keys";
@@ -22,7 +23,7 @@ import classes from "./Shell.module.css";
 function Brand() {
   return (
     <Link to="/recordings" className={classes.brand} aria-label="Handloom, to the recordings">
-      <img src="/icon.svg" width={24} height={24} alt="" />
+      <img src={icon} width={24} height={24} alt="" />
       <Text fw={650} size="md" span className={classes.brandName}>
         Handloom
       </Text>

@@ -1,6 +1,7 @@
 import { useQueryClient } from "@tanstack/react-query";
 import { Text, Title } from "@mantine/core";
 import { useEffect, useRef, type ReactNode } from "react";
+import icon from "../../icon.svg?no-inline";
 import type { Me } from "../../api/types";
 import { loadKeys } from "../../state/keys";
 import { usePresence, welcome } from "../../state/me";
@@ -26,7 +27,7 @@ function LoginPage({ code }: { code: string | null }) {
     <main className={classes.ground}>
       <div className={classes.card}>
         <div className={classes.brand}>
-          <img src="/icon.svg" width={40} height={40} alt="" />
+          <img src={icon} width={40} height={40} alt="" />
           <div>
             <Title order={1}>Handloom</Title>
             <Text size="sm" className="quiet">

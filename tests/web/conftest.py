@@ -239,10 +239,13 @@ class Picture:
         return self.page.locator("[data-picture]").nth(self.index)
 
     def wait(self) -> None:
-        """Until the image is there."""
+        """Until the image that is wanted is on the screen."""
         self.element.locator("canvas").first.wait_for()
         self.page.wait_for_function(
-            "(i) => document.querySelectorAll('[data-picture]')[i]?.getAttribute('aria-busy') === 'false'",
+            """(i) => {
+              const pane = document.querySelectorAll('[data-picture]')[i];
+              return pane?.getAttribute('aria-busy') === 'false' && pane.dataset.drawn === pane.dataset.frame;
+            }""",
             arg=self.index,
         )
 
@@ -265,6 +268,24 @@ class Picture:
         from playwright.sync_api import expect
 
         expect(self.page.get_by_test_id("save-state")).to_have_text(re.compile("^saved$"))
+
+
+@dataclass
+class HeldBack:
+    """Answers that a page gets only when it is told so: a slow network, without waiting for it."""
+
+    page: Any
+    addresses: re.Pattern[str]
+    held: list[Any] = field(default_factory=list)
+    is_open: bool = False
+
+    def __post_init__(self) -> None:
+        self.page.route(self.addresses, lambda route: route.continue_() if self.is_open else self.held.append(route))
+
+    def release(self) -> None:
+        self.is_open = True
+        while self.held:
+            self.held.pop(0).continue_()
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.web.conftest import HeldBack
 from tests.web.hands import Hands, fill_studio
 from tests.web.test_accessibility import find_faults
 
@@ -118,6 +119,31 @@ def test_the_next_hand_is_on_the_screen_within_150_ms_of_the_key(
     assert decided(studio) == [{"a": "accept", "r": "reject", "u": "unsure"}["aru"[n % 3]] for n in range(1, HANDS)] + [
         None
     ]
+
+
+def test_what_is_judged_is_on_the_screen_and_a_held_key_judges_once(studio, fresh, open_page, screenshots):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    first, second, third = fresh.registrations[:3]
+    slow = HeldBack(page, re.compile(f"/registrations/({second}|{third})/geometry"))
+    page.goto("/curate?collection=curation")
+    wait_for_hand(page, first)
+    accept = page.get_by_role("button", name=re.compile("^Accept"))
+    page.keyboard.press("a")
+    expect(page.get_by_text("The hand is on its way")).to_be_visible()
+    expect(accept).to_be_disabled()
+    page.keyboard.press("a")
+    screenshots.take(page, "curate-waits")
+    slow.release()
+    wait_for_hand(page, second)
+    expect(accept).to_be_enabled()
+    for _ in range(3):
+        page.keyboard.down("r")  # held: the second and the third are repetitions
+    page.keyboard.up("r")
+    wait_for_hand(page, third)
+    wait_until_saved(page)
+    assert decided(studio)[:3] == ["accept", "reject", None]
 
 
 def test_decisions_reasons_and_undo_by_keys_alone(studio, fresh, open_page):

@@ -8,6 +8,8 @@ import uuid
 import numpy as np
 import pytest
 
+from tests.web.conftest import HeldBack
+
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(180)]
 
 
@@ -87,3 +89,15 @@ def test_a_flag_is_put_away_by_a_key(studio, labelled, open_page, picture_of):
     page.keyboard.press("Shift+I")
     expect(card).to_have_count(count - 1)
     assert studio.get(f"/sequences/{labelled['id']}/flags")["dismissed"] == 1
+
+
+def test_a_label_is_found_right_only_once_its_picture_is_there(labelled, open_page):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    slow = HeldBack(page, re.compile(r"/color\.jpg"))
+    page.goto(f"/recordings/{labelled['id']}/check")
+    button = page.get_by_role("button", name="It is right").first
+    expect(button).to_be_disabled()
+    slow.release()
+    expect(button).to_be_enabled()

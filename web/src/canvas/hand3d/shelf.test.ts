@@ -1,4 +1,5 @@
-import { expect, test } from "vitest";
+import { afterEach, expect, test, vi } from "vitest";
+import { ApiError } from "../../api/client";
 import type { HandGeometry } from "./geometry";
 import { createShelf } from "./shelf";
 import type { Staged } from "./staged";
@@ -63,6 +64,27 @@ test("a failure is kept with its reason, does not stop the others, and can be tr
   expect(shelf.failureOf("a")).toBeNull();
   await studio.answer("a");
   expect(shelf.get("a")).not.toBeNull();
+});
+
+afterEach(() => void vi.useRealTimers());
+
+test("cut off, a hand is asked for again later and later, those behind it wait, and all come by themselves once the network is back", async () => {
+  vi.useFakeTimers();
+  const asked: string[] = [];
+  let isCutOff = true;
+  const load = (id: string): Promise<HandGeometry> => {
+    asked.push(id);
+    return isCutOff ? Promise.reject(new ApiError(0, "Unreachable", "No answer.")) : Promise.resolve({ name: id } as unknown as HandGeometry);
+  };
+  const shelf = createShelf(aStudio().stage, load, atOnce);
+  shelf.want(["a", "b", "c", "d"]);
+  await vi.advanceTimersByTimeAsync(60_000);
+  expect(shelf.failureOf("a")?.message).toBe("No answer.");
+  expect(asked.length, "two hands, at once and after 1, 2, 4, 8, 10, ... s").toBeLessThanOrEqual(18);
+  expect(new Set(asked)).toEqual(new Set(["a", "b"]));
+  isCutOff = false;
+  await vi.advanceTimersByTimeAsync(20_000);
+  expect(["a", "b", "c", "d"].map((id) => shelf.get(id) !== null && shelf.failureOf(id) === null)).toEqual([true, true, true, true]);
 });
 
 test("after the end nothing is brought to the card, and all of it is given back", async () => {

@@ -1,5 +1,6 @@
 /** Hands that are shown soon, loaded and brought to the graphics card before anybody asks for them. */
 
+import { isForGood, onNetworkBack, pauseAfter } from "../patience";
 import type { HandGeometry } from "./geometry";
 import type { Stage } from "./stage";
 import type { Staged } from "./staged";
@@ -7,7 +8,7 @@ import type { Staged } from "./staged";
 export interface Shelf {
   /** What is wanted, the most urgent first; everything else may be put away. */
   want(ids: readonly string[]): void;
-  /** A hand that can be drawn at once; null while it is on its way. */
+  /** A hand that can be drawn at once; null while it is on its way. What failed for a passing reason is asked for again by itself. */
   get(id: string): Staged | null;
   failureOf(id: string): Error | null;
   /** Ask again for what failed. */
@@ -26,6 +27,9 @@ interface Slot {
   readonly abort: AbortController;
   hand: Staged | null;
   failure: Error | null;
+  /** How often it failed, and until when it is left alone. */
+  failures: number;
+  pause: ReturnType<typeof setTimeout> | null;
 }
 
 /** `later` says when there is time to bring a hand to the card that nobody waits for. */
@@ -46,11 +50,19 @@ export function createShelf(
     for (const id of wanted) {
       if (busy >= AT_ONCE || isStopped) return;
       if (!slots.has(id)) void fetchOne(id);
+      // What is shown next does not come: nothing behind it is tried.
+      if (slots.get(id)?.failure && slots.get(id)?.pause) return;
     }
   }
 
-  async function fetchOne(id: string): Promise<void> {
-    const slot: Slot = { abort: new AbortController(), hand: null, failure: null };
+  function resume(id: string, slot: Slot): void {
+    if (slot.pause === null || slots.get(id) !== slot || isStopped) return;
+    clearTimeout(slot.pause);
+    slot.pause = null;
+    void fetchOne(id, slot);
+  }
+
+  async function fetchOne(id: string, slot: Slot = { abort: new AbortController(), hand: null, failure: null, failures: 0, pause: null }): Promise<void> {
     slots.set(id, slot);
     busy += 1;
     try {
@@ -58,9 +70,12 @@ export function createShelf(
       if (id !== wanted[0]) await new Promise<void>((resolve) => later(resolve));
       if (isStopped || slots.get(id) !== slot) return;
       slot.hand = stage.prepare(geometry);
+      slot.failure = null;
     } catch (failure) {
       if (slots.get(id) !== slot) return;
       slot.failure = failure instanceof Error ? failure : new Error(String(failure));
+      slot.failures += 1;
+      if (!isForGood(slot.failure)) slot.pause = setTimeout(() => resume(id, slot), pauseAfter(slot.failures));
     } finally {
       busy -= 1;
       fill();
@@ -71,9 +86,12 @@ export function createShelf(
   function putAway(id: string): void {
     const slot = slots.get(id);
     slots.delete(id);
+    if (slot?.pause) clearTimeout(slot.pause);
     if (!slot?.hand) slot?.abort.abort();
     slot?.hand?.release();
   }
+
+  const stopListening = onNetworkBack(() => slots.forEach((slot, id) => resume(id, slot)));
 
   return {
     want(ids) {
@@ -93,6 +111,7 @@ export function createShelf(
     },
     stop() {
       isStopped = true;
+      stopListening();
       [...slots.keys()].forEach(putAway);
     },
   };

@@ -67,6 +67,10 @@ export default function CuratePage() {
     const isSeen = drawn.current !== "" && drawn.current === shownIn(curation.store.get())?.id;
     if (isSeen && mayDecide) curation.decide(decision, why);
   };
+  /** A key that is held judges once: what comes next has not been looked at. */
+  const decideByKey = (decision: Standing, why: readonly string[] = []) => (event: KeyboardEvent): void => {
+    if (!event.repeat) decide(decision, why);
+  };
   // After a click the keys belong to the picture again.
   const decideByClick = (decision: Standing, why: readonly string[] = []): void => {
     decide(decision, why);
@@ -79,14 +83,14 @@ export default function CuratePage() {
   useKeymap("curate", {
     ...handHandlers("curate", stage, control),
     undo: curation.undo,
-    "curate.accept": () => decide("accept"),
-    "curate.reject": () => decide("reject"),
-    "curate.unsure": () => decide("unsure"),
+    "curate.accept": decideByKey("accept"),
+    "curate.reject": decideByKey("reject"),
+    "curate.unsure": decideByKey("unsure"),
     "curate.undo": curation.undo,
     "curate.next": () => curation.go(1),
     "curate.previous": () => curation.go(-1),
     "curate.save": () => decisionLog().flush(),
-    ...Object.fromEntries(reasons.map((reason, at) => [`curate.reason${at + 1}`, () => decide("reject", [reason.name])])),
+    ...Object.fromEntries(reasons.map((reason, at) => [`curate.reason${at + 1}`, decideByKey("reject", [reason.name])])),
   });
 
   const mine = item ? decisionOf(state, item) : null;
@@ -143,7 +147,7 @@ export default function CuratePage() {
           <DecisionRefusals status={status} onGo={curation.goTo} />
         </HandView>
         {item ? (
-          <DecisionPanel item={item} mine={mine} reasons={reasons} mayDecide={mayDecide} onDecide={decideByClick} canUndo={state.steps.length > 0} onUndo={undoByClick} />
+          <DecisionPanel item={item} mine={mine} reasons={reasons} mayDecide={mayDecide} isDrawn={hand.isDrawn} onDecide={decideByClick} canUndo={state.steps.length > 0} onUndo={undoByClick} />
         ) : (
           !isEnd && <aside className={classes.panel} aria-label="The registration and the decision" />
         )}

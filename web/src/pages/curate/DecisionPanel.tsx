@@ -14,6 +14,8 @@ interface DecisionPanelProps {
   mine: Standing | null;
   reasons: readonly Reason[];
   mayDecide: boolean;
+  /** Nothing is judged before it is on the screen. */
+  isDrawn: boolean;
   onDecide: (decision: Standing, reasons?: readonly string[]) => void;
   canUndo: boolean;
   onUndo: () => void;
@@ -28,7 +30,7 @@ const ACTS = [
 const mm = (value: number | null): string => (value === null ? "–" : `${formatNumber(value, 2)} mm`);
 
 /** What is judged, what the program thinks of it, and what one can say. */
-export function DecisionPanel({ item, mine, reasons, mayDecide, onDecide, canUndo, onUndo }: DecisionPanelProps) {
+export function DecisionPanel({ item, mine, reasons, mayDecide, isDrawn, onDecide, canUndo, onUndo }: DecisionPanelProps) {
   const keyOf = useKeyOf();
   const { scan } = item;
   return (
@@ -76,7 +78,7 @@ export function DecisionPanel({ item, mine, reasons, mayDecide, onDecide, canUnd
       )}
       <div className={classes.acts} role="group" aria-label="Decision">
         {ACTS.map(({ kind, label, icon: Icon }) => (
-          <button key={kind} type="button" className={classes.act} data-kind={kind} aria-pressed={mine === kind} disabled={!mayDecide} onClick={() => onDecide(kind)}>
+          <button key={kind} type="button" className={classes.act} data-kind={kind} aria-pressed={mine === kind} disabled={!mayDecide || !isDrawn} onClick={() => onDecide(kind)}>
             <Icon size={18} aria-hidden />
             {label}
             <Kbd size="xs" aria-hidden>
@@ -99,7 +101,7 @@ export function DecisionPanel({ item, mine, reasons, mayDecide, onDecide, canUnd
         <ol className={classes.reasons}>
           {reasons.map((reason, at) => (
             <li key={reason.name}>
-              <button type="button" className={classes.reason} disabled={!mayDecide} onClick={() => onDecide("reject", [reason.name])}>
+              <button type="button" className={classes.reason} disabled={!mayDecide || !isDrawn} onClick={() => onDecide("reject", [reason.name])}>
                 <Kbd size="xs" aria-hidden>
                   {keyOf(`curate.reason${at + 1}`) || "–"}
                 </Kbd>

@@ -49,7 +49,9 @@ export function HandView({ scope, label, parts: { holder, canvas, stage, failure
           <Text size="xs">{SCAN_ERROR_FULL_MM} mm and more between scan and mesh</Text>
         </div>
       )}
-      {isBusy && !failure && !noStage && <div className={classes.waiting} role="status" aria-label="The hand is on its way" />}
+      {isBusy && !failure && !noStage && <div className={classes.waiting} role="status">
+          <span>The hand is on its way</span>
+        </div>}
       {(failure || noStage) && <div className={classes.failure}>{noStage ? <Text role="alert">{noStage}</Text> : failure}</div>}
     </div>
   );

@@ -129,7 +129,7 @@ export default function ModelPage() {
             {report?.registrations !== null && report && <Fact label="Learnt from">{report.registrations?.toLocaleString("en")}</Fact>}
             {report?.residualMm !== null && report && <Fact label="Distance to them, rms">{formatNumber(report.residualMm, 2)} mm</Fact>}
           </div>
-          {model.kind !== "default" && <LiveModel model={model} />}
+          {model.kind !== "default" && <LiveModel key={model.id} model={model} />}
           {raw.error && (
             <Text size="sm" c="var(--bad-text)" role="alert">
               The report could not be loaded: {raw.error.message}

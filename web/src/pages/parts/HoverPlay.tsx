@@ -12,14 +12,17 @@ export function HoverPlay({ recording, isPlaying }: { recording: Recording; isPl
   const camera = recording.cameras[0]?.id;
   const [step, setStep] = useState(0);
   const [isBroken, setBroken] = useState(false);
+  const [isCutOff, setCutOff] = useState(false);
+  useEffect(() => setCutOff(false), [isPlaying]);
   useEffect(() => {
-    if (!isPlaying) {
+    // Where a picture does not come, the others are not asked for either, again and again.
+    if (!isPlaying || isCutOff) {
       setStep(0);
       return;
     }
     const timer = setInterval(() => setStep((now) => (now + 1) % STEPS), STEP_MS);
     return () => clearInterval(timer);
-  }, [isPlaying]);
+  }, [isPlaying, isCutOff]);
 
   const frameOf = (at: number): number => Math.min(recording.frame_count - 1, Math.floor((at * recording.frame_count) / STEPS));
   if (!camera || isBroken) {
@@ -31,7 +34,7 @@ export function HoverPlay({ recording, isPlaying }: { recording: Recording; isPl
   }
   return (
     <div className={classes.box}>
-      <img src={thumbnailUrl(recording, camera, frameOf(step))} alt="" className={classes.image} onError={() => step === 0 && setBroken(true)} />
+      <img src={thumbnailUrl(recording, camera, frameOf(step))} alt="" className={classes.image} onError={() => (step === 0 ? setBroken(true) : setCutOff(true))} />
       {isPlaying && <div className={classes.bar} style={{ transform: `scaleX(${(step + 1) / STEPS})` }} />}
     </div>
   );

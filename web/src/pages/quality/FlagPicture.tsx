@@ -1,17 +1,27 @@
+import { useEffect } from "react";
 import { colorUrl, depthPictureUrl } from "../../api/recordings";
 import type { Flag, Recording } from "../../api/types";
 import { EDGES, HAND_COLORS, jointColor } from "../../model/joints";
 import classes from "./LabelCheck.module.css";
 
+export type PictureState = "waiting" | "here" | "missing";
+
 interface FlagPictureProps {
   recording: Recording;
   flag: Flag;
+  /** Told once the image under the label has come, or does not come. */
+  onState: (state: PictureState) => void;
 }
 
 /** The label over its image, cut out around the hand; the joints that are meant are ringed. */
-export function FlagPicture({ recording, flag }: FlagPictureProps) {
+export function FlagPicture({ recording, flag, onState }: FlagPictureProps) {
   const camera = recording.cameras.find((one) => one.id === flag.camera);
   const placed = flag.points.filter(([, , v]) => v > 0);
+  const isEmpty = !camera || placed.length === 0;
+  useEffect(() => {
+    // Without a placed joint there is nothing to cut out and to wait for.
+    if (isEmpty) onState("here");
+  }, [isEmpty, onState]);
   if (!camera || placed.length === 0) return <div className={classes.picture} />;
   const [xs, ys] = [placed.map(([x]) => x), placed.map(([, y]) => y)];
   const [left, top, right, bottom] = [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
@@ -21,7 +31,15 @@ export function FlagPicture({ recording, flag }: FlagPictureProps) {
   const box = [(left + right - width) / 2 + 0.5, (top + bottom - height) / 2 + 0.5, width, height].join(" ");
   return (
     <svg className={classes.picture} viewBox={box} role="img" aria-label={`${flag.hand} hand in frame ${flag.frame}`}>
-      <image href={(camera.has_color ? colorUrl : depthPictureUrl)(recording, flag.camera, flag.frame)} x={0} y={0} width={camera.width} height={camera.height} />
+      <image
+        href={(camera.has_color ? colorUrl : depthPictureUrl)(recording, flag.camera, flag.frame)}
+        x={0}
+        y={0}
+        width={camera.width}
+        height={camera.height}
+        onLoad={() => onState("here")}
+        onError={() => onState("missing")}
+      />
       <g transform="translate(0.5 0.5)" fill="none" strokeLinecap="round">
         {EDGES.map(([from, to]) => {
           const [a, b] = [flag.points[from], flag.points[to]];

@@ -1,5 +1,5 @@
 import { Button, Chip, Group, SegmentedControl, Skeleton, Text, Title } from "@mantine/core";
-import { IconChecks, IconPencil } from "@tabler/icons-react";
+import { IconChecks } from "@tabler/icons-react";
 import { Link, useParams, useSearchParams } from "react-router";
 import { useDismissal, useFlagPages } from "../../api/flags";
 import { useRecording } from "../../api/recordings";
@@ -7,9 +7,8 @@ import { KIND_NAMES, KINDS } from "../../model/flag";
 import { formatCount } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
-import { HandBadge } from "../parts/HandBadge";
 import { useTitle } from "../parts/useTitle";
-import { FlagPicture } from "./FlagPicture";
+import { FlagItem } from "./FlagItem";
 import classes from "./LabelCheck.module.css";
 
 /** Labels of a recording that look wrong, the worst first. */
@@ -103,45 +102,17 @@ export default function LabelCheckPage() {
         </EmptyState>
       )}
       {shot && flags.length > 0 && (
-        <ul className={classes.grid} aria-label="Flagged labels">
-          {flags.map((flag) => {
-            const at = new URLSearchParams({ camera: flag.camera, frame: String(flag.frame), hand: flag.hand });
-            return (
-              <li key={`${flag.kind}|${flag.camera}|${flag.frame}|${flag.hand}`} className={`card ${classes.item}`}>
-                <Link to={`/recordings/${recordingId}/annotate?${at}`} className={classes.look} aria-label={`Annotate frame ${flag.frame}, ${flag.hand} hand`}>
-                  <FlagPicture recording={shot} flag={flag} />
-                </Link>
-                <div className={classes.text}>
-                  <Group justify="space-between" wrap="nowrap" gap={8}>
-                    <Text size="sm" fw={600}>
-                      {KIND_NAMES[flag.kind]}
-                    </Text>
-                    <Text size="xs" className="quiet" title="1 is where a label begins to look wrong">
-                      {flag.score.toFixed(1)}
-                    </Text>
-                  </Group>
-                  <Group gap={8}>
-                    <HandBadge hand={flag.hand} />
-                    <Text size="xs" className="quiet">
-                      frame {flag.frame}
-                      {shot.cameras.length > 1 ? `, ${flag.camera}` : ""}
-                    </Text>
-                  </Group>
-                  <Text size="xs" className={classes.reason}>
-                    {flag.reason}
-                  </Text>
-                  <Group gap={8} mt="auto">
-                    <Button size="compact-xs" variant="default" component={Link} to={`/recordings/${recordingId}/annotate?${at}`} leftSection={<IconPencil size={14} aria-hidden />}>
-                      Mend
-                    </Button>
-                    <Button size="compact-xs" variant="subtle" disabled={dismissal.isPending} onClick={() => dismissal.mutate({ flag, isRight: !isDismissed })}>
-                      {isDismissed ? "Bring back" : "It is right"}
-                    </Button>
-                  </Group>
-                </div>
-              </li>
-            );
-          })}
+        <ul className={classes.grid} aria-label="Flagged labels" aria-busy={pages.isPlaceholderData} style={pages.isPlaceholderData ? { opacity: 0.6 } : undefined}>
+          {flags.map((flag) => (
+            <FlagItem
+              key={`${flag.kind}|${flag.camera}|${flag.frame}|${flag.hand}`}
+              recording={shot}
+              flag={flag}
+              isDismissed={isDismissed}
+              isBusy={dismissal.isPending || pages.isPlaceholderData}
+              onJudge={() => dismissal.mutate({ flag, isRight: !isDismissed })}
+            />
+          ))}
         </ul>
       )}
       {pages.hasNextPage && (

@@ -10,6 +10,7 @@ import { fetchRegistrationGeometry, useRegistration, useScanRegistrations, type 
 import { fetchScanGeometry, scanFileUrl, useChangeScan, useScan, useScanList, type Scan } from "../../api/scans";
 import type { Staged } from "../../canvas/hand3d/staged";
 import { useStage } from "../../canvas/hand3d/useStage";
+import type { Point } from "../../model/crop";
 import { formatAgo, formatBytes, formatNumber } from "../../model/format";
 import { useHint, useKeyOf } from "../../state/keys";
 import { DecisionBadge, VerdictBadge } from "../curate/Verdict";
@@ -170,6 +171,17 @@ function OpenScan({ scan }: { scan: Scan }) {
     stage.draw();
   }, [stage, taken, geometry.data]);
   useEffect(() => stage?.setGestures(!isCutting), [stage, isCutting]);
+  const { look, change } = control;
+  useEffect(() => {
+    // A stroke is drawn over a hand that stands still.
+    if (isCutting && look.isTurning) change({ isTurning: false });
+  }, [isCutting, look.isTurning, change]);
+  const begunOn = useRef("");
+  const viewNow = (): string => `${shown.current} ${[...(stage?.projection() ?? [])].join()}`;
+  /** A stroke belongs to the view that it was begun in. */
+  const cut = (points: readonly Point[]): void => {
+    if (stage && shown.current !== "" && viewNow() === begunOn.current) crop.cut(points, stage.projection());
+  };
 
   const go = (by: number): void => {
     const next = place >= 0 ? list[place + by] : undefined;
@@ -237,7 +249,7 @@ function OpenScan({ scan }: { scan: Scan }) {
             ) : undefined
           }
         >
-          {isCutting && crop.isReady && <StrokeLayer onStroke={(points) => stage && crop.cut(points, stage.projection())} />}
+          {isCutting && crop.isReady && <StrokeLayer onBegin={() => (begunOn.current = viewNow())} onStroke={cut} />}
         </HandView>
         <aside className={classes.panel} aria-label="About the scan" tabIndex={0}>
           <CropPanel crop={crop} revision={scan.revision} hasColors={scan.has_colors} />

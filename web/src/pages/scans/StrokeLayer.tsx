@@ -3,12 +3,13 @@ import type { Point } from "../../model/crop";
 import classes from "./ScanPage.module.css";
 
 interface StrokeLayerProps {
+  onBegin: () => void;
   /** The finished stroke, -1..1, x right, y up. */
   onStroke: (points: readonly Point[]) => void;
 }
 
 /** Takes one stroke of the pointer over the 3D view and shows it while it is drawn. */
-export function StrokeLayer({ onStroke }: StrokeLayerProps) {
+export function StrokeLayer({ onBegin, onStroke }: StrokeLayerProps) {
   const [drawn, setDrawn] = useState<readonly Point[]>([]);
   const points = useRef<Point[]>([]);
   const isDrawing = useRef(false);
@@ -40,6 +41,7 @@ export function StrokeLayer({ onStroke }: StrokeLayerProps) {
         event.currentTarget.setPointerCapture(event.pointerId);
         event.currentTarget.closest<HTMLElement>("[data-picture]")?.focus({ preventScroll: true });
         isDrawing.current = true;
+        onBegin();
         points.current = [];
         add(event);
       }}

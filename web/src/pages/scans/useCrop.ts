@@ -47,7 +47,11 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
     return all;
   }, [geometry, draft]);
 
-  const set = (next: Partial<Draft>): void => setDraft({ ...draft, ...next });
+  const isReady = saved !== undefined && geometry !== null;
+  // Strokes belong to the scan on the screen: none is drawn or taken back before it is there.
+  const set = (next: Partial<Draft>): void => {
+    if (isReady) setDraft({ ...draft, ...next });
+  };
   const canFlip = last?.stroke.kind === "line" && last.count === draft.cuts.length;
   return {
     draft,
@@ -55,7 +59,7 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
     share: taken && taken.length > 0 ? countTaken(taken) / taken.length : 0,
     isChanged: kept !== null,
     /** Nothing can be drawn before it is known what is cropped already. */
-    isReady: saved !== undefined && geometry !== null,
+    isReady,
     save,
     canFlip,
     cut(points: readonly Point[], projection: Projection): void {

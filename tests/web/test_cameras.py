@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tests.web.conftest import ROOT
+from tests.web.conftest import ROOT, HeldBack
 from tracker import Camera, load_sequence, triangulate
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
@@ -316,3 +316,32 @@ def test_all_panes_show_the_same_frame(recording, open_page, picture_of, screens
     boxes = [picture.element.bounding_box() for picture in pictures.values()]
     assert min(box["width"] for box in boxes) > 200 and min(box["height"] for box in boxes) > 150
     screenshots.take(page, f"cameras-{count}-{scheme}")
+
+
+def test_each_picture_takes_gestures_by_itself_once_it_is_there(studio, recording, open_page, picture_of, screenshots):
+    from playwright.sync_api import expect
+
+    first, second = (camera["id"] for camera in recording["cameras"][:2])
+    page = open_page()
+    slow = HeldBack(page, re.compile(f"/cameras/{second}/frames/[1-9]/color"))
+    page.goto(f"/recordings/{recording['id']}/annotate?camera={first}&cameras={first},{second}")
+    here, late = picture_of(page, 0), picture_of(page, 1)
+    here.wait()
+    late.wait()
+    page.keyboard.press("f")
+    here.wait()
+    late.click(150, 100)
+    note = page.locator(f"[data-camera={second}]").get_by_text("Waiting for the picture of frame 1")
+    expect(note).to_be_visible()
+    screenshots.take(page, "stale-pane")
+    here.click(120, 90)
+    here.wait_until_saved()
+    assert find_points(studio, recording, second, frame=1) is None
+    slow.release()
+    late.wait()
+    expect(note).to_be_hidden()
+    late.click(160, 110)
+    late.wait_until_saved()
+    assert [round(value) for value in find_points(studio, recording, first, frame=1)[0]] == [120, 90, 2]
+    marked = [[round(x), round(y)] for x, y, v in find_points(studio, recording, second, frame=1) if v]
+    assert marked == [[160, 110]], "the click on the picture of frame 0 left nothing"

@@ -9,6 +9,8 @@ import cv2
 import numpy as np
 import pytest
 
+from tests.web.conftest import HeldBack
+
 SEEN = 2e-4
 """Share of the 3D view's pixels from which a colour counts as seen."""
 
@@ -258,3 +260,33 @@ def _share_of_color(canvas, rgb: tuple[int, int, int]) -> float:
     hue, saturation, value = (plane.astype(int) for plane in cv2.split(cv2.cvtColor(image, cv2.COLOR_BGR2HSV)))
     off = np.abs(hue - int(wanted[0]))
     return float(((np.minimum(off, 180 - off) <= 3) & (saturation > 110) & (value > 150)).mean())
+
+
+def test_an_image_that_is_still_of_another_frame_says_so_and_carries_its_own_skeleton(
+    recorded, track, open_page, picture_of, screenshots
+):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    slow = HeldBack(page, re.compile(r"/frames/(9|1\d)/color\.jpg"))
+    page.goto(f"/tracks/{track['id']}?frame=0")
+    picture = picture_of(page)
+    picture.wait()
+    page.get_by_label("Mesh", exact=True).last.uncheck()
+
+    def skeleton():
+        return page.evaluate("document.querySelectorAll('[data-picture] canvas')[1].toDataURL()")
+
+    page.wait_for_load_state("networkidle")
+    before = skeleton()
+    picture.element.focus()
+    page.keyboard.press("v")
+    note = page.get_by_text("Waiting for the picture of frame 10")
+    expect(note).to_be_visible()
+    assert picture.element.get_attribute("data-drawn") == "0"
+    screenshots.take(page, "track-stale")
+    assert skeleton() == before, "the skeleton is that of the image below it"
+    slow.release()
+    picture.wait()
+    expect(note).to_be_hidden()
+    assert skeleton() != before

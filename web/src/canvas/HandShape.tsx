@@ -1,7 +1,7 @@
 import { Circle, Group, Line, Rect, Text } from "react-konva";
 import type { Side } from "../api/types";
 import { EDGES, HAND_COLORS, jointColor, jointLabel } from "../model/joints";
-import { isPlaced, type Pose } from "../model/pose";
+import { isPlaced, isShown, type Pose } from "../model/pose";
 import { toScreen, type View } from "./view";
 
 interface HandShapeProps {
@@ -24,7 +24,26 @@ function Mark({ hand, x, y, radius, ...style }: { hand: Side; x: number; y: numb
   );
 }
 
-/** A hand by hand: fingers in their hues; the right one round, the left one square; occluded joints hollow and dashed. */
+/** Where a joint was before it went outside, so that it can be fetched back. */
+function Cross({ x, y, color }: { x: number; y: number; color: string }) {
+  const arm = RADIUS - 1;
+  return (
+    <Group x={x} y={y} opacity={0.85}>
+      {[
+        [-arm, -arm, arm, arm],
+        [arm, -arm, -arm, arm],
+      ].flatMap((points) => [
+        <Line key={`under ${points.join()}`} points={points} stroke="#000" strokeWidth={4} lineCap="round" opacity={0.6} />,
+        <Line key={points.join()} points={points} stroke={color} strokeWidth={2} lineCap="round" />,
+      ])}
+    </Group>
+  );
+}
+
+/**
+ * A hand by hand: fingers in their hues; the right one round, the left one square; occluded joints hollow and dashed, outside
+ * ones crosses where they were.
+ */
 export function HandShape({ pose, hand, view, active, isFaint = false, areNamesShown = false }: HandShapeProps) {
   const at = pose.map((point) => toScreen(view, point));
   return (
@@ -43,20 +62,24 @@ export function HandShape({ pose, hand, view, active, isFaint = false, areNamesS
       })}
       {pose.map((point, joint) => {
         const place = at[joint];
-        if (!place || !isPlaced(point)) return null;
+        if (!place || !isShown(point)) return null;
         const isOccluded = point.v === 1;
         return (
           <Group key={joint}>
             {joint === active && <Mark hand={hand} {...place} radius={RADIUS + 5} stroke={HAND_COLORS[hand]} strokeWidth={2.5} />}
-            <Mark
-              hand={hand}
-              {...place}
-              radius={RADIUS}
-              fill={isOccluded ? "rgba(0,0,0,0.35)" : jointColor(joint)}
-              stroke={isOccluded ? jointColor(joint) : "#111"}
-              strokeWidth={isOccluded ? 2 : 1.25}
-              {...(isOccluded ? { dash: [3, 2.5] } : {})}
-            />
+            {point.v === 0 ? (
+              <Cross {...place} color={jointColor(joint)} />
+            ) : (
+              <Mark
+                hand={hand}
+                {...place}
+                radius={RADIUS}
+                fill={isOccluded ? "rgba(0,0,0,0.35)" : jointColor(joint)}
+                stroke={isOccluded ? jointColor(joint) : "#111"}
+                strokeWidth={isOccluded ? 2 : 1.25}
+                {...(isOccluded ? { dash: [3, 2.5] } : {})}
+              />
+            )}
             {areNamesShown && (
               <Text
                 x={place.x + 9}

@@ -1,10 +1,12 @@
 import { useElementSize } from "@mantine/hooks";
 import type Konva from "konva";
-import { useEffect, useLayoutEffect, useRef, type ReactNode } from "react";
+import { useCallback, useEffect, useLayoutEffect, useRef, type ReactNode } from "react";
 import { Image, Layer, Rect, Stage } from "react-konva";
 import type { Camera } from "../api/types";
 import type { PointerStore } from "../state/pointer";
 import { CursorLayer } from "./CursorLayer";
+import type { Setback } from "./frameCache";
+import { PictureNote } from "./PictureNote";
 import { usePaneGestures, type PaneGestures } from "./usePaneGestures";
 import { useTouch, type TouchGestures } from "./useTouch";
 import type { Picture } from "./usePictures";
@@ -21,9 +23,16 @@ interface ImagePaneProps extends PaneGestures, TouchGestures {
   camera: Camera;
   /** Drawn in order, the first one below. */
   layers: readonly PaneLayer[];
-  /** Which frame they are of; `data-drawn` says which one is on the screen. */
-  shownFrame?: number | null;
-  /** Told whenever it was drawn, with the frame that is on the screen now. */
+  /** The frame that is wanted. Gestures that change something are taken while it is the one on the screen, which `data-drawn` says. */
+  frame: number;
+  /** Which frame the layers are of; null before the first one has come. */
+  shownFrame: number | null;
+  /** Why the wanted one is not here, and how to ask again. */
+  setback: Setback | null;
+  onRetry: () => void;
+  /** Somebody tried to change something meanwhile. */
+  isRefused?: boolean;
+  /** Told whenever it was drawn, with the frame that is on the screen now; null when there is none. */
   onDrawn?: (frame: number | null) => void;
   /** Null fits the image. */
   view: View | null;
@@ -34,7 +43,6 @@ interface ImagePaneProps extends PaneGestures, TouchGestures {
   /** What stands beside the cursor. */
   cursorLabel: string;
   isMagnified: boolean;
-  isBusy: boolean;
   children: (view: View) => ReactNode;
   /** Drawn on a layer of its own, with the cursor. */
   withCursor?: (view: View) => ReactNode;
@@ -50,12 +58,16 @@ const KeepAlive = () => <Rect width={1} height={1} fill="#000" opacity={0.01} li
 
 /** One picture with what is drawn on it; zoom, pan and the pointer are handled here, in image pixels for everybody else. */
 export function ImagePane(props: ImagePaneProps) {
-  const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, isBusy, children, withCursor, overlay, shownFrame = null, onDrawn } = props;
+  const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, children, withCursor, overlay, frame, shownFrame, setback, onRetry, isRefused = false, onDrawn } = props;
   const { ref: sizeRef, width, height } = useElementSize();
   const surface = useRef<HTMLDivElement | null>(null);
   const imageLayer = useRef<Konva.Layer>(null);
   const shownView = view ?? fitView(camera, { width, height });
-  const mouse = usePaneGestures(surface, shownView, { width, height }, camera, onView, pointer, props);
+  const onScreen = useRef<number | null>(null);
+  const wanted = useRef(frame);
+  wanted.current = frame;
+  const live = useCallback(() => (onScreen.current === wanted.current ? onScreen.current : null), []);
+  const mouse = usePaneGestures(surface, shownView, { width, height }, camera, onView, pointer, live, props);
   const handlers = useTouch(mouse, { view: shownView, isFitted: view === null, pane: { width, height }, image: camera, onView }, props);
 
   useEffect(() => {
@@ -64,23 +76,35 @@ export function ImagePane(props: ImagePaneProps) {
     if (canvas) canvas.style.filter = brightness === 1 && contrast === 1 ? "" : `brightness(${brightness}) contrast(${contrast})`;
   });
 
-  const meant = useRef<{ picture: Picture | null; frame: number | null; onDrawn: typeof onDrawn }>({ picture: null, frame: null, onDrawn });
+  const drawable = layers.flatMap(({ picture }) => (picture && picture.width > 0 ? [picture] : []));
+  const meant = useRef<{ pictures: readonly Picture[]; frame: number | null; onDrawn: typeof onDrawn }>({ pictures: [], frame: null, onDrawn });
   useLayoutEffect(() => {
-    meant.current = { picture: layers[0]?.picture ?? null, frame: shownFrame, onDrawn };
+    meant.current = { pictures: drawable, frame: shownFrame, onDrawn };
   });
   const hasStage = width > 0 && height > 0;
   useEffect(() => {
     const layer = imageLayer.current;
+    const tell = (drawn: number | null): void => {
+      const isNew = onScreen.current !== drawn;
+      onScreen.current = drawn;
+      meant.current.onDrawn?.(drawn);
+      if (!surface.current || !isNew) return;
+      if (drawn === null) delete surface.current.dataset["drawn"];
+      else surface.current.dataset["drawn"] = String(drawn);
+    };
     const note = (): void => {
-      const { picture, frame, onDrawn: tell } = meant.current;
-      const isOnScreen = picture !== null && layer?.findOne<Konva.Image>("Image")?.image() === picture;
-      if (isOnScreen) tell?.(frame);
-      if (surface.current && isOnScreen && surface.current.dataset["drawn"] !== String(frame)) surface.current.dataset["drawn"] = String(frame);
+      const { pictures, frame: of } = meant.current;
+      const images = layer?.find<Konva.Image>("Image") ?? [];
+      const isOnScreen = pictures.length > 0 && images.length === pictures.length && images.every((image, index) => image.image() === pictures[index]);
+      tell(isOnScreen ? of : null);
     };
     layer?.on("draw", note);
     // What was drawn before is noted, too.
     layer?.batchDraw();
-    return () => void layer?.off("draw", note);
+    return () => {
+      layer?.off("draw", note);
+      tell(null);
+    };
   }, [hasStage]);
 
   const pictures = layers.flatMap(({ picture, opacity }, index) =>
@@ -110,7 +134,9 @@ export function ImagePane(props: ImagePaneProps) {
       tabIndex={0}
       data-picture
       data-view={JSON.stringify(shownView)}
-      aria-busy={isBusy}
+      data-frame={frame}
+      data-stale={shownFrame !== null && shownFrame !== frame}
+      aria-busy={shownFrame !== frame}
       {...handlers}
     >
       {hasStage && (
@@ -128,7 +154,8 @@ export function ImagePane(props: ImagePaneProps) {
           </CursorLayer>
         </Stage>
       )}
-      {isBusy && pictures.length === 0 && <div className={classes.waiting} />}
+      {shownFrame !== frame && pictures.length === 0 && !setback && <div className={classes.waiting} />}
+      <PictureNote frame={frame} shownFrame={shownFrame} hasPicture={drawable.length > 0} setback={setback} onRetry={onRetry} isRefused={isRefused} />
       {overlay}
     </div>
   );

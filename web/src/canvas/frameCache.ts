@@ -1,16 +1,31 @@
 /** Decoded pictures by address: the one wanted now, those in the direction of travel, and the last ones used. */
 
+import { isForGood, onNetworkBack, pauseAfter } from "./patience";
+
+/** Why a picture is not here. */
+export interface Setback {
+  readonly error: Error;
+  /** Nobody asks again by itself. */
+  readonly isForGood: boolean;
+}
+
 export interface FrameCache<T> {
   /** The picture if it is here. */
   peek(address: string): T | undefined;
+  /** Why it is not here, if asking for it failed; null while it is asked for the first time. */
+  setbackOf(address: string): Setback | null;
   /**
-   * Load these, the first ones first; what is under way and nobody wants any more is called off. Resolves with the first.
-   * Several can look at once, each under its own name; the first picture of everybody comes before anybody's second.
+   * Load these, the first ones first; what is under way and nobody wants any more is called off. Several can look at once,
+   * each under its own name; the first picture of everybody comes before anybody's second. What failed is asked for again
+   * after a pause that grows, and what will not come only when somebody comes to it anew.
    */
-  focus(addresses: readonly string[], viewer?: string): Promise<T>;
+  focus(addresses: readonly string[], viewer?: string): void;
   /** A viewer that looks no more. */
   leave(viewer: string): void;
-  clear(): void;
+  /** Ask at once for what failed. */
+  retry(address: string): void;
+  /** Tells of each picture that has come or failed; returns the way to stop. */
+  watch(watcher: (address: string) => void): () => void;
 }
 
 type Load<T> = (address: string, signal: AbortSignal) => Promise<T>;
@@ -27,23 +42,48 @@ interface Budget<T> {
   parallel?: number;
 }
 
+interface Failed extends Setback {
+  readonly times: number;
+  /** Until it may be asked for again; null once it may. */
+  readonly pause: ReturnType<typeof setTimeout> | null;
+}
+
 export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = () => undefined, parallel = PARALLEL }: Budget<T>): FrameCache<T> {
   /** In order of use, the oldest first. */
   const held = new Map<string, T>();
   let weight = 0;
-  const flying = new Map<string, { controller: AbortController; promise: Promise<T> }>();
+  const flying = new Map<string, AbortController>();
+  const failed = new Map<string, Failed>();
+  const watchers = new Set<(address: string) => void>();
   const viewers = new Map<string, readonly string[]>();
   /** What all viewers want, by turns: everybody's first, everybody's second, ... */
   let wanted: readonly string[] = [];
   let firsts: ReadonlySet<string> = new Set();
 
+  const tell = (address: string): void => watchers.forEach((watcher) => watcher(address));
+
+  function forget(address: string): void {
+    const found = failed.get(address);
+    if (found?.pause != null) clearTimeout(found.pause);
+    failed.delete(address);
+  }
+
   function merge(): void {
     const lists = [...viewers.values()];
     const longest = Math.max(0, ...lists.map((list) => list.length));
     const order = Array.from({ length: longest }, (_, k) => lists.flatMap((list) => list[k] ?? []));
+    const before = firsts;
     wanted = [...new Set(order.flat())];
     firsts = new Set(order[0] ?? []);
-    for (const [address, { controller }] of flying) if (!wanted.includes(address)) controller.abort();
+    for (const [address, controller] of flying) {
+      if (wanted.includes(address)) continue;
+      controller.abort();
+      flying.delete(address);
+    }
+    for (const [address, { isForGood: isGone }] of failed) {
+      const isAnew = isGone && firsts.has(address) && !before.has(address);
+      if (isAnew || !wanted.includes(address)) forget(address);
+    }
   }
 
   function keep(address: string, picture: T): void {
@@ -59,26 +99,51 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
     }
   }
 
-  function fetchOne(address: string): Promise<T> {
-    const known = flying.get(address);
-    // One that was called off brings nothing any more.
-    if (known && !known.controller.signal.aborted) return known.promise;
-    const controller = new AbortController();
-    const promise = load(address, controller.signal)
-      .then((picture) => {
-        keep(address, picture);
-        return picture;
-      })
-      .finally(() => {
-        if (flying.get(address)?.controller === controller) flying.delete(address);
-        startNext();
-      });
-    flying.set(address, { controller, promise });
-    promise.catch(() => undefined);
-    return promise;
+  function fail(address: string, error: Error): void {
+    const times = (failed.get(address)?.times ?? 0) + 1;
+    const isGone = isForGood(error);
+    const pause = isGone ? null : setTimeout(() => resume(address), pauseAfter(times));
+    failed.set(address, { error, isForGood: isGone, times, pause });
   }
 
+  /** The pause is over. */
+  function resume(address: string): void {
+    const found = failed.get(address);
+    if (!found || found.isForGood) return;
+    if (found.pause !== null) clearTimeout(found.pause);
+    failed.set(address, { ...found, pause: null });
+    startNext();
+  }
+
+  async function fetchOne(address: string): Promise<void> {
+    const controller = new AbortController();
+    flying.set(address, controller);
+    const isCurrent = (): boolean => flying.get(address) === controller;
+    try {
+      const picture = await load(address, controller.signal);
+      // One that was called off and came nevertheless is not thrown away.
+      if (!isCurrent() && held.has(address)) return dispose(picture);
+      forget(address);
+      keep(address, picture);
+    } catch (failure) {
+      // What was called off has not failed.
+      if (!isCurrent()) return;
+      fail(address, failure instanceof Error ? failure : new Error(String(failure)));
+    } finally {
+      if (isCurrent()) flying.delete(address);
+      startNext();
+    }
+    tell(address);
+  }
+
+  const isHeldBack = (address: string): boolean => {
+    const found = failed.get(address);
+    return found !== undefined && (found.isForGood || found.pause !== null);
+  };
+
   function startNext(): void {
+    // While what somebody looks at does not come, nothing is fetched in advance.
+    const isCutOff = [...firsts].some((address) => failed.get(address)?.isForGood === false);
     let room = capacity;
     let heaviest = 0;
     for (const address of wanted) {
@@ -87,7 +152,7 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
       if (here !== undefined) {
         heaviest = Math.max(heaviest, weigh(here));
         room -= weigh(here);
-      } else {
+      } else if (!isHeldBack(address) && (!isCutOff || firsts.has(address))) {
         // What would only push out another one that is wanted sooner is left for later.
         if (room < heaviest && !firsts.has(address)) return;
         room -= heaviest;
@@ -96,32 +161,34 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
     }
   }
 
+  onNetworkBack(() => [...failed.keys()].forEach(resume));
+
   return {
-    peek(address) {
-      return held.get(address);
-    },
+    peek: (address) => held.get(address),
+    setbackOf: (address) => failed.get(address) ?? null,
     focus(addresses, viewer = "") {
       viewers.set(viewer, addresses);
       merge();
       const [first] = addresses;
-      if (first === undefined) return Promise.reject(new Error("No address to load."));
-      const here = held.get(first);
-      if (here !== undefined) keep(first, here);
-      const promise = here !== undefined ? Promise.resolve(here) : fetchOne(first);
+      const here = first === undefined ? undefined : held.get(first);
+      if (first !== undefined && here !== undefined) keep(first, here);
+      // What is looked at now does not wait for those that are fetched in advance.
+      else if (first !== undefined && !flying.has(first) && !isHeldBack(first)) void fetchOne(first);
       startNext();
-      return promise;
     },
     leave(viewer) {
       viewers.delete(viewer);
       merge();
+      startNext();
     },
-    clear() {
-      viewers.clear();
-      merge();
-      flying.forEach(({ controller }) => controller.abort());
-      held.forEach(dispose);
-      held.clear();
-      weight = 0;
+    retry(address) {
+      forget(address);
+      startNext();
+      tell(address);
+    },
+    watch(watcher) {
+      watchers.add(watcher);
+      return () => watchers.delete(watcher);
     },
   };
 }

@@ -16,6 +16,12 @@ test("joints without a place are never hit", () => {
   expect(jointAt(pose, view, { x: 500, y: 500 }, 0)).toBe(-1);
 });
 
+test("an outside joint can be found where it was", () => {
+  const outside = withJoint(withJoint(pose, 7, { x: 60, y: 20, v: 0 }), 8, { x: -1, y: -1, v: 0 });
+  expect(jointAt(outside, view, toScreen(view, { x: 60.5, y: 20 }), 0)).toBe(7);
+  expect(jointAt(outside, view, toScreen(view, { x: -1, y: -1 }), 0)).toBe(-1);
+});
+
 test("between two joints the active one is taken", () => {
   expect(jointAt(pose, view, toScreen(view, { x: 20.5, y: 20 }), 4)).toBe(4);
 });

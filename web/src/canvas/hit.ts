@@ -1,16 +1,16 @@
 import type { Pose } from "../model/pose";
-import { isPlaced } from "../model/pose";
+import { isShown } from "../model/pose";
 import { toScreen, type Point, type View } from "./view";
 
 /** How near to a joint a press counts as on it, px of the screen. */
 export const HIT_RADIUS = 10;
 
-/** The placed joint nearest to a screen point, or -1; among equally near ones the active joint wins. */
+/** The joint, placed or outside with a place, nearest to a screen point, or -1; among equally near ones the active joint wins. */
 export function jointAt(pose: Pose, view: View, screen: Point, active: number, radius = HIT_RADIUS): number {
   let best = -1;
   let bestDistance = radius;
   pose.forEach((point, joint) => {
-    if (!isPlaced(point)) return;
+    if (!isShown(point)) return;
     const at = toScreen(view, point);
     const distance = Math.hypot(at.x - screen.x, at.y - screen.y) - (joint === active ? 2 : 0);
     if (distance < bestDistance) {

@@ -1,4 +1,4 @@
-import { useEffect, useRef, useState } from "react";
+import { useEffect, useReducer } from "react";
 import { fetchBitmap } from "../api/client";
 import { createFrameCache } from "./frameCache";
 
@@ -10,25 +10,16 @@ const cache = createFrameCache<ImageBitmap>(fetchBitmap, {
 
 /** A rendered overlay; null while it is not here, because one of another frame would lie. */
 export function useOverlay(address: string | null): { picture: ImageBitmap | null; failure: Error | null } {
-  const [, setArrived] = useState<unknown>(null);
-  const failed = useRef<{ address: string; error: Error } | null>(null);
+  const [, wake] = useReducer((count: number) => count + 1, 0);
   useEffect(() => {
-    if (address === null) return;
-    let isGone = false;
-    cache.focus([address]).then(
-      (picture) => !isGone && setArrived(picture),
-      (error: Error) => {
-        if (isGone || error.name === "AbortError") return;
-        failed.current = { address, error };
-        setArrived(error);
-      },
-    );
-    return () => {
-      isGone = true;
-    };
+    if (address === null) return cache.leave("");
+    const stop = cache.watch((one) => one === address && wake());
+    cache.focus([address]);
+    return stop;
   }, [address]);
+  useEffect(() => () => cache.leave(""), []);
   return {
     picture: address === null ? null : (cache.peek(address) ?? null),
-    failure: failed.current && failed.current.address === address ? failed.current.error : null,
+    failure: address === null ? null : (cache.setbackOf(address)?.error ?? null),
   };
 }

@@ -13,18 +13,24 @@ export interface PaneGestures {
   /** While the wheel turns with Alt: radians and a factor since it began, about where the cursor was then. */
   onTurnHand?: (turn: { about: Point; angle: number; factor: number }) => void;
   onDragEnd?: () => void;
+  onDragCancel?: () => void;
+  /** Whether what was dragged or turned still hangs on the pointer; no longer, once somebody went to another frame or called it off. */
+  isDragOn?: () => boolean;
   onCycle?: (joint: number) => void;
   /** A double click; whether it meant something. */
   onDouble?: (view: View, screen: Point) => boolean;
+  /** A press that would change something came while the picture is not the wanted one. */
+  onRefused?: () => void;
   /** Space is held for panning, so it was not meant for playing. */
   onSpacePan?: () => void;
 }
 
+/** `on` is the frame that was on the screen when it began. */
 type Press =
   | { kind: "pan"; last: Point }
-  | { kind: "ground"; start: Point; last: Point }
-  | { kind: "joint"; joint: number; start: Point; isMoving: boolean }
-  | { kind: "hand"; start: Point };
+  | { kind: "ground"; start: Point; on: number | null }
+  | { kind: "joint"; joint: number; start: Point; on: number; isMoving: boolean }
+  | { kind: "hand"; start: Point; on: number; isMoving: boolean };
 
 /** How far a press may wander and still be a click, px of the screen. */
 const CLICK_RADIUS = 4;
@@ -40,6 +46,7 @@ const clamp = (pixel: Point, image: Size): Point => ({
   y: Math.min(image.height - 0.501, Math.max(-0.5, pixel.y)),
 });
 
+/** `live` says which frame is on the screen, null while it is not the wanted one: then a pane only zooms and pans. */
 export function usePaneGestures(
   surface: RefObject<HTMLElement | null>,
   view: View,
@@ -47,6 +54,7 @@ export function usePaneGestures(
   image: Size,
   onView: (view: View | null) => void,
   pointer: PointerStore,
+  live: () => number | null,
   gestures: PaneGestures,
 ) {
   const press = useRef<Press | null>(null);
@@ -72,6 +80,8 @@ export function usePaneGestures(
       // With Shift a browser turns a wheel sideways.
       const by = (event.deltaY || event.deltaX) * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1);
       if (event.altKey && now.gestures.onTurnHand) {
+        if (live() === null) return now.gestures.onRefused?.();
+        if (turn && !now.gestures.isDragOn?.()) turn = null;
         turn ??= { about: toPixel(now.view, screen), angle: 0, factor: 1 };
         turn = event.shiftKey ? { ...turn, factor: turn.factor * Math.exp(-by * GROWTH_PER_STEP) } : { ...turn, angle: turn.angle + by * TURN_PER_STEP };
         now.gestures.onTurnHand(turn);
@@ -95,7 +105,7 @@ export function usePaneGestures(
       window.removeEventListener("keydown", next, true);
       window.removeEventListener("pointerdown", next, true);
     };
-  }, [surface]);
+  }, [surface, live]);
 
   const isSpaceHeld = useRef(false);
   useEffect(() => {
@@ -125,17 +135,19 @@ export function usePaneGestures(
       event.currentTarget.focus({ preventScroll: true });
       const screen = screenOf(event);
       const pixel = toPixel(view, screen);
-      const joint = gestures.hitJoint?.(view, screen) ?? -1;
+      const on = live();
+      const joint = on === null ? -1 : (gestures.hitJoint?.(view, screen) ?? -1);
       if (event.button === 2) {
-        if (joint >= 0) gestures.onCycle?.(joint);
+        if (on === null) gestures.onRefused?.();
+        else if (joint >= 0) gestures.onCycle?.(joint);
         return;
       }
       event.currentTarget.setPointerCapture(event.pointerId);
       if (isSpaceHeld.current) gestures.onSpacePan?.();
       if (event.button === 1 || event.ctrlKey || event.metaKey || isSpaceHeld.current) press.current = { kind: "pan", last: screen };
-      else if (event.altKey && gestures.onDragHand) press.current = { kind: "hand", start: pixel };
-      else if (joint >= 0) press.current = { kind: "joint", joint, start: screen, isMoving: false };
-      else press.current = { kind: "ground", start: screen, last: screen };
+      else if (event.altKey && gestures.onDragHand && on !== null) press.current = { kind: "hand", start: pixel, on, isMoving: false };
+      else if (joint >= 0 && on !== null) press.current = { kind: "joint", joint, start: screen, on, isMoving: false };
+      else press.current = { kind: "ground", start: screen, on };
     },
 
     onPointerMove(event: ReactPointerEvent<HTMLElement>) {
@@ -152,34 +164,42 @@ export function usePaneGestures(
           if (far(now.start, screen)) press.current = { kind: "pan", last: screen };
           return;
         case "joint":
-          if (!now.isMoving && far(now.start, screen)) now.isMoving = true;
-          if (now.isMoving) gestures.onDragJoint?.(now.joint, clamp(pixel, image));
+        case "hand": {
+          if (now.kind === "joint" && !now.isMoving && !far(now.start, screen)) return;
+          // A drag that began on one picture does not go on upon another.
+          if (now.isMoving ? !gestures.isDragOn?.() : live() !== now.on) {
+            press.current = null;
+            return;
+          }
+          now.isMoving = true;
+          if (now.kind === "joint") gestures.onDragJoint?.(now.joint, clamp(pixel, image));
+          else gestures.onDragHand?.({ x: pixel.x - now.start.x, y: pixel.y - now.start.y });
           return;
-        case "hand":
-          gestures.onDragHand?.({ x: pixel.x - now.start.x, y: pixel.y - now.start.y });
-          return;
+        }
       }
     },
 
     onPointerUp(event: ReactPointerEvent<HTMLElement>) {
       const now = press.current;
       press.current = null;
-      if (now?.kind === "ground") {
-        const pixel = toPixel(view, screenOf(event));
-        if (isInImage(pixel, image)) gestures.onPlace?.(pixel);
-      } else if (now?.kind === "joint" && !now.isMoving) gestures.onSelect?.(now.joint);
-      else if (now?.kind === "joint" || now?.kind === "hand") gestures.onDragEnd?.();
+      if (!now || now.kind === "pan") return;
+      if (now.kind !== "ground" && now.isMoving) return gestures.onDragEnd?.();
+      const pixel = toPixel(view, screenOf(event));
+      if (now.on === null || live() !== now.on) {
+        if (isInImage(pixel, image)) gestures.onRefused?.();
+      } else if (now.kind === "joint") gestures.onSelect?.(now.joint);
+      else if (now.kind === "ground" && isInImage(pixel, image)) gestures.onPlace?.(pixel);
     },
 
     onPointerCancel() {
       press.current = null;
-      gestures.onDragEnd?.();
+      gestures.onDragCancel?.();
     },
 
     onDoubleClick(event: ReactMouseEvent<HTMLElement>) {
       const box = event.currentTarget.getBoundingClientRect();
       const screen = { x: event.clientX - box.left, y: event.clientY - box.top };
-      if (gestures.onDouble?.(view, screen)) return;
+      if (live() !== null && gestures.onDouble?.(view, screen)) return;
       if (!isInImage(toPixel(view, screen), image)) onView(null);
     },
 

@@ -1,9 +1,9 @@
-import { useEffect, useId, useMemo, useRef, useState } from "react";
+import { useEffect, useId, useMemo, useReducer, useRef } from "react";
 import { fetchBitmap, fetchBytes } from "../api/client";
 import { colorUrl, depthUrl } from "../api/recordings";
 import type { Camera, Recording } from "../api/types";
 import { findRange, paintDepth, readDepth, type DepthImage, type DepthRange, type Palette } from "./depth";
-import { aheadFor, createFrameCache, framesToLoad, travelOn, type FrameCache, type Travel } from "./frameCache";
+import { aheadFor, createFrameCache, framesToLoad, travelOn, type FrameCache, type Setback, type Travel } from "./frameCache";
 
 const MEGABYTE = 1e6;
 
@@ -22,47 +22,34 @@ const depthCache = createFrameCache<DepthImage>(
 
 export type Picture = ImageBitmap | HTMLCanvasElement;
 
-interface Loaded<T> {
-  picture: T | null;
-  /** The frame that it is of. */
-  frame: number | null;
-  /** What is shown belongs to another frame, because the wanted one is still on its way. */
-  isStale: boolean;
-  failure: Error | null;
+interface Wanted<T> {
+  /** The picture that is wanted, once it is here. */
+  picture: T | undefined;
+  setback: Setback | null;
 }
 
-/** The picture of one address, the neighbours on their way; the last one stays until the next is here. */
-function useCached<T>(cache: FrameCache<T>, addresses: readonly string[], frame: number): Loaded<T> {
+/** The picture of the first address, the neighbours on their way. */
+function useCached<T>(cache: FrameCache<T>, addresses: readonly string[]): Wanted<T> {
   const [first] = addresses;
   const viewer = useId();
-  const shown = useRef<{ address: string; frame: number; picture: T } | null>(null);
-  const [, setArrived] = useState<unknown>(null);
-  const [failure, setFailure] = useState<{ address: string; error: Error } | null>(null);
-  const here = first === undefined ? undefined : cache.peek(first);
-  if (first !== undefined && here !== undefined) shown.current = { address: first, frame, picture: here };
+  const [, wake] = useReducer((count: number) => count + 1, 0);
+  const picture = first === undefined ? undefined : cache.peek(first);
   const list = addresses.join("\n");
 
   useEffect(() => {
     if (!list) return cache.leave(viewer);
     const wanted = list.split("\n");
-    let isGone = false;
-    cache.focus(wanted, viewer).then(
-      (picture) => !isGone && setArrived(picture),
-      (error: Error) => !isGone && error.name !== "AbortError" && setFailure({ address: wanted[0] ?? "", error }),
-    );
-    return () => {
-      isGone = true;
-    };
+    const stop = cache.watch((address) => address === wanted[0] && wake());
+    cache.focus(wanted, viewer);
+    return stop;
   }, [cache, list, viewer]);
   useEffect(() => () => cache.leave(viewer), [cache, viewer]);
+  useEffect(() => {
+    // What came between drawing and watching.
+    if (first !== undefined && picture === undefined && cache.peek(first) !== undefined) wake();
+  });
 
-  const picture = first === undefined ? null : (shown.current?.picture ?? null);
-  return {
-    picture,
-    frame: picture === null ? null : (shown.current?.frame ?? null),
-    isStale: picture !== null && shown.current?.address !== first,
-    failure: failure && failure.address === first && here === undefined ? failure.error : null,
-  };
+  return { picture, setback: first === undefined || picture !== undefined ? null : cache.setbackOf(first) };
 }
 
 export interface Pictures {
@@ -70,25 +57,35 @@ export interface Pictures {
   depth: Picture | null;
   depthImage: DepthImage | null;
   range: DepthRange | null;
-  /** The frame that is shown: another one than the wanted one while that is still on its way. */
+  /** The frame that is shown, in colour and depth alike: another one than the wanted one while that is still on its way. */
   shownFrame: number | null;
   isStale: boolean;
-  failure: Error | null;
+  /** Why a picture of the wanted frame is not here. */
+  setback: Setback | null;
+  /** Ask again at once. */
+  retry: () => void;
 }
 
-interface Wanted {
+interface Kinds {
   color: boolean;
   depth: boolean;
-  /** Depth is not only looked up but seen. */
-  isDepthSeen?: boolean;
   palette?: Palette;
 }
 
+interface Shown {
+  /** Of which recording and camera. */
+  of: string;
+  frame: number;
+  color: ImageBitmap | undefined;
+  depth: DepthImage | undefined;
+}
+
 /**
- * Colour and depth of one frame of one camera. `range` null chooses one from the first depth image seen; at most `most`
- * frames are loaded in the direction of travel.
+ * Colour and depth of one frame of one camera; the last frame stays until all that is wanted of the next one is here, so that
+ * both are always of the same one. `range` null chooses one from the first depth image seen; at most `most` frames are loaded
+ * in the direction of travel.
  */
-export function usePictures(recording: Recording, camera: Camera, frame: number, wanted: Wanted, range: DepthRange | null, most = 30): Pictures {
+export function usePictures(recording: Recording, camera: Camera, frame: number, wanted: Kinds, range: DepthRange | null, most = 30): Pictures {
   const travel = useRef<Travel>({ frame, direction: 1, run: 0 });
   travel.current = travelOn(travel.current, frame);
   const { direction } = travel.current;
@@ -97,26 +94,38 @@ export function usePictures(recording: Recording, camera: Camera, frame: number,
   const frames = useMemo(() => framesToLoad(frame, direction, recording.frame_count, ahead), [frame, direction, recording.frame_count, ahead]);
   const colors = wanted.color && camera.has_color ? frames.map((index) => colorUrl(recording, camera.id, index)) : [];
   const depths = wanted.depth && camera.has_depth ? frames.map((index) => depthUrl(recording, camera.id, index)) : [];
-  const color = useCached(colorCache, colors, frame);
-  const depth = useCached(depthCache, depths, frame);
+  const color = useCached(colorCache, colors);
+  const depth = useCached(depthCache, depths);
 
-  const found = useRef<{ key: string; range: DepthRange } | null>(null);
-  const key = `${recording.id}/${camera.id}`;
-  if (depth.picture && found.current?.key !== key) found.current = { key, range: findRange(depth.picture) };
-  const usedRange = range ?? (found.current?.key === key ? found.current.range : null);
-  const isDepthSeen = wanted.isDepthSeen ?? wanted.depth;
+  const of = `${recording.id}/${camera.id}`;
+  const shown = useRef<Shown | null>(null);
+  if (shown.current?.of !== of) shown.current = null;
+  const isSettled = (list: readonly string[], { picture, setback }: Wanted<unknown>): boolean => list.length === 0 || picture !== undefined || setback?.isForGood === true;
+  // Of what is wanted, all is here, or will never be; or it is the same frame, of which more is shown as it comes.
+  if ((isSettled(colors, color) && isSettled(depths, depth)) || shown.current?.frame === frame) {
+    shown.current = { of, frame, color: color.picture, depth: depth.picture };
+  }
+  const now = shown.current;
+
+  const found = useRef<{ of: string; range: DepthRange } | null>(null);
+  if (now?.depth && found.current?.of !== of) found.current = { of, range: findRange(now.depth) };
+  const usedRange = range ?? (found.current?.of === of ? found.current.range : null);
   const painted = useMemo(
-    () => (isDepthSeen && depth.picture && usedRange ? paintDepth(depth.picture, usedRange, wanted.palette ?? "warm") : null),
-    [depth.picture, usedRange?.near, usedRange?.far, wanted.palette, isDepthSeen],
+    () => (now?.depth && usedRange ? paintDepth(now.depth, usedRange, wanted.palette ?? "warm") : null),
+    [now?.depth, usedRange?.near, usedRange?.far, wanted.palette],
   );
 
   return {
-    color: color.picture,
+    color: now?.color ?? null,
     depth: painted,
-    depthImage: depth.isStale ? null : depth.picture,
+    depthImage: now?.depth ?? null,
     range: usedRange,
-    shownFrame: wanted.color && camera.has_color ? color.frame : depth.frame,
-    isStale: color.isStale || (isDepthSeen && depth.isStale),
-    failure: color.failure ?? depth.failure,
+    shownFrame: now?.frame ?? null,
+    isStale: now?.frame !== frame,
+    setback: color.setback ?? depth.setback,
+    retry() {
+      if (color.setback && colors[0] !== undefined) colorCache.retry(colors[0]);
+      if (depth.setback && depths[0] !== undefined) depthCache.retry(depths[0]);
+    },
   };
 }

@@ -77,6 +77,9 @@ export function withStatus(point: JointPoint, status: JointStatus): JointPoint {
 /** Whether an outside joint still knows where it was. */
 export const hasPlace = (point: JointPoint): boolean => !(point.x === 0 && point.y === 0) && !(point.x === -1 && point.y === -1);
 
+/** Whether there is something to see of it in the image: a mark, or where a joint was before it went outside. */
+export const isShown = (point: JointPoint): boolean => isPlaced(point) || (statusOf(point) === "outside" && hasPlace(point));
+
 export const samePose = (a: Pose | undefined, b: Pose | undefined): boolean =>
   a === b ||
   (a !== undefined &&

@@ -14,7 +14,7 @@ const suggestion = (source: Source, x: number, joints = 21, at = place): Suggest
   place: at,
   joints: Array.from({ length: 21 }, (_, joint): SuggestedJoint | null => (joint < joints ? { px: [x, joint], guess: joint === 1 ? "occluded" : "visible" } : null)),
 });
-const start = (poses: AnnotatorState["poses"] = {}): AnnotatorState => ({ poses, camera: "cam0", frame: 3, frameCount: 9, frames: null, hand: "right", joint: 0, draft: null });
+const start = (poses: AnnotatorState["poses"] = {}): AnnotatorState => ({ poses, camera: "cam0", frame: 3, frameCount: 9, frames: null, hand: "right", joint: 0, isChosen: false, draft: null });
 
 test("each joint is suggested by the first source that has it, hidden ones left out", () => {
   const both = { track: suggestion("track", 10), interpolation: suggestion("interpolation", 20, 5) };

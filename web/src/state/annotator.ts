@@ -13,6 +13,8 @@ export interface AnnotatorState {
   readonly frames: readonly number[] | null;
   readonly hand: Side;
   readonly joint: number;
+  /** The person chose the joint, so that a click may move it although it is decided; nobody did when it only came next. */
+  readonly isChosen: boolean;
   /** A drag that has not ended: drawn instead of the stored pose, neither saved nor undoable yet. */
   readonly draft: Pose | null;
 }

@@ -49,6 +49,7 @@ export function openSession(recording: Recording, annotations: readonly Annotati
     frames: null,
     hand: start.hand,
     joint: firstOpenJoint(poses[keyText({ camera, frame, hand: start.hand })]),
+    isChosen: false,
     draft: null,
   });
   const undo = createUndoStack(store);

@@ -20,7 +20,7 @@ test("the active camera is always shown; where one alone is shown, it is the act
 });
 
 test("another camera becomes active without the joint being lost, unless the hand is finished", () => {
-  const state = { poses: {}, camera: "cam0", frame: 0, frameCount: 3, frames: null, hand: "right" as const, joint: 7, draft: null };
+  const state = { poses: {}, camera: "cam0", frame: 0, frameCount: 3, frames: null, hand: "right" as const, joint: 7, isChosen: false, draft: null };
   expect(activateCamera(state, "cam1")).toEqual({ ...state, camera: "cam1" });
   expect(activateCamera(state, "cam0")).toBe(state);
   const done = emptyPose().map(() => ({ x: 1, y: 2, v: 2 as const }));

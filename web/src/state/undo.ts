@@ -60,7 +60,7 @@ export function createUndoStack(store: Store<AnnotatorState>): UndoStack {
       if (pose) poses[change.key] = pose;
       else delete poses[change.key];
     }
-    store.set({ ...state, ...place, poses, draft: null }, "history");
+    store.set({ ...state, ...place, poses, draft: null, isChosen: false }, "history");
   };
 
   return {

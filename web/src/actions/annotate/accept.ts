@@ -9,7 +9,7 @@ export const acceptJoint: Action<SuggestionsState> = (state, suggestions) => {
   const open = openJointsAt(suggestions, state, activeKey(state));
   if (!open[state.joint]) return state;
   const pose = withAccepted(activePose(state), open, state.joint);
-  return { ...withActivePose(state, pose), joint: nextOpenJoint(pose, state.joint) };
+  return { ...withActivePose(state, pose), joint: nextOpenJoint(pose, state.joint), isChosen: false };
 };
 
 /** Take over what is suggested for the open joints of the active hand. */
@@ -17,7 +17,7 @@ export const acceptHand: Action<SuggestionsState> = (state, suggestions) => {
   const open = openJointsAt(suggestions, state, activeKey(state));
   if (open.every((joint) => joint === null)) return state;
   const pose = withAccepted(activePose(state), open);
-  return { ...withActivePose(state, pose), joint: nextOpenJoint(pose, state.joint) };
+  return { ...withActivePose(state, pose), joint: nextOpenJoint(pose, state.joint), isChosen: false };
 };
 
 /** Take over what is suggested for both hands in the images of some cameras: one step for undo, one save a hand. */
@@ -32,5 +32,5 @@ export const acceptAll: Action<{ suggestions: SuggestionsState; cameras: readonl
   }
   if (Object.keys(poses).every((key) => poses[key] === state.poses[key])) return state;
   const next = { ...state, poses, draft: null };
-  return { ...next, joint: nextOpenJoint(activePose(next), state.joint) };
+  return { ...next, joint: nextOpenJoint(activePose(next), state.joint), isChosen: false };
 };

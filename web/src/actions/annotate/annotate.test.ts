@@ -6,8 +6,12 @@ import { createUndoStack } from "../../state/undo";
 import { bringPose } from "./bring";
 import { clearHand, clearJoint } from "./clear";
 import { cancelDrag, dragHand, dragJoint, endDrag, nudgeJoint } from "./move";
-import { placeBeside, placeJoint } from "./place";
+import { activateCamera } from "./cameras";
+import { clickedJoint, placeBeside, placeIn, placeJoint } from "./place";
 import { goToFrame, selectFinger, selectJoint, stepJoint, switchHand } from "./select";
+import { acceptAll } from "./accept";
+import { propagateTo } from "./propagate";
+import { camerasTouched } from "./touched";
 import { cycleVisibility, toggleOccluded, toggleOutside } from "./visibility";
 
 const start: AnnotatorState = {
@@ -18,6 +22,7 @@ const start: AnnotatorState = {
   frames: null,
   hand: "right",
   joint: 0,
+  isChosen: false,
   draft: null,
 };
 const placed = (count: number, from = start): AnnotatorState =>
@@ -55,6 +60,48 @@ test("right click goes visible, occluded, outside, visible, and keeps the place"
   for (let k = 0; k < 3; k += 1) states.push(cycleVisibility(states.at(-1)!, 0));
   expect(states.map((state) => statusOf(activePose(state)[0]))).toEqual(["visible", "occluded", "outside", "visible"]);
   expect(activePose(states[3]!)[0]).toEqual({ x: 10, y: 20, v: 2 });
+});
+
+test("a click on the ground moves no joint of a finished hand, unless somebody chose it", () => {
+  const done = placed(21);
+  const stray = { x: 300, y: 300 };
+  expect(clickedJoint(done)).toBeNull();
+  for (const place of Object.values(placeIn)) expect(place(done, stray)).toBe(done);
+  const chosen = stepJoint(done, 1);
+  expect([clickedJoint(chosen), activePose(placeJoint(chosen, stray))[0]]).toEqual([0, { ...stray, v: 2 }]);
+  expect(clickedJoint(placeJoint(chosen, stray)), "one click, one joint").toBeNull();
+  expect(clickedJoint(placeIn.stay(chosen, stray)), "where clicks stay with a joint, they do").toBe(0);
+  expect(clickedJoint(goToFrame(goToFrame(chosen, 1), 0)), "elsewhere meanwhile").toBeNull();
+  expect(clickedJoint(switchHand(switchHand(chosen)))).toBeNull();
+});
+
+test("after a drag the next click goes on with the first open joint behind it", () => {
+  const state = endDrag(dragJoint(placed(4), { joint: 1, to: { x: 90, y: 91 } }));
+  expect([state.joint, clickedJoint(state)]).toEqual([1, 4]);
+  expect(activePose(placeJoint(state, { x: 5, y: 6 })).slice(1, 5).map(({ x }) => x)).toEqual([90, 12, 13, 5]);
+});
+
+test("a right click on an outside joint that never had a place makes it open again, and removes an annotation of nothing else", () => {
+  const out = toggleOutside(selectJoint(start, 4));
+  expect(statusOf(activePose(out)[4])).toBe("outside");
+  expect(cycleVisibility(out, 4)).toMatchObject({ poses: {}, joint: 4 });
+  const back = cycleVisibility(toggleOutside(selectJoint(placed(2), 4)), 4);
+  expect([statusOf(activePose(back)[4]), statusOf(activePose(back)[0])]).toEqual(["unset", "visible"]);
+});
+
+test("a change of labels needs the pictures it is made in and about, whatever else it changes", () => {
+  const both = placed(1, activateCamera(placed(1), "cam1"));
+  const touched = (next: AnnotatorState, from = both): string[] => [...camerasTouched(from, next)].sort();
+  expect(touched(goToFrame(both, 3))).toEqual([]);
+  expect(touched(selectJoint(both, 3))).toEqual([]);
+  expect(touched(placeJoint(both, { x: 1, y: 1 }))).toEqual(["cam1"]);
+  const dragged = dragJoint(both, { joint: 0, to: { x: 1, y: 1 } });
+  expect(touched(dragged)).toEqual(["cam1"]);
+  expect(touched(cancelDrag(dragged), dragged)).toEqual([]);
+  expect(touched(propagateTo(both, { key: "0|right|cam1", last: 4 })), "made in this picture, for others").toEqual(["cam1"]);
+  const suggestions = { byPlace: {}, hidden: new Set<never>() };
+  expect(acceptAll(both, { suggestions, cameras: ["cam0"] })).toBe(both);
+  expect(touched({ ...both, poses: { ...both.poses, "0|left|cam0": emptyPose() } })).toEqual(["cam0", "cam1"]);
 });
 
 test("Q and O toggle; an open joint can be put outside without a click", () => {

@@ -13,5 +13,5 @@ export const clearJoint: Action = (state) => {
 /** The hand has no annotation in this image any more. */
 export const clearHand: Action = (state) => {
   const { [keyText(activeKey(state))]: gone, ...poses } = state.poses;
-  return gone ? { ...state, poses, draft: null, joint: 0 } : state;
+  return gone ? { ...state, poses, draft: null, joint: 0, isChosen: false } : state;
 };

@@ -7,7 +7,7 @@ export const dragJoint: Action<{ joint: number; to: Point }> = (state, { joint, 
   const pose = activePose(state);
   const point = pose[joint];
   if (!point) return state;
-  return { ...state, joint, draft: withJoint(pose, joint, { x: to.x, y: to.y, v: point.v === 1 ? 1 : 2 }) };
+  return { ...state, joint, isChosen: false, draft: withJoint(pose, joint, { x: to.x, y: to.y, v: point.v === 1 ? 1 : 2 }) };
 };
 
 /** During a drag with Alt: the whole hand goes by an offset from where the drag began (image px). */

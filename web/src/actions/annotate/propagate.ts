@@ -27,8 +27,9 @@ export const propagateOn: Action = (state) => {
   return { ...next, joint: state.joint };
 };
 
-/** Carry this pose on up to a frame, at most up to the next annotated one: one step for undo. */
-export const propagateTo: Action<number> = (state, last) => {
+/** Carry a hand's pose (`keyText`, if it is the active one still) on up to a frame, at most up to the next annotated one: one step for undo. */
+export const propagateTo: Action<{ key: string; last: number }> = (state, { key, last }) => {
+  if (keyText(activeKey(state)) !== key) return state;
   const pose = poseAt(state, activeKey(state));
   const frames = openFramesAhead(state, last);
   return pose && !isEmpty(pose) && frames.length > 0 ? carried(state, pose, frames) : state;

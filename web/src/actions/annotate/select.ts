@@ -3,23 +3,23 @@ import { activeKey, poseAt, type Action, type AnnotatorState } from "../../state
 import { nearestFrame, snapFrame, steppedFrame } from "../../model/frameSet";
 import { firstOpenJoint, isEmpty, statusOf } from "../../model/pose";
 
-export const selectJoint: Action<number> = (state, joint) => ({ ...state, joint });
+export const selectJoint: Action<number> = (state, joint) => ({ ...state, joint, isChosen: true });
 
 /** Next (+1) or previous (-1) joint, around. */
-export const stepJoint: Action<1 | -1> = (state, step) => ({ ...state, joint: (state.joint + step + JOINT_COUNT) % JOINT_COUNT });
+export const stepJoint: Action<1 | -1> = (state, step) => ({ ...state, joint: (state.joint + step + JOINT_COUNT) % JOINT_COUNT, isChosen: true });
 
 /** A finger by number (0..4); again: the next joint along it. -1 is the wrist. */
 export const selectFinger: Action<number> = (state, finger) => {
-  if (finger < 0) return { ...state, joint: WRIST };
+  if (finger < 0) return selectJoint(state, WRIST);
   const joints = jointsOfFinger(finger);
   const at = joints.indexOf(state.joint);
-  return { ...state, joint: joints[(at + 1) % joints.length] ?? WRIST };
+  return selectJoint(state, joints[(at + 1) % joints.length] ?? WRIST);
 };
 
 /** The other hand, at its first open joint. */
 export const switchHand: Action = (state) => {
   const hand = otherHand(state.hand);
-  const next = { ...state, hand, draft: null };
+  const next = { ...state, hand, draft: null, isChosen: false };
   return { ...next, joint: openJoint(next) };
 };
 
@@ -28,7 +28,7 @@ export const goToFrame: Action<number> = (state, frame) => {
   const wanted = Math.min(state.frameCount - 1, Math.max(0, Math.round(frame)));
   const within = state.frames ? snapFrame(state.frames, wanted, state.frame) : wanted;
   if (within === state.frame) return state;
-  const next = { ...state, frame: within, draft: null };
+  const next = { ...state, frame: within, draft: null, isChosen: false };
   return { ...next, joint: openJoint(next) };
 };
 
@@ -43,7 +43,7 @@ export const keepToFrames: Action<readonly number[] | null> = (state, frames) =>
 
 export const selectCamera: Action<string> = (state, camera) => {
   if (camera === state.camera) return state;
-  const next = { ...state, camera, draft: null };
+  const next = { ...state, camera, draft: null, isChosen: false };
   return { ...next, joint: openJoint(next) };
 };
 

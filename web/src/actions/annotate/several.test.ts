@@ -16,7 +16,7 @@ import { swapHands } from "./swap";
 import { turnHand } from "./turn";
 
 const pose = (x: number, y = 0): Pose => Array.from({ length: 21 }, (_, joint) => ({ x: x + joint, y: y + 2 * joint, v: 2 as const }));
-const start = (poses: AnnotatorState["poses"], frame = 0): AnnotatorState => ({ poses, camera: "cam0", frame, frameCount: 20, frames: null, hand: "right", joint: 0, draft: null });
+const start = (poses: AnnotatorState["poses"], frame = 0): AnnotatorState => ({ poses, camera: "cam0", frame, frameCount: 20, frames: null, hand: "right", joint: 0, isChosen: false, draft: null });
 const key = (frame: number, hand: "right" | "left" = "right"): string => keyText({ camera: "cam0", frame, hand });
 
 test("a quarter turn about a joint leaves it and carries the others round; outside joints without a place stay out", () => {
@@ -42,9 +42,10 @@ test("swapping exchanges both hands in one step, and twice is as before", () => 
 test("a pose is carried up to the next annotated frame and never over it", () => {
   const state = start({ [key(3)]: pose(1), [key(7)]: pose(2) }, 3);
   expect(openFramesAhead(state)).toEqual([4, 5, 6]);
-  const all = propagateTo(state, 19);
+  const all = propagateTo(state, { key: key(3), last: 19 });
   expect(Object.keys(all.poses).length).toBe(5);
   expect(all.poses[key(7)]).toBe(state.poses[key(7)]);
+  expect(propagateTo({ ...state, frame: 4 }, { key: key(3), last: 19 }).poses, "asked for at a frame that is not in view any more").toBe(state.poses);
   const once = propagateOn(state);
   expect([once.frame, once.poses[key(4)]]).toEqual([4, copyOf(pose(1), 3)]);
   expect(propagateOn({ ...state, frame: 6 }).poses).toBe(state.poses);
@@ -53,7 +54,7 @@ test("a pose is carried up to the next annotated frame and never over it", () =>
 test("undoing what was done over many frames goes back to where it was asked for", () => {
   const store = createStore(start({ [key(3)]: pose(1) }, 3));
   const undo = createUndoStack(store);
-  store.set(propagateTo(store.get(), 9), "person");
+  store.set(propagateTo(store.get(), { key: key(3), last: 9 }), "person");
   store.set({ ...store.get(), frame: 8 }, "person");
   undo.undo();
   expect([store.get().frame, Object.keys(store.get().poses)]).toEqual([3, [key(3)]]);

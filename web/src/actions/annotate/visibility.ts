@@ -1,5 +1,6 @@
 import { activePose, withActivePose, type Action } from "../../state/annotator";
-import { hasPlace, nextOpenJoint, statusOf, withJoint, withStatus, type JointStatus } from "../../model/pose";
+import { hasPlace, isEmpty, nextOpenJoint, statusOf, withJoint, withStatus, type JointPoint, type JointStatus } from "../../model/pose";
+import { clearHand } from "./clear";
 
 const setStatus = (state: Parameters<Action>[0], joint: number, status: JointStatus): ReturnType<Action> => {
   const pose = activePose(state);
@@ -7,19 +8,26 @@ const setStatus = (state: Parameters<Action>[0], joint: number, status: JointSta
   return point ? withActivePose(state, withJoint(pose, joint, withStatus(point, status))) : state;
 };
 
-/** Right click: visible, occluded, outside, visible ... */
-export const cycleVisibility: Action<number> = (state, joint) => {
-  const point = activePose(state)[joint];
+/** What a right click makes of a joint: visible, occluded, outside, visible ...; outside without a place, it is open again. */
+function cycled(point: JointPoint | undefined): JointStatus {
   switch (statusOf(point)) {
     case "visible":
-      return { ...setStatus(state, joint, "occluded"), joint };
+      return "occluded";
     case "occluded":
-      return { ...setStatus(state, joint, "outside"), joint };
+      return "outside";
     case "outside":
-      return point && hasPlace(point) ? { ...setStatus(state, joint, "visible"), joint } : state;
+      return point && hasPlace(point) ? "visible" : "unset";
     case "unset":
-      return state;
+      return "unset";
   }
+}
+
+/** Right click on a joint, or on its line among the joints. */
+export const cycleVisibility: Action<number> = (state, joint) => {
+  const point = activePose(state)[joint];
+  if (statusOf(point) === "unset") return state;
+  const next = setStatus(state, joint, cycled(point));
+  return { ...(isEmpty(activePose(next)) ? clearHand(next) : next), joint, isChosen: false };
 };
 
 /** Hidden but estimated, or visible again. */
@@ -45,7 +53,7 @@ export const toggleOutside: Action = (state) => {
       return setStatus(state, state.joint, point && hasPlace(point) ? "visible" : "unset");
     case "unset": {
       const next = setStatus(state, state.joint, "outside");
-      return { ...next, joint: nextOpenJoint(activePose(next), state.joint) };
+      return { ...next, joint: nextOpenJoint(activePose(next), state.joint), isChosen: false };
     }
     default:
       return setStatus(state, state.joint, "outside");

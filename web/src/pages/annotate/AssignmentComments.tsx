@@ -22,7 +22,7 @@ export function AssignmentComments() {
     if (comment.frame === null) return;
     const state = session.store.get();
     const { frame, camera, hand, joint } = comment;
-    session.store.set({ ...state, frame, camera: camera ?? state.camera, hand: hand ?? state.hand, joint: joint ?? state.joint, draft: null }, "person");
+    session.store.set({ ...state, frame, camera: camera ?? state.camera, hand: hand ?? state.hand, joint: joint ?? state.joint, isChosen: false, draft: null }, "person");
   };
   if (!assignment || !mayTalk) {
     return (

@@ -48,13 +48,12 @@ export function CameraPane({ camera }: { camera: Camera }) {
         camera={camera}
         label={arrangement === "depth" ? "Depth" : "Colour"}
         layers={layers}
-        shownFrame={pictures.shownFrame}
-        isBusy={pictures.isStale || layers.every((layer) => layer.picture === null)}
+        pictures={pictures}
         overlay={
           <div className={classes.label} data-over-picture>
             <b>{camera.id}</b>
             <span className={classes.count}>
-              {pictures.failure ? "picture not loaded" : `${marked}/21`}
+              {pictures.setback ? "picture not loaded" : `${marked}/21`}
               {isActive && " · active"}
             </span>
             <button type="button" className={classes.button} aria-label={enlarge} aria-pressed={isLarge} title={hint(enlarge, "views.large")} onClick={() => setLarge(isLarge ? null : camera.id)}>

@@ -62,7 +62,7 @@ export function CamerasProvider({ children }: { children: ReactNode }) {
     const at = visited.current.marks === marks ? visited.current.next % worst.length : 0;
     visited.current = { marks, next: at + 1 };
     const mark = worst[at];
-    if (mark) act((now) => ({ ...now, camera: mark.camera, joint: mark.joint, draft: null }), undefined);
+    if (mark) act((now) => ({ ...now, camera: mark.camera, joint: mark.joint, isChosen: true, draft: null }), undefined);
   };
 
   /** Among the pictures that are shown, with the joint kept; where one alone is shown, the annotator's own keys go through all cameras. */

@@ -15,7 +15,7 @@ export function ConflictCards() {
       mine={state.poses[key]}
       theirs={version}
       isHere={key === here}
-      onGo={() => session.store.set({ ...session.store.get(), ...parseKey(key), draft: null }, "person")}
+      onGo={() => session.store.set({ ...session.store.get(), ...parseKey(key), isChosen: false, draft: null }, "person")}
       onSettle={(choice) => settleConflict(session, key, choice)}
     />
   ));

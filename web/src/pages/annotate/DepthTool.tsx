@@ -76,9 +76,10 @@ function DepthColors() {
 }
 
 export function DepthTool() {
-  const { range, options } = useAnnotating();
+  const { range, options, arrangement } = useAnnotating();
+  const isSeen = arrangement !== "color";
   return (
-    <ToolPopover label="Depth colours" icon={<IconStack2 size={18} />} isOn={range !== null || options.palette !== "warm"} width={288}>
+    <ToolPopover label={isSeen ? "Depth colours" : "Depth colours (where depth is shown)"} isDisabled={!isSeen} icon={<IconStack2 size={18} />} isOn={range !== null || options.palette !== "warm"} width={288}>
       {() => <DepthColors />}
     </ToolPopover>
   );

@@ -35,7 +35,7 @@ function CurveShape({ curve, view, color, label, isFaint = false }: { curve: Cur
 const clipTo = (camera: LayerProps["camera"], view: View) => ({ clipX: view.x, clipY: view.y, clipWidth: camera.width * view.scale, clipHeight: camera.height * view.scale });
 
 /** Where what is under the cursor in another camera's picture can be in this one; drawn apart, because it moves with the cursor. */
-export function CursorCurve({ view, camera }: LayerProps) {
+export function CursorCurve({ view, camera }: Omit<LayerProps, "frame">) {
   const { recording, hover } = useAnnotating();
   const { areLinesShown } = useCameras();
   const here = useHover(hover);
@@ -49,7 +49,7 @@ export function CursorCurve({ view, camera }: LayerProps) {
 }
 
 /** Epipolar lines of the active joint, from every camera that has it. */
-export function EpipolarLayer({ view, camera }: LayerProps) {
+export function EpipolarLayer({ view, camera, frame }: LayerProps) {
   const { recording, state, pose } = useAnnotating();
   const { areLinesShown } = useCameras();
   if (!areLinesShown || recording.cameras.length < 2) return null;
@@ -57,7 +57,8 @@ export function EpipolarLayer({ view, camera }: LayerProps) {
     <Group listening={false} {...clipTo(camera, view)}>
       {recording.cameras.map((other) => {
         if (other.id === camera.id) return null;
-        const mark = (other.id === state.camera ? pose : state.poses[keyText({ camera: other.id, frame: state.frame, hand: state.hand })])?.[state.joint];
+        const isActive = other.id === state.camera && frame === state.frame;
+        const mark = (isActive ? pose : state.poses[keyText({ camera: other.id, frame, hand: state.hand })])?.[state.joint];
         return isPlaced(mark) && <CurveShape key={other.id} curve={epipolarCurve(other, mark, camera)} view={view} color={jointColor(state.joint)} label={other.id} />;
       })}
     </Group>

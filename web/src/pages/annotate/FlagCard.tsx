@@ -17,7 +17,7 @@ const CHECK_AFTER_MS = 1500;
 
 /** Why the label in view looks wrong, and the keys that walk from one such label to the next. */
 export function FlagCard() {
-  const { recording, session, state, saving, act } = useAnnotating();
+  const { recording, session, state, saving, act, run } = useAnnotating();
   const client = useQueryClient();
   const isBlind = useIsBlind();
   const found = useFlags(recording.id).data?.items;
@@ -44,7 +44,11 @@ export function FlagCard() {
     if (next.hand !== now.hand) act(switchHand, undefined);
     if (next.joints[0] !== undefined) act(selectJoint, next.joints[0]);
   };
-  const putAway = (flag: Flag | undefined): void => flag && dismissal.mutate({ flag, isRight: true });
+  // The cards follow a moment later than the picture: what is put away is of the hand that is in view.
+  const putAway = (flag: Flag | undefined): void => {
+    const { camera, frame, hand } = session.store.get();
+    if (flag && flag.camera === camera && flag.frame === frame && flag.hand === hand) dismissal.mutate({ flag, isRight: true });
+  };
   useActions({ "flag.next": walk(1), "flag.previous": walk(-1), "flag.dismiss": () => putAway(first) });
 
   return here.map((flag) => (
@@ -59,7 +63,7 @@ export function FlagCard() {
         {flag.reason}
       </Text>
       <Group gap={8}>
-        <Button size="compact-xs" variant="default" onClick={() => putAway(flag)} disabled={dismissal.isPending || !isSaved}>
+        <Button size="compact-xs" variant="default" onClick={() => (flag === first ? run("flag.dismiss") : putAway(flag))} disabled={dismissal.isPending || !isSaved}>
           It is right{flag === first && keyOf("flag.dismiss") ? ` (${keyOf("flag.dismiss")})` : ""}
         </Button>
         <Button size="compact-xs" variant="subtle" onClick={walk(1)}>

@@ -68,8 +68,8 @@ export function HistoryPanel() {
                 m="0 12px 8px"
                 disabled={lock !== null}
                 onClick={() => {
-                  act(restorePose, entry.pose);
-                  setPreview(null);
+                  // The list follows a moment later than the picture: it may be of another hand than the active one by now.
+                  if (act(restorePose, { key, pose: entry.pose })) setPreview(null);
                 }}
               >
                 Bring revision {entry.revision} back

@@ -1,6 +1,7 @@
 import { ScrollArea, Tooltip } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { selectJoint, switchHand } from "../../actions/annotate/select";
+import { cycleVisibility } from "../../actions/annotate/visibility";
 import { describeSource } from "../../model/history";
 import { HANDS, JOINTS, jointColor, jointLabel } from "../../model/joints";
 import { decidedCount, keyText, statusOf, type JointStatus } from "../../model/pose";
@@ -71,8 +72,12 @@ export function JointsPanel() {
               data-status={status}
               aria-current={isActive ? "step" : undefined}
               aria-label={`${jointLabel(joint)}, ${STATUS[status].help}${from ? `, ${from}` : ""}`}
-              title={from}
+              title={from ?? (status === "outside" ? "Right click: back again" : undefined)}
               onClick={() => act(selectJoint, joint)}
+              onContextMenu={(event) => {
+                event.preventDefault();
+                act(cycleVisibility, joint);
+              }}
             >
               <StatusMark status={status} color={jointColor(joint)} />
               <span className="one-line">{jointLabel(joint)}</span>

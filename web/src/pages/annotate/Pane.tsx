@@ -1,13 +1,14 @@
-import { dragHand, dragJoint, endDrag } from "../../actions/annotate/move";
-import { placeIn } from "../../actions/annotate/place";
+import { cancelDrag, dragHand, dragJoint, endDrag } from "../../actions/annotate/move";
+import { clickedJoint, placeIn } from "../../actions/annotate/place";
 import { activateCamera } from "../../actions/annotate/cameras";
 import { selectJoint } from "../../actions/annotate/select";
 import { turnHand } from "../../actions/annotate/turn";
 import { cycleVisibility } from "../../actions/annotate/visibility";
-import { useMemo, type ReactNode } from "react";
+import { useCallback, useEffect, useId, useMemo, type ReactNode } from "react";
 import type { Camera } from "../../api/types";
 import { jointAt } from "../../canvas/hit";
 import { ImagePane, type PaneLayer } from "../../canvas/ImagePane";
+import type { Pictures } from "../../canvas/usePictures";
 import { jointLabel } from "../../model/joints";
 import { emptyPose, keyText } from "../../model/pose";
 import { pointerOn } from "../../state/pointer";
@@ -15,6 +16,7 @@ import { useAnnotating } from "./annotating";
 import classes from "./Annotator.module.css";
 import { CursorCurve } from "./EpipolarLayer";
 import { LAYERS } from "./mounts";
+import { describeClick } from "./nextClick";
 import { useSuggestDouble } from "./useSuggestDouble";
 
 interface PaneProps {
@@ -22,23 +24,27 @@ interface PaneProps {
   /** "Colour" */
   label: string;
   layers: readonly PaneLayer[];
-  isBusy: boolean;
-  shownFrame: number | null;
+  pictures: Pictures;
   /** In place of the label in the corner. */
   overlay?: ReactNode;
 }
 
 /** One picture of one camera, to be annotated; a gesture on a camera that is not the active one makes it so first. */
-export function Pane({ camera, label, layers, isBusy, shownFrame, overlay }: PaneProps) {
-  const { state, pose, options, viewOf, setView, noteDrawn, hover, isMagnified, act, run } = useAnnotating();
+export function Pane({ camera, label, layers, pictures, overlay }: PaneProps) {
+  const { session, state, pose, options, viewOf, setView, noteDrawn, isRefused, refuse, hover, isMagnified, act, run } = useAnnotating();
   const isActive = camera.id === state.camera;
   const shown = isActive ? pose : (state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })] ?? emptyPose());
-  const here = (): void => act(activateCamera, camera.id);
+  const here = (): void => void act(activateCamera, camera.id);
   const pointer = useMemo(() => pointerOn(hover, camera.id), [hover, camera.id]);
   const { notePlace, onDouble } = useSuggestDouble(camera);
+  const pane = useId();
+  const onDrawn = useCallback((frame: number | null) => noteDrawn(pane, camera.id, frame), [noteDrawn, pane, camera.id]);
+  useEffect(() => () => noteDrawn(pane, camera.id, null), [noteDrawn, pane, camera.id]);
+  const { shownFrame } = pictures;
+  const clicked = clickedJoint(state);
   return (
     <ImagePane
-      label={`${label} of frame ${state.frame}, ${camera.id}. Next click places ${jointLabel(state.joint)}.`}
+      label={`${label} of frame ${state.frame}, ${camera.id}. Next click ${describeClick(state, pose, options.placeMode)}.`}
       camera={camera}
       layers={layers}
       view={viewOf(camera.id)}
@@ -46,19 +52,22 @@ export function Pane({ camera, label, layers, isBusy, shownFrame, overlay }: Pan
       brightness={options.brightness}
       contrast={options.contrast}
       pointer={pointer}
-      cursorLabel={jointLabel(state.joint)}
+      cursorLabel={clicked === null || pictures.isStale ? "" : jointLabel(clicked)}
       isMagnified={isMagnified}
-      isBusy={isBusy}
+      frame={state.frame}
       shownFrame={shownFrame}
       isTouchLooking={!options.isTouchMarking}
       onSwipe={(by) => run(by > 0 ? "frame.next" : "frame.previous")}
-      onDrawn={(frame) => noteDrawn(camera.id, frame)}
+      setback={pictures.setback}
+      onRetry={pictures.retry}
+      isRefused={isRefused}
+      onDrawn={onDrawn}
+      onRefused={refuse}
       hitJoint={(view, screen) => (options.areHandsShown ? jointAt(shown, view, screen, isActive ? state.joint : -1) : -1)}
       onDouble={onDouble}
       onPlace={(pixel) => {
-        notePlace();
         here();
-        act(placeIn[options.placeMode], pixel);
+        if (act(placeIn[options.placeMode], pixel)) notePlace();
       }}
       onSelect={(joint) => {
         here();
@@ -76,8 +85,10 @@ export function Pane({ camera, label, layers, isBusy, shownFrame, overlay }: Pan
         here();
         act(turnHand, turn);
       }}
+      isDragOn={() => session.store.get().draft !== null}
       onSpacePan={() => run("play")}
-      onDragEnd={() => act(endDrag, undefined)}
+      onDragEnd={() => void act(endDrag, undefined)}
+      onDragCancel={() => void act(cancelDrag, undefined)}
       onCycle={(joint) => {
         here();
         act(cycleVisibility, joint);
@@ -85,7 +96,7 @@ export function Pane({ camera, label, layers, isBusy, shownFrame, overlay }: Pan
       withCursor={(view) => <CursorCurve view={view} camera={camera} />}
       overlay={overlay ?? <span className={classes.paneLabel}>{label}</span>}
     >
-      {(view) => LAYERS.map((Layer, index) => <Layer key={index} view={view} camera={camera} />)}
+      {(view) => shownFrame !== null && LAYERS.map((Layer, index) => <Layer key={index} view={view} camera={camera} frame={shownFrame} />)}
     </ImagePane>
   );
 }

@@ -11,7 +11,7 @@ export function Panes() {
   const color = { picture: pictures.color, opacity: 1 };
   const depth = { picture: pictures.depth, opacity: 1 };
   const show = (label: string, layers: readonly (typeof color)[]) => (
-    <Pane key={label} camera={camera} label={label} layers={layers} shownFrame={pictures.shownFrame} isBusy={pictures.isStale || layers.every((layer) => layer.picture === null)} />
+    <Pane key={`${camera.id}/${label}`} camera={camera} label={label} layers={layers} pictures={pictures} />
   );
   switch (arrangement) {
     case "color":

@@ -3,7 +3,7 @@ import { IconCopyPlus } from "@tabler/icons-react";
 import { useState } from "react";
 import { openFramesAhead, propagateTo } from "../../actions/annotate/propagate";
 import { formatCount } from "../../model/format";
-import { isEmpty } from "../../model/pose";
+import { isEmpty, keyText } from "../../model/pose";
 import { activeKey, poseAt } from "../../state/annotator";
 import { useHint } from "../../state/keys";
 import { useAnnotating } from "./annotating";
@@ -40,7 +40,7 @@ function Propagate({ close }: { close: () => void }) {
               size="xs"
               disabled={wanted.length === 0}
               onClick={() => {
-                act(propagateTo, last);
+                act(propagateTo, { key: keyText(activeKey(state)), last });
                 close();
               }}
             >

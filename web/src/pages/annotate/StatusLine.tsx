@@ -1,23 +1,11 @@
-import type { PlaceMode } from "../../actions/annotate/place";
 import type { DepthImage } from "../../canvas/depth";
 import { depthAt } from "../../canvas/depth";
-import { jointLabel } from "../../model/joints";
-import { statusOf, type Pose } from "../../model/pose";
-import type { AnnotatorState } from "../../state/annotator";
 import { usePointer, type PointerStore } from "../../state/pointer";
 import { SaveState } from "../parts/SaveState";
 import { useHasFingers, useIsCompact } from "../parts/useScreen";
 import { useAnnotating } from "./annotating";
+import { describeClick, describeWait } from "./nextClick";
 import classes from "./StatusLine.module.css";
-
-/** What the next click on the ground does. */
-export function describeClick(state: AnnotatorState, pose: Pose, placeMode: PlaceMode): string {
-  const name = `${state.hand} ${jointLabel(state.joint)}`;
-  const status = statusOf(pose[state.joint]);
-  const after = placeMode === "frame" ? ", then the next frame" : "";
-  if (status === "unset") return `places the ${name}${after}`;
-  return status === "outside" ? `places the ${name}, which is outside now` : `moves the ${name} here${after}`;
-}
 
 function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | null }) {
   const pixel = usePointer(pointer);
@@ -38,14 +26,14 @@ function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | n
 }
 
 export function StatusLine() {
-  const { state, pose, saving, pointer, pictures, lock, session, options } = useAnnotating();
+  const { state, pose, saving, pointer, pictures, lock, session, options, isPlaying, isRefused } = useAnnotating();
   const [isCompact, hasFingers] = [useIsCompact(), useHasFingers()];
   const isLooking = isCompact && hasFingers && !options.isTouchMarking;
   return (
     <div className={classes.line}>
       <SaveState status={{ ...saving, conflicts: saving.conflicts.size, refusals: saving.refusals.size }} what="Every gesture is saved by itself" action="save.now" onFlush={() => session.queue.flush()} />
       <span className={classes.next} data-testid="next-click">
-        {lock ?? (isLooking ? "Swipe for frames, tap to choose a joint" : `Next click ${describeClick(state, pose, options.placeMode)}`)}
+        {lock ?? describeWait(state, pictures, isPlaying, isRefused) ?? (isLooking ? "Swipe for frames, tap to choose a joint" : `Next click ${describeClick(state, pose, options.placeMode)}`)}
       </span>
       <span className={classes.here}>
         <Here pointer={pointer} depth={pictures.depthImage} />

@@ -35,8 +35,11 @@ export interface Annotating {
   /** Null fits the image. */
   viewOf(camera: string): View | null;
   setView(camera: string, view: View | null): void;
-  /** Which frame of a camera is on the screen now. */
-  noteDrawn(camera: string, frame: number | null): void;
+  /** Which frame of a camera is on the screen now, in one of its panes; null for none. */
+  noteDrawn(pane: string, camera: string, frame: number | null): void;
+  /** Somebody tried to change labels of a picture that is not on the screen yet; until it is, the page says so. */
+  readonly isRefused: boolean;
+  refuse(): void;
   /** In the pictures of the active camera. */
   readonly pointer: PointerStore;
   /** In whichever camera's pictures it is. */
@@ -49,8 +52,11 @@ export interface Annotating {
   /** Why the labels cannot be changed here, or null. What would change them is then refused, and this is said. */
   readonly lock: string | null;
   setLock(reason: string | null): void;
-  /** A person's action: one step for undo, saved by itself. */
-  act<I>(action: Action<I>, input: I): void;
+  /**
+   * A person's action: one step for undo, saved by itself. Labels are changed only in pictures that are on the screen, and not
+   * while frames are played; says whether it was taken.
+   */
+  act<I>(action: Action<I>, input: I): boolean;
   /** Does what a key of this id would do. */
   run(id: string, repeats?: number): void;
   /** Answers ids of the key map as long as it is not called off; what comes later goes first. */

@@ -16,7 +16,6 @@ import { FlagCard, useFlagMarks } from "./FlagCard";
 import { HandsLayer } from "./HandsLayer";
 import { HistoryPanel } from "./HistoryPanel";
 import { JointsPanel } from "./JointsPanel";
-import { PictureFailure } from "./PictureFailure";
 import { RefusalCards } from "./RefusalCards";
 import { SuggestLayer } from "./SuggestLayer";
 import { SuggestTool } from "./SuggestTool";
@@ -26,6 +25,8 @@ import { useSubmittedMarks } from "./useAssignmentHere";
 export interface LayerProps {
   view: View;
   camera: Camera;
+  /** Which frame the picture is of: not always the one that the annotator is at. */
+  frame: number;
 }
 
 export interface Panel {
@@ -45,7 +46,7 @@ export const PANELS: readonly Panel[] = [
 ];
 
 /** In the picture's upper right corner, one below the other; each draws nothing when it has nothing to say. */
-export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, PictureFailure, FlagCard];
+export const CARDS: readonly ComponentType[] = [ConflictCards, RefusalCards, FlagCard];
 
 /** Across the page, below the frame bar. */
 export const BARS: readonly ComponentType[] = [AssignmentBar];

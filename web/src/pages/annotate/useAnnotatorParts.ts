@@ -3,6 +3,7 @@
 import { useCallback, useEffect, useMemo, useRef, useState, type RefObject } from "react";
 import { PLACE_MODES } from "../../actions/annotate/place";
 import { stepFrames } from "../../actions/annotate/select";
+import { camerasTouched } from "../../actions/annotate/touched";
 import { useKeymap } from "../../actions/useKeymap";
 import type { Recording } from "../../api/types";
 import { scaleRange, type DepthRange } from "../../canvas/depth";
@@ -17,12 +18,18 @@ import type { Session } from "../../state/session";
 import { arrangementFor, arrangementsOf, clampFactor, useViewOptions } from "../../state/viewOptions";
 import { useLateAddress } from "../parts/useLateAddress";
 import type { Actions, Annotating } from "./annotating";
+import { createScreen } from "./screen";
 import { annotateActions, stepFor } from "./useAnnotateActions";
 import { usePlayback } from "./usePlayback";
 import { useSeenSteps } from "./useSeenSteps";
 import { useAnnotatorState, useSaveStatus } from "./useSession";
 
 const KEYS = KEYMAP.filter((binding) => binding.scope === "annotate" || binding.id === "undo" || binding.id === "redo").map((binding) => binding.id);
+
+const STEPS: ReadonlySet<string> = new Set(["frame.next", "frame.previous"]);
+
+/** What changes something about the labels in view by itself, past the actions. */
+const JUDGED: ReadonlySet<string> = new Set(["undo", "redo", "key.mark", "flag.dismiss"]);
 
 /** Keys that mean something only when pressed, not when held. */
 const ONCE: ReadonlySet<string> = new Set(["play", "view.magnifier"]);
@@ -42,19 +49,37 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
   if (!camera) throw new Error("This recording has no camera.");
   const pointer = useMemo(() => pointerOn(hover, camera.id), [hover, camera.id]);
   const arrangement = arrangementFor(camera, options.arrangement);
-  // Depth is fetched whenever there is any: the value under the cursor is wanted beside the colour image, too.
-  const pictures = usePictures(recording, camera, state.frame, { color: arrangement !== "depth", depth: camera.has_depth, isDepthSeen: arrangement !== "color", palette: options.palette }, range);
+  // Depth is large: it is fetched where it is seen, and its values are known there.
+  const pictures = usePictures(recording, camera, state.frame, { color: arrangement !== "depth", depth: arrangement !== "color", palette: options.palette }, range);
 
+  const [screen] = useState(createScreen);
+  const [isRefused, setRefused] = useState(false);
   const isLocked = useRef(false);
   isLocked.current = lock !== null;
+  const isRunning = useRef(false);
+  const refuse = useCallback(() => setRefused(true), []);
+  /** Whether these cameras' pictures of the frame are on the screen and stand still; who acts in vain is told. */
+  const areSeen = useCallback(
+    (cameras: Iterable<string>): boolean => {
+      const { frame } = session.store.get();
+      const isShown = [...cameras].every((one) => screen.shows(one, frame));
+      if (!isShown) refuse();
+      return isShown && !isRunning.current;
+    },
+    [session, screen, refuse],
+  );
   const act = useCallback(
-    <I>(action: Action<I>, input: I) => {
+    <I>(action: Action<I>, input: I): boolean => {
       const before = session.store.get();
       const next = action(before, input);
-      if (isLocked.current && (next.poses !== before.poses || next.draft !== null)) return;
-      session.store.set(next, "person");
+      if (next === before) return false;
+      const touched = camerasTouched(before, next);
+      const isTaken = touched.size === 0 || (!isLocked.current && areSeen(touched));
+      // A drag that may not end here is called off.
+      if (isTaken || before.draft) session.store.set(isTaken ? next : { ...before, draft: null }, "person");
+      return isTaken;
     },
-    [session],
+    [session, areSeen],
   );
   const [isPlaying, setPlaying] = usePlayback(recording.fps, {
     // Playing waits for a picture rather than leave one out.
@@ -65,26 +90,28 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
       return frame < (frames?.at(-1) ?? frameCount - 1);
     },
   });
+  isRunning.current = isPlaying;
 
-  const drawn = useRef(new Map<string, number | null>());
-  const steps = useSeenSteps(
-    (by) => act(stepFrames, by),
-    () => {
-      const { camera: active, frame } = session.store.get();
-      return Boolean(pictures.failure) || drawn.current.get(active) === frame;
-    },
-  );
+  /** Of this frame nothing will be drawn: it has no picture. */
+  const isBlank = !pictures.isStale && pictures.color === null && pictures.depth === null;
+  const isDrawn = (): boolean => {
+    const { camera: active, frame } = session.store.get();
+    return pictures.setback !== null || isBlank || screen.shows(active, frame);
+  };
+  const steps = useSeenSteps((by) => act(stepFrames, by), isDrawn);
   const noteDrawn = useCallback(
-    (id: string, frame: number | null) => {
-      drawn.current.set(id, frame);
+    (pane: string, id: string, frame: number | null) => {
+      screen.note(pane, id, frame);
+      if (frame === session.store.get().frame) setRefused(false);
       // Behind the drawing that this is said from; what changes now is drawn for the refresh after it.
       queueMicrotask(steps.drawn);
     },
-    [steps],
+    [session, screen, steps],
   );
   useEffect(() => {
-    if (pictures.failure) steps.drawn();
-  }, [pictures.failure, steps]);
+    if (pictures.setback) steps.drawn();
+  }, [pictures.setback, steps]);
+  useEffect(() => setRefused(false), [state.frame, state.camera]);
 
   useLateAddress({ camera: state.camera, frame: String(state.frame), hand: state.hand }, 120, keepPlace);
 
@@ -133,10 +160,11 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
   const answers = useRef<(id: string) => ((repeats?: number) => void) | undefined>(() => undefined);
   answers.current = (id) => others.current.map((part) => part()[id]).find(Boolean) ?? pageActions[id] ?? actions[id];
   const run = useCallback((id: string, repeats = 0) => {
+    if (!STEPS.has(id)) steps.flush();
     if (isLocked.current && (id === "undo" || id === "redo")) return;
-    if (id !== "frame.next" && id !== "frame.previous") steps.flush();
+    if (JUDGED.has(id) && !areSeen([session.store.get().camera])) return;
     answers.current(id)?.(repeats);
-  }, [steps]);
+  }, [steps, session, areSeen]);
 
   const repeats = useRef(0);
   const held = useRef<string | null>(null);
@@ -144,7 +172,10 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     repeats.current = event.repeat ? repeats.current + 1 : 0;
     if (id === "view.magnifier") held.current = event.code;
     if (event.repeat && ONCE.has(id)) return;
-    run(id, repeats.current);
+    const press = (): void => run(id, repeats.current);
+    // What comes right behind a step finds that step's picture drawn, if it is here already.
+    if (STEPS.has(id) || ONCE.has(id) || pictures.isStale || isDrawn()) press();
+    else steps.whenDrawn(press);
   };
   useKeymap("annotate", Object.fromEntries(KEYS.flatMap((id) => (answers.current(id) ? [[id, answer(id)]] : []))));
   useEffect(() => {
@@ -176,6 +207,8 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     viewOf: (id) => views[id] ?? null,
     setView,
     noteDrawn,
+    isRefused,
+    refuse,
     pointer,
     hover,
     isMagnified,

@@ -5,6 +5,8 @@ const MOST_WAITING = 15;
 
 export interface SeenSteps {
   step(by: number): void;
+  /** Done once the last frame that was gone to is drawn; at once if it is. */
+  whenDrawn(act: () => void): void;
   /** A picture was drawn for the next refresh of the screen: what waits for it may go on. */
   drawn(): void;
   /** Take what waits now, because something else is to happen after it. */
@@ -13,29 +15,31 @@ export interface SeenSteps {
 
 /**
  * Steps from frame to frame of which each is seen: one that comes before the last frame was drawn waits for that, so that two
- * key presses between two refreshes of the screen leave no frame out.
+ * key presses between two refreshes of the screen leave no frame out, and what is pressed behind them finds its picture.
  */
 export function useSeenSteps(go: (by: number) => void, isDrawn: () => boolean): SeenSteps {
   const current = useRef({ go, isDrawn });
   current.current = { go, isDrawn };
   const [steps] = useState(() => {
-    let waiting: number[] = [];
+    let waiting: (number | (() => void))[] = [];
+    const take = (one: number | (() => void)): void => (typeof one === "number" ? current.current.go(one) : one());
     const flush = (): void => {
-      const by = waiting.reduce((sum, one) => sum + one, 0);
+      const all = waiting;
       waiting = [];
-      if (by !== 0) current.current.go(by);
+      all.forEach(take);
+    };
+    const put = (one: number | (() => void)): void => {
+      if (waiting.length === 0 && current.current.isDrawn()) return take(one);
+      waiting.push(one);
+      if (waiting.length > MOST_WAITING) flush();
     };
     return {
       flush,
       drawn(): void {
-        const by = current.current.isDrawn() ? waiting.shift() : undefined;
-        if (by !== undefined) current.current.go(by);
+        while (waiting.length > 0 && current.current.isDrawn()) take(waiting.shift() ?? 0);
       },
-      step(by: number): void {
-        if (waiting.length === 0 && current.current.isDrawn()) return current.current.go(by);
-        waiting.push(by);
-        if (waiting.length > MOST_WAITING) flush();
-      },
+      step: put,
+      whenDrawn: put,
     };
   });
   useEffect(() => steps.flush, [steps]);

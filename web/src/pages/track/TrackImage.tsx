@@ -1,5 +1,5 @@
 import { Checkbox } from "@mantine/core";
-import { useEffect, useMemo, useState } from "react";
+import { useEffect, useMemo, useState, type RefObject } from "react";
 import { overlayUrl, useTrackJoints } from "../../api/tracks";
 import type { Camera, Recording, Track } from "../../api/types";
 import { ImagePane } from "../../canvas/ImagePane";
@@ -20,23 +20,28 @@ interface TrackImageProps {
   onStep: (by: 1 | -1) => void;
   onMesh: (isShown: boolean) => void;
   onSkeleton: (isShown: boolean) => void;
+  /** Is told whether the picture is that of the frame, so that playing leaves none out. */
+  ready: RefObject<boolean>;
 }
 
 /** What the camera saw, with the fitted mesh and joints over it. */
-export function TrackImage({ track, recording, camera, frame, isMeshShown, isSkeletonShown, onStep, onMesh, onSkeleton }: TrackImageProps) {
+export function TrackImage({ track, recording, camera, frame, isMeshShown, isSkeletonShown, onStep, onMesh, onSkeleton, ready }: TrackImageProps) {
   const [view, setView] = useState<View | null>(null);
   const [pointer] = useState(createPointerStore);
   const pictures = usePictures(recording, camera, frame, { color: camera.has_color, depth: !camera.has_color, palette: "grey" }, null);
   const overlay = useOverlay(isMeshShown ? overlayUrl(track.id, camera.id, frame) : null);
   const joints = useTrackJoints(track.id, camera.id).data;
-  const row = useMemo(() => joints?.frames.indexOf(frame) ?? -1, [joints, frame]);
+  // What lies over the picture is of the picture's own frame.
+  const { shownFrame } = pictures;
+  const row = useMemo(() => joints?.frames.indexOf(shownFrame ?? -1) ?? -1, [joints, shownFrame]);
   useEffect(() => setView(null), [camera.id]);
 
   const layers = [
     { picture: camera.has_color ? pictures.color : pictures.depth, opacity: 1 },
-    { picture: overlay.picture, opacity: 0.75 },
+    { picture: shownFrame === frame ? overlay.picture : null, opacity: 0.75 },
   ];
-  const failure = pictures.failure ?? overlay.failure;
+  const { failure } = overlay;
+  ready.current = !pictures.isStale || pictures.setback !== null;
   return (
     <div className={classes.image}>
       <ImagePane
@@ -52,7 +57,10 @@ export function TrackImage({ track, recording, camera, frame, isMeshShown, isSke
         pointer={pointer}
         cursorLabel=""
         isMagnified={false}
-        isBusy={pictures.isStale || layers[0]?.picture === null}
+        frame={frame}
+        shownFrame={shownFrame}
+        setback={pictures.setback}
+        onRetry={pictures.retry}
         overlay={
           <>
             <div className={classes.imageTools} data-over-picture>

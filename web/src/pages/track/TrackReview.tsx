@@ -57,8 +57,9 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const viewer = useViewer(track.id, frame, show);
   const seek = useCallback((to: number) => setFrame(clamp(to)), [clamp]);
 
+  const isPictureReady = useRef(true);
   const [isPlaying, setPlaying] = usePlayback(recording.fps, {
-    isReady: () => true,
+    isReady: () => isPictureReady.current,
     step: () => {
       setFrame((now) => clamp(now + 1));
       return frame + 1 < last;
@@ -129,7 +130,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
         />
       )}
       <div className={classes.middle} data-shown={shown}>
-        {(!isCompact || hasSpace.current) && <ViewerFrame viewer={viewer} layers={layers} terms={terms} onLayers={setLayers} onTerms={setTerms} />}
+        {(!isCompact || hasSpace.current) && <ViewerFrame viewer={viewer} frame={frame} layers={layers} terms={terms} onLayers={setLayers} onTerms={setTerms} />}
         <div className={classes.side}>
           {camera && (
             <TrackImage
@@ -142,6 +143,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
               onStep={(by) => seek(frame + by)}
               onMesh={setMeshShown}
               onSkeleton={setSkeletonShown}
+              ready={isPictureReady}
             />
           )}
           <TrackPlots track={track} frames={frames} lost={lost} frame={frame} camera={camera?.id ?? ""} tab={tab} onTab={setTab} onSeek={seek} />

@@ -12,6 +12,8 @@ type ShownLayers = Record<Layer, boolean>;
 
 interface ViewerFrameProps {
   viewer: Viewer;
+  /** The frame that is wanted. */
+  frame: number;
   layers: ShownLayers;
   /** Terms whose correspondences were switched; the others are shown. */
   terms: Record<string, boolean>;
@@ -28,7 +30,7 @@ const HELP: Partial<Record<Layer, string>> = {
 };
 
 /** The 3D viewer, with its layers above it under their own names. */
-export function ViewerFrame({ viewer, layers, terms, onLayers, onTerms }: ViewerFrameProps) {
+export function ViewerFrame({ viewer, frame, layers, terms, onLayers, onTerms }: ViewerFrameProps) {
   const { session, told, isBusy, failure, retry } = viewer;
   const [isLoaded, setLoaded] = useState(false);
   useEffect(() => setLoaded(false), [session?.id]);
@@ -65,6 +67,11 @@ export function ViewerFrame({ viewer, layers, terms, onLayers, onTerms }: Viewer
         {session && !failure && <iframe className={classes.page3d} src={session.url} title="3D view of the track" onLoad={load} />}
         {session && !failure && isLoaded && (
           <EvidenceCard told={told} layers={layers} isBusy={isBusy} terms={terms} onTerms={onTerms} />
+        )}
+        {session && !failure && isLoaded && told && told.frame !== frame && (
+          <span className={`${classes.note} ${classes.late}`} role="status">
+            waiting for frame {frame} in 3D; you see frame {told.frame}
+          </span>
         )}
         {failure && (
           <div className={classes.waiting} style={{ background: "var(--mantine-color-body)" }}>

@@ -1,0 +1,26 @@
+/** What the next click on the ground does, or why it does nothing. */
+
+import { clickedJoint, type PlaceMode } from "../../actions/annotate/place";
+import type { Pictures } from "../../canvas/usePictures";
+import { jointLabel } from "../../model/joints";
+import { statusOf, type Pose } from "../../model/pose";
+import type { AnnotatorState } from "../../state/annotator";
+
+export function describeClick(state: AnnotatorState, pose: Pose, placeMode: PlaceMode): string {
+  const joint = clickedJoint(state);
+  if (joint === null) return `changes nothing: every joint of the ${state.hand} hand is decided. Drag a joint, or choose it first`;
+  const name = `${state.hand} ${jointLabel(joint)}`;
+  const status = statusOf(pose[joint]);
+  const after = placeMode === "frame" ? ", then the next frame" : "";
+  if (status === "unset") return `places the ${name}${after}`;
+  return status === "outside" ? `places the ${name}, which is outside now` : `moves the ${name} here${after}`;
+}
+
+/** Why nothing can be changed in the picture now; null when it can. */
+export function describeWait({ frame }: AnnotatorState, pictures: Pictures, isPlaying: boolean, isRefused: boolean): string | null {
+  if (isPlaying) return "Playing: nothing is changed before you pause";
+  if (pictures.setback && pictures.color === null && pictures.depth === null) return `The picture of frame ${frame} could not be loaded: nothing can be changed in it`;
+  if (pictures.setback && pictures.isStale) return `The picture of frame ${frame} is not here yet, the studio does not answer; nothing is changed before it is here`;
+  if (pictures.isStale) return `${isRefused ? "Not taken: the" : "The"} picture of frame ${frame} is on its way; nothing is changed before it is here`;
+  return null;
+}

@@ -212,8 +212,14 @@ def open_page(browser: Any, studio: Studio) -> Iterator[OpenPage]:
         if "unsafe-eval" not in str(error):
             errors.append(str(error))
 
-    def opened(width: int = 1280, height: int = 720, scheme: str = "dark") -> Any:
-        context = browser.new_context(viewport={"width": width, "height": height}, base_url=studio.url, locale="en-GB")
+    def opened(width: int = 1280, height: int = 720, scheme: str = "dark", is_phone: bool = False) -> Any:
+        context = browser.new_context(
+            viewport={"width": width, "height": height},
+            base_url=studio.url,
+            locale="en-GB",
+            has_touch=is_phone,
+            is_mobile=is_phone,
+        )
         context.set_default_timeout(30_000)
         context.add_init_script(f"localStorage.setItem('handloom/colours', '{scheme}')")
         contexts.append(context)
@@ -286,6 +292,26 @@ class HeldBack:
         self.is_open = True
         while self.held:
             self.held.pop(0).continue_()
+
+
+@dataclass(frozen=True)
+class Fingers:
+    """Touches that Playwright has no words for; places are px of the window."""
+
+    page: Any
+
+    def draw(self, *paths: tuple[tuple[float, float], tuple[float, float]], steps: int = 6) -> None:
+        """As many fingers as paths, each from one place to another."""
+        session = self.page.context.new_cdp_session(self.page)
+        for step in range(steps + 1):
+            touches = [
+                {"x": ax + (bx - ax) * step / steps, "y": ay + (by - ay) * step / steps, "id": number}
+                for number, ((ax, ay), (bx, by)) in enumerate(paths)
+            ]
+            kind = "touchStart" if step == 0 else "touchMove"
+            session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touches})
+        session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        session.detach()
 
 
 @pytest.fixture

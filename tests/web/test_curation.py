@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.web.conftest import HeldBack
+from tests.web.conftest import Fingers, HeldBack
 from tests.web.hands import Hands, fill_studio
 from tests.web.test_accessibility import find_faults
 
@@ -95,6 +95,46 @@ def wait_until_saved(page: Any) -> None:
     from playwright.sync_api import expect
 
     expect(page.get_by_test_id("save-state")).to_have_text(re.compile("^saved$"))
+
+
+def test_a_phone_curates_by_taps_alone(studio, fresh, open_page, screenshots):
+    from playwright.sync_api import expect
+
+    page = open_queue(open_page, width=390, height=844, is_phone=True)
+    first, second, third = fresh.registrations[:3]
+    wait_for_hand(page, first)
+    panel = page.get_by_role("complementary", name="The registration and the decision")
+    screenshots.take(page, "curate-phone")
+    for name in ("Accept", "Reject", "Unsure", "Take the last decision back"):
+        box = panel.get_by_role("button", name=name, exact=True).bounding_box()
+        assert box["height"] >= 40 and box["y"] > 844 * 2 / 3, f"{name} is in reach of the thumb"
+        assert box["y"] + box["height"] <= 844
+    # One finger turns the hand, two bring it nearer: what is drawn changes, and nothing is decided.
+    view = page.locator("[data-hand-view]")
+    box = view.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    pictures = [view.screenshot()]
+    for paths in ([((x, y), (x + 80, y))], [((x - 20, y), (x - 60, y)), ((x + 20, y), (x + 60, y))]):
+        Fingers(page).draw(*paths)
+        pictures.append(view.screenshot())
+    assert len(set(pictures)) == 3
+    assert decided(studio)[:3] == [None, None, None]
+
+    panel.get_by_role("button", name="Accept", exact=True).tap()
+    wait_for_hand(page, second)
+    panel.get_by_role("button", name="Wrist or palm off").tap()
+    wait_for_hand(page, third)
+    wait_until_saved(page)
+    assert decided(studio)[:3] == ["accept", "reject", None]
+    assert history(studio, second)[0]["reasons"], "with its reason"
+    panel.get_by_role("button", name="Take the last decision back").tap()
+    wait_for_hand(page, second)
+    panel.get_by_role("button", name="Unsure", exact=True).tap()
+    wait_for_hand(page, third)
+    wait_until_saved(page)
+    assert decided(studio)[:3] == ["accept", "unsure", None]
+    expect(page.get_by_role("button", name="Menu")).to_be_visible()
+    assert page.evaluate("document.scrollingElement.scrollWidth <= innerWidth")
 
 
 def test_the_next_hand_is_on_the_screen_within_150_ms_of_the_key(

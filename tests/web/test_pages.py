@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import re
 import time
 import zipfile
 
 import pytest
+
+from tests.web.conftest import Fingers
+from tests.web.test_accessibility import PAGES
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(420)]
 
@@ -81,6 +85,88 @@ def test_every_page_fits_and_every_control_has_a_name(studio, track, open_page, 
         screenshots.take(page, f"{name}-{width}-{scheme}")
         assert not page.evaluate(TOO_WIDE), f"{name} scrolls sideways at {width} px"
         assert page.evaluate(NAMELESS) == [], f"{name} has controls without a name"
+
+
+# What of the header is cut off, or not to be hit by a finger.
+CUT_HEADER = """() => [...document.querySelectorAll("header :is(a, button)")]
+  .map((element) => [element.getAttribute("aria-label") ?? element.innerText, element.getBoundingClientRect()])
+  .filter(([, box]) => box.width > 0)
+  .filter(([, box]) => box.left < 0 || box.right > innerWidth || box.top < 0 || box.bottom > innerHeight)
+  .map(([name]) => name)"""
+SMALL_TARGETS = """() => [...document.querySelectorAll("button, select, input, [role=tab]")]
+  .filter((element) => !element.matches("[type=checkbox], [type=radio], .mantine-MultiSelect-inputField"))
+  .filter((element) => element.offsetParent !== null && getComputedStyle(element).visibility === "visible")
+  .filter((element) => element.getBoundingClientRect().height < 39.5)
+  .map((element) => element.outerHTML.slice(0, 160))"""
+
+
+@pytest.mark.parametrize(("width", "height", "is_phone"), [(390, 844, True), (1040, 720, False)])
+def test_every_page_fits_a_phone_and_a_narrow_window(studio, track, open_page, screenshots, width, height, is_phone):
+    from playwright.sync_api import expect
+
+    page = open_page(width, height, is_phone=is_phone)
+    recording = track["sequence_id"]
+    addresses = {name: address.format(recording=recording) for name, address, _ in PAGES}
+    addresses |= {
+        "job": f"/jobs/{track['job_id']}",
+        "track": f"/tracks/{track['id']}?frame=3",
+        "judged": f"/evaluations?recordings={recording}",
+    }
+    wide, cut, small = [], {}, {}
+    for name, address in addresses.items():
+        page.goto(address)
+        page.locator("main h1, main h2, [data-picture] canvas").first.wait_for()
+        page.wait_for_function(NOTHING_LOADS)
+        screenshots.take(page, f"{name}-{width}")
+        if page.evaluate(TOO_WIDE):
+            wide.append(name)
+        if found := page.evaluate(CUT_HEADER):
+            cut[name] = found
+        if is_phone and (found := page.evaluate(SMALL_TARGETS)):
+            small[name] = found
+    assert not wide, f"these scroll sideways at {width} px"
+    assert not cut, "parts of the header are cut off"
+    assert not small, "a finger misses these"
+    for room in ("Recordings", "Annotate", "Projects", "Tracks", "Scans", "Curate", "Models", "Evaluations", "Jobs"):
+        page.get_by_role("button", name="Menu").click()
+        page.get_by_role("navigation", name="Rooms").get_by_role("link", name=room, exact=True).click()
+        expect(page).to_have_url(re.compile(f"/{room.lower()}"))
+        expect(page.get_by_role("dialog")).to_have_count(0)
+    page.get_by_role("button", name="Search").click()
+    expect(page.get_by_placeholder("Search recordings, tracks and pages")).to_be_visible()
+
+
+def test_a_track_is_looked_at_by_fingers(studio, track, open_page, picture_of, screenshots):
+    from playwright.sync_api import expect
+
+    page = open_page(390, 844, is_phone=True)
+    page.goto(f"/tracks/{track['id']}?frame=3")
+    picture, fingers, frame = picture_of(page), Fingers(page), page.get_by_test_id("frame")
+    picture.wait()
+    box = picture.element.bounding_box()
+    middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    fingers.draw(((middle[0] + 60, middle[1]), (middle[0] - 60, middle[1])))
+    expect(frame).to_have_text("frame 4")
+    fingers.draw(((middle[0] - 60, middle[1]), (middle[0] + 60, middle[1])))
+    expect(frame).to_have_text("frame 3")
+    scale = json.loads(picture.element.get_attribute("data-view"))["scale"]
+    spread = [((middle[0] + by, middle[1]), (middle[0] + 3 * by, middle[1])) for by in (-30, 30)]
+    fingers.draw(*spread)
+    page.wait_for_function(
+        "(scale) => JSON.parse(document.querySelector('[data-picture]').dataset.view).scale > 2.5 * scale", arg=scale
+    )
+    expect(frame).to_have_text("frame 3")
+    # Zoomed, a finger moves the picture instead.
+    fingers.draw(((middle[0] + 60, middle[1]), (middle[0] - 60, middle[1])))
+    expect(frame).to_have_text("frame 3")
+
+    over = page.get_by_role("figure", name="Error by frame", exact=True).locator(".u-over").bounding_box()
+    y = over["y"] + over["height"] / 2
+    fingers.draw(((over["x"] + 2, y), (over["x"] + over["width"] - 2, y)))
+    expect(frame).to_have_text(f"frame {track['frame_count'] - 1}")
+    page.get_by_text("3D view", exact=True).click()
+    expect(page.get_by_role("group", name="Layers of the 3D view")).to_be_visible()
+    expect(picture.element).to_be_hidden()
 
 
 def test_files_that_cannot_be_imported_get_a_report_that_says_what_to_do(studio, open_page, screenshots, tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sqlite3
 import uuid
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 
 from server.accounts.secrets import hash_secret
+from tests.web.conftest import Fingers
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
@@ -201,6 +203,54 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     page.keyboard.press("Alt+a")
     expect(review.get_by_test_id("assignment-state")).to_have_text("accepted")
     expect(page.get_by_test_id("next-click")).to_contain_text("finished")
+
+
+def test_a_reviewer_looks_through_the_work_comments_and_accepts_by_touch(
+    join, open_as, recording, project, picture_of, screenshots
+) -> None:
+    from playwright.sync_api import expect
+
+    lead, made = project
+    ann = join("Ann", "annotator")
+    frames = {"sequence_id": recording["id"], "account_id": ann.id, "frame_first": 0, "frame_last": 1}
+    work = lead.send("POST", f"/projects/{made['id']}/assignments", json=frames)
+    hand = {"points": [[200 + 4 * joint, 200, 2] for joint in range(21)], "operation_id": str(uuid.uuid4())}
+    place = f"/sequences/{recording['id']}/annotations/cam0/0/right"
+    ann.send("PUT", place, json=hand, headers={"If-None-Match": "*"})
+    ann.submit(ann.send("GET", f"/assignments/{work['id']}"))
+    before = lead.send("GET", f"/sequences/{recording['id']}/annotations")["items"]
+
+    page = open_as(lead, width=390, height=844, is_phone=True)
+    page.goto(f"/recordings/{recording['id']}/annotate?frame=0")
+    picture, fingers = picture_of(page), Fingers(page)
+    picture.wait()
+    frame = page.get_by_label("Frame", exact=True)
+    x, y = picture.at(300, 300)
+    fingers.draw(((x, y), (x - 90, y)))
+    expect(frame).to_have_value("1")
+    picture.wait()
+    fingers.draw(((x - 90, y), (x, y)))
+    expect(frame).to_have_value("0")
+    picture.wait()
+    scale = json.loads(picture.element.get_attribute("data-view"))["scale"]
+    fingers.draw(((x - 20, y), (x - 60, y)), ((x + 20, y), (x + 60, y)))
+    page.wait_for_function(
+        "(scale) => JSON.parse(document.querySelector('[data-picture]').dataset.view).scale > 2 * scale", arg=scale
+    )
+    page.touchscreen.tap(*picture.at(330, 330))
+    page.touchscreen.tap(*picture.at(200 + 4 * 8, 200))
+    bar = page.get_by_role("group", name="Assignment")
+    bar.get_by_role("button", name="Comment").tap()
+    words = page.get_by_label("Comment on the right index tip")
+    words.fill("Half a pixel low.")
+    page.get_by_role("button", name="Send").tap()
+    page.get_by_role("tab", name="Comments").tap()
+    expect(page.get_by_role("group", name="Comments")).to_contain_text("Half a pixel low.")
+    screenshots.take(page, "team-review-phone")
+    assert page.evaluate("document.scrollingElement.scrollWidth <= innerWidth")
+    bar.get_by_role("button", name="Accept").tap()
+    expect(bar.get_by_test_id("assignment-state")).to_have_text("accepted")
+    assert lead.send("GET", f"/sequences/{recording['id']}/annotations")["items"] == before, "looking marks nothing"
 
 
 @pytest.mark.slow

@@ -61,19 +61,17 @@ class RecordingFeed:
     def after(
         cls,
         last_event_id: str | None,
-        since: datetime | None,
         watch: RecordingWatch,
         visits: Visits,
         listener: Listener,
     ) -> RecordingFeed:
-        """Go on after the event whose id the listener had last, else after `since`, else now."""
+        """Go on after the event whose id the listener had last, from now on when it makes no sense."""
         jobs, _, labels = (last_event_id or "").partition(_SEPARATOR)
         try:
             heard = datetime.fromisoformat(labels)
         except ValueError:
             heard = None
-        if heard is not None and heard.tzinfo is not None:
-            since = heard
+        since = heard if heard is not None and heard.tzinfo is not None else None
         if listener.visit_id is not None:
             visits.arrive(listener.account.id, listener.visit_id)
         return cls(watch, visits, listener, since, AllJobsFeed.after(jobs))

@@ -7,7 +7,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header, Query, Request
 from fastapi.responses import StreamingResponse
-from pydantic import AwareDatetime
 from starlette.requests import HTTPConnection
 
 from server.accounts.service import CurrentAccount
@@ -49,7 +48,9 @@ def stream_recording(
     replica: ReplicaDep,
     watches: Annotated[Watches, Depends(get_watches)],
     visits: VisitsDep,
-    since: Annotated[AwareDatetime | None, Query(description="Labels changed since then come first.")] = None,
+    after: Annotated[
+        str | None, Query(max_length=200, description="As `Last-Event-ID`, or `~` and the time of the labels at hand.")
+    ] = None,
     visit: Annotated[uuid.UUID | None, Query(description="Of the page that listens; it ends with the stream.")] = None,
     reader: Annotated[uuid.UUID | None, Query(description="The account that the page was opened for.")] = None,
     last_event_id: Annotated[str | None, Header()] = None,
@@ -64,7 +65,7 @@ def stream_recording(
         find_hidden(guarding, session, account, sequence_id, replica)
     listener = Listener(account, replica, guarding, visit)
     return answer_stream(
-        request, database, RecordingFeed.after(last_event_id, since, watches.of(sequence_id), visits, listener)
+        request, database, RecordingFeed.after(last_event_id or after, watches.of(sequence_id), visits, listener)
     )
 
 

@@ -172,7 +172,7 @@ def test_a_stroke_that_is_taken_back_while_the_crop_is_on_its_way_is_the_next_th
     page.unroute("**/crop")
     page.wait_for_function(
         "([key, base]) => JSON.parse(sessionStorage.getItem(key))?.base > base",
-        arg=[f"handloom/crop/{scan['id']}", scan["revision"]],
+        arg=[f"handloom/crop/00000000-0000-4000-8000-000000000001/{scan['id']}", scan["revision"]],
     )
 
     assert len(held) == 1

@@ -24,6 +24,13 @@ const revisionOf = (headers: Headers): number | null => {
   return match ? Number(match[0]) : null;
 };
 
+/** What a failure means for something that waits, where that does not depend on what it is. */
+function outcomeOf(failure: unknown): Outcome | null {
+  if (!(failure instanceof ApiError) || failure.isOffline) return { kind: "unreachable" };
+  if (failure.status >= 500) return { kind: "unreachable", reason: failure.detail };
+  return failure.status === 401 ? { kind: "held" } : null;
+}
+
 /** One save as the server wants it: on the revision it was made on, repeatable by its operation id. */
 export async function sendAnnotation(recording: string, key: string, save: PendingSave, replica?: string): Promise<Outcome> {
   const { camera, frame, hand } = parseKey(key);
@@ -32,8 +39,8 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
   try {
     if (save.points === null) {
       if (save.base === null) return { kind: "saved", revision: null };
-      await requestWithHeaders("DELETE", path, { headers, whenOut: "fail", query: { operation_id: save.operationId, replica } });
-      return { kind: "saved", revision: null };
+      const answer = await requestWithHeaders("DELETE", path, { headers, whenOut: "fail", query: { operation_id: save.operationId, replica } });
+      return { kind: "saved", revision: null, version: revisionOf(answer.headers) };
     }
     const body = {
       points: save.points.map(([x, y, v]) => [x, y, v]),
@@ -43,9 +50,8 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
     const answer = await requestWithHeaders<Annotation>("PUT", path, { body, headers, whenOut: "fail", query: { replica } });
     return { kind: "saved", revision: revisionOf(answer.headers) ?? answer.data.revision };
   } catch (failure) {
-    if (!(failure instanceof ApiError) || failure.isOffline) return { kind: "unreachable" };
-    if (failure.status >= 500) return { kind: "unreachable", reason: failure.detail };
-    if (failure.status === 401) return { kind: "held" };
+    const outcome = outcomeOf(failure);
+    if (outcome || !(failure instanceof ApiError)) return outcome ?? { kind: "unreachable" };
     if (failure.status === 409 || failure.status === 412) {
       const theirs = failure.body["theirs"] as Annotation | null | undefined;
       return { kind: "conflict", theirs: { points: theirs ? kept(theirs.points, theirs.sources) : null, revision: theirs?.revision ?? null, author: theirs?.author ?? null } };
@@ -55,7 +61,7 @@ export async function sendAnnotation(recording: string, key: string, save: Pendi
   }
 }
 
-interface PlaceOf {
+export interface PlaceOf {
   readonly camera: string;
   readonly frame: number;
   readonly hand: Side;
@@ -65,9 +71,16 @@ interface PlaceOf {
 export const fetchKeyFrames = async (recording: string, replica?: string | null): Promise<PlaceOf[]> =>
   (await request<{ items: PlaceOf[] }>("GET", `/sequences/${recording}/key-frames`, { query: { replica } })).items;
 
-export const sendKeyFrame = async (recording: string, { camera, frame, hand }: PlaceOf, isKey: boolean, replica?: string | null): Promise<void> => {
-  await request<null>(isKey ? "PUT" : "DELETE", `/sequences/${recording}/key-frames/${encodeURIComponent(camera)}/${frame}/${hand}`, { query: { replica } });
-};
+/** A key frame made (points) or taken back (null); twice does no harm. */
+export async function sendKeyFrame(recording: string, key: string, { points }: PendingSave, replica?: string): Promise<Outcome> {
+  const { camera, frame, hand } = parseKey(key);
+  try {
+    await request<null>(points ? "PUT" : "DELETE", `/sequences/${recording}/key-frames/${encodeURIComponent(camera)}/${frame}/${hand}`, { whenOut: "fail", query: { replica } });
+    return { kind: "saved", revision: null };
+  } catch (failure) {
+    return outcomeOf(failure) ?? { kind: "refused", reason: (failure as ApiError).detail };
+  }
+}
 
 /** Every revision of a hand, newest first; empty when nobody ever marked it. */
 export const useAnnotationHistory = (recording: string, key: string, savedAt: number | null, replica: string | null) =>

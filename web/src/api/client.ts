@@ -161,17 +161,20 @@ export function upload<T>(path: string, form: FormData, onProgress: (part: numbe
 
 const REOPEN_MS = 3000;
 
-/** Server-sent events of one address; returns the way to stop. It opens again by itself, after a login too. */
+/**
+ * Server-sent events; returns the way to stop. It opens again by itself, after a login too. `address` is asked whenever it
+ * is opened, and a handler gets the event's id, by which a stream goes on where it was.
+ */
 export function listen(
-  path: string,
-  handlers: Record<string, (data: unknown) => void>,
+  address: () => string,
+  handlers: Record<string, (data: unknown, id: string) => void>,
   onLink: (isUp: boolean) => void = () => undefined,
 ): () => void {
   const stopping = new AbortController();
   let source: EventSource;
   const open = (): void => {
     if (stopping.signal.aborted) return;
-    source = new EventSource(API + path);
+    source = new EventSource(API + address());
     source.onopen = () => onLink(true);
     source.onerror = () => {
       onLink(false);
@@ -179,7 +182,7 @@ export function listen(
       if (source.readyState === EventSource.CLOSED) void reopen();
     };
     for (const [event, handle] of Object.entries(handlers)) {
-      source.addEventListener(event, (message) => handle(JSON.parse((message as MessageEvent<string>).data)));
+      source.addEventListener(event, (message) => handle(JSON.parse((message as MessageEvent<string>).data), (message as MessageEvent<string>).lastEventId));
     }
   };
   const reopen = async (): Promise<void> => {

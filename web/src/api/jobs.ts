@@ -1,6 +1,7 @@
 import { keepPreviousData, useInfiniteQuery, useMutation, useQuery, useQueryClient, type InfiniteData, type QueryClient } from "@tanstack/react-query";
-import { useEffect, useState } from "react";
+import { useEffect, useState, useSyncExternalStore } from "react";
 import { listen, request } from "./client";
+import { liveRoom, noteHeard, streamAddress } from "../state/live";
 import { fetchAll, recordingKeys } from "./recordings";
 import type { Batch, BatchMade, BulkAct, BulkDone, Job, JobForm, JobState, LogLine, Page, Worker } from "./types";
 
@@ -126,7 +127,18 @@ function takeIn(client: QueryClient, job: Job): void {
 export function useJobStream(): boolean {
   const client = useQueryClient();
   const [isUp, setUp] = useState(true);
-  useEffect(() => listen("/jobs/events", { job: (data) => takeIn(client, data as Job) }, setUp), [client]);
+  const room = useSyncExternalStore(liveRoom.watch, liveRoom.get);
+  useEffect(() => {
+    const noting = (handle: (data: unknown) => void) => (data: unknown, id: string) => {
+      noteHeard(id);
+      handle(data);
+    };
+    const handlers = { ...room?.handlers, job: (data: unknown) => takeIn(client, data as Job) };
+    return listen(streamAddress, Object.fromEntries(Object.entries(handlers).map(([event, handle]) => [event, noting(handle)])), (isLinked) => {
+      setUp(isLinked);
+      if (isLinked) room?.onOpen();
+    });
+  }, [client, room]);
   return isUp;
 }
 

@@ -20,7 +20,8 @@ export type AgreementReport = Schemas["AgreementReport"];
 export type Spread = Schemas["SpreadOut"];
 
 /** Everything below is fetched anew after each change: a team's lists are short. */
-const key = (...rest: readonly (string | undefined | null)[]) => ["teams", ...rest] as const;
+export const teamKeys = ["teams"] as const;
+const key = (...rest: readonly (string | undefined | null)[]) => [...teamKeys, ...rest] as const;
 
 export const useMe = () => useQuery({ queryKey: key("me"), queryFn: () => request<Me>("GET", "/account"), staleTime: 60_000 });
 export const usePeople = () => useQuery({ queryKey: key("people"), queryFn: () => fetchAll<Person>("/people") });

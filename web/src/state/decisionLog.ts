@@ -57,20 +57,21 @@ export interface DecisionLog {
   stop(): void;
 }
 
-const PREFIX = "handloom/decisions/";
+/** Each person's own. */
+export const DECISIONS = "handloom/decisions/";
 const RETRY_MS = [1000, 2000, 4000, 8000, 15000] as const;
 
 /** Whether somebody's decisions wait in this browser. */
 export function hasWaitingDecisions(storage: Storage, account: string): boolean {
-  const prefix = `${PREFIX}${account}/`;
+  const prefix = `${DECISIONS}${account}/`;
   return Array.from({ length: storage.length }, (_, at) => storage.key(at)).some((name) => name?.startsWith(prefix));
 }
 
 /** An entry of its own for each, so that two tabs never write over each other's. */
-const entryName = (account: string, { madeAt, operationId }: LoggedDecision): string => `${PREFIX}${account}/${String(madeAt).padStart(15, "0")}-${operationId}`;
+const entryName = (account: string, { madeAt, operationId }: LoggedDecision): string => `${DECISIONS}${account}/${String(madeAt).padStart(15, "0")}-${operationId}`;
 
 function load(storage: Storage, account: string): LoggedDecision[] {
-  const prefix = `${PREFIX}${account}/`;
+  const prefix = `${DECISIONS}${account}/`;
   const names = Array.from({ length: storage.length }, (_, at) => storage.key(at) ?? "").filter((name) => name.startsWith(prefix));
   return names.sort().flatMap((name) => {
     try {

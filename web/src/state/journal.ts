@@ -13,7 +13,7 @@ export interface PendingSave {
 }
 
 /** Each person's own: nobody's work is sent in the name of somebody else who uses this browser after them. */
-const UNSAVED = "handloom/unsaved/";
+export const UNSAVED = "handloom/unsaved/";
 
 /** Recordings of which somebody's work waits in this browser. */
 export function findWaiting(storage: Storage, account: string): string[] {

@@ -70,12 +70,34 @@ setDoorkeeper({
 /** Names of what this browser keeps for the person before, and must not hand to the next. */
 const PERSONAL = ["handloom/keys", "handloom/keys-unsent", "handloom/last-annotated"];
 
+const NAMES = "handloom/names";
+
+const knownNames = (): Record<string, string> => {
+  try {
+    return JSON.parse(window.localStorage.getItem(NAMES) ?? "{}") as Record<string, string>;
+  } catch {
+    return {};
+  }
+};
+
+/** The name of somebody who has used this browser. */
+export const nameOf = (account: string): string => knownNames()[account] ?? "somebody else";
+
+function keepName({ id, name }: Me): void {
+  try {
+    window.localStorage.setItem(NAMES, JSON.stringify({ ...knownNames(), [id]: name }));
+  } catch {
+    // A browser without storage keeps nothing of anybody either.
+  }
+}
+
 /** Somebody has logged in. Another person gets fresh pages; what the first one left unsaved waits for them here. */
 export function welcome(me: Me): void {
   const before = mine();
   const last = window.localStorage.getItem(LAST);
   if (last !== null && last !== me.id) PERSONAL.forEach((name) => window.localStorage.removeItem(name));
   window.localStorage.setItem(LAST, me.id);
+  keepName(me);
   if (before && before.id !== me.id) {
     window.location.reload();
     return;

@@ -195,3 +195,19 @@ test("each person has a journal of their own", () => {
   expect(findWaiting(storage, "ben")).toEqual([]);
   expect(findWaiting(storage, "anna").sort()).toEqual(["r", "s"]);
 });
+
+test("a gesture made while the server's first answer after a pause is on its way is sent, too", async () => {
+  vi.useFakeTimers();
+  const answers: ((outcome: Outcome) => void)[] = [];
+  const queue = createSaveQueue(() => new Promise((resolve) => answers.push(resolve)), createJournal(new MemoryStorage(), "anna", "r"));
+  queue.put(KEY, points(1));
+  answers[0]?.({ kind: "unreachable" });
+  await vi.advanceTimersByTimeAsync(1500);
+  expect(answers, "tried again").toHaveLength(2);
+  queue.put("1|right|cam0", points(2));
+  answers[1]?.({ kind: "saved", revision: 1 });
+  await vi.advanceTimersByTimeAsync(10);
+  answers[2]?.({ kind: "saved", revision: 1 });
+  await vi.advanceTimersByTimeAsync(10);
+  expect(queue.status()).toMatchObject({ waiting: 0, isOffline: false });
+});

@@ -8,7 +8,8 @@ import type { Journal, PendingSave } from "./journal";
 
 /** What the server did with a save. */
 export type Outcome =
-  | { readonly kind: "saved"; readonly revision: number | null }
+  /** `revision` is null when it was deleted; `version` counts a deletion too. */
+  | { readonly kind: "saved"; readonly revision: number | null; readonly version?: number | null }
   | { readonly kind: "conflict"; readonly theirs: Theirs }
   | { readonly kind: "refused"; readonly reason: string }
   /** No answer, or one that says why the server cannot take it now; it is sent again. */
@@ -22,6 +23,11 @@ export interface Theirs {
   readonly revision: number | null;
   /** Who made it, where it is there and known. */
   readonly author?: string | null;
+}
+
+/** A version that somebody else stored just now; `version` counts a deletion too. */
+export interface Heard extends Theirs {
+  readonly version: number;
 }
 
 export type Send = (key: string, save: PendingSave) => Promise<Outcome>;
@@ -48,6 +54,13 @@ export interface SaveQueue {
    * when a save has overtaken the loading: load again. `isFinal` takes it as it is, because others may have deleted.
    */
   learn(revisions: ReadonlyMap<string, number>, isFinal?: boolean): boolean;
+  /**
+   * Somebody else has stored a version. "news": learnt, and to be shown. "known": no newer than what is here, or shown
+   * where a conflict is settled. "busy": something of the person's own waits; ask again when the status has changed.
+   */
+  hear(key: string, heard: Heard): "news" | "known" | "busy";
+  /** Nothing is known of a hand any more; false when something of the person's own waits. */
+  forget(key: string): boolean;
   put(key: string, points: KeptPoint[] | null): void;
   /** What waits, newest version by key. */
   waiting(): ReadonlyMap<string, KeptPoint[] | null>;
@@ -62,11 +75,26 @@ export interface SaveQueue {
   stop(): void;
 }
 
+/** Of hands and of key frames together; a drag that has not ended is not saved either. */
+export function joinStatus(hands: SaveStatus, keys: SaveStatus, isDrawing: boolean): SaveStatus {
+  return {
+    ...hands,
+    waiting: hands.waiting + keys.waiting + (isDrawing ? 1 : 0),
+    isSending: hands.isSending || keys.isSending,
+    isOffline: hands.isOffline || keys.isOffline,
+    trouble: hands.trouble || keys.trouble,
+    isHeld: hands.isHeld || keys.isHeld,
+    isKept: hands.isKept && keys.isKept,
+  };
+}
+
 const RETRY_MS = [1000, 2000, 4000, 8000, 15000] as const;
 
 export function createSaveQueue(send: Send, journal: Journal, newId: () => string = () => crypto.randomUUID()): SaveQueue {
   const pending = journal.load();
   const revisions = new Map<string, number | null>();
+  /** Newest version that was seen of each hand, also of one that is deleted. */
+  const seen = new Map<string, number>();
   const sending = new Set<string>();
   const conflicts = new Map<string, Theirs>();
   const refusals = new Map<string, string>();
@@ -105,6 +133,10 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
     isKept = journal.keep(key, saves);
   }
 
+  function note(key: string, version: number | null | undefined): void {
+    if (version && version > (seen.get(key) ?? 0)) seen.set(key, version);
+  }
+
   async function drain(key: string): Promise<void> {
     const save = pending.get(key)?.[0];
     if (!save || sending.has(key) || conflicts.has(key) || refusals.has(key) || isHeld || isStopped) return;
@@ -120,11 +152,13 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
         failures = 0;
         lastSavedAt = Date.now();
         revisions.set(key, outcome.revision);
+        note(key, outcome.version ?? outcome.revision);
         keep(key, rest.map((one) => ({ ...one, base: outcome.revision })));
         break;
       case "conflict":
         failures = 0;
         conflicts.set(key, outcome.theirs);
+        note(key, outcome.theirs.revision);
         break;
       case "refused":
         failures = 0;
@@ -143,7 +177,8 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
         return;
     }
     tell();
-    void drain(key);
+    // Others were held back while the server was away: what was made since its last try has no other call.
+    drainAll();
   }
 
   function drainAll(): void {
@@ -156,7 +191,29 @@ export function createSaveQueue(send: Send, journal: Journal, newId: () => strin
       drainAll();
       if (isOvertaken && !isFinal) return false;
       revisions.clear();
-      known.forEach((revision, key) => revisions.set(key, revision));
+      known.forEach((revision, key) => {
+        revisions.set(key, revision);
+        note(key, revision);
+      });
+      return true;
+    },
+    hear(key, { version, ...theirs }) {
+      if (version <= (seen.get(key) ?? 0)) return "known";
+      if (conflicts.has(key)) {
+        seen.set(key, version);
+        conflicts.set(key, theirs);
+        tell();
+        return "known";
+      }
+      if (pending.has(key)) return "busy";
+      seen.set(key, version);
+      revisions.set(key, theirs.revision);
+      return "news";
+    },
+    forget(key) {
+      if (pending.has(key)) return false;
+      revisions.delete(key);
+      seen.delete(key);
       return true;
     },
     put(key, points) {

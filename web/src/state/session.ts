@@ -1,11 +1,12 @@
 /** An open recording in the annotator: its store, with undo and saving watching it. */
 
+import type { PersonHere } from "../api/live";
 import type { Annotation, Recording, Side } from "../api/types";
 import { firstOpenJoint, fromWire, kept, keyText, toKept, type Pose } from "../model/pose";
 import { changedKeys, type AnnotatorState } from "./annotator";
 import { startInterpolation } from "./interpolation";
 import type { KeyFrameStore } from "./keyFrames";
-import type { SaveQueue } from "./saveQueue";
+import { joinStatus, type SaveQueue, type SaveStatus } from "./saveQueue";
 import { createStore, type Store } from "./store";
 import { createSuggestionStore, type SuggestionStore } from "./suggestions";
 import { createUndoStack, type UndoStack } from "./undo";
@@ -17,6 +18,13 @@ export interface Session {
   /** What machines propose: never saved, until a person accepts it. */
   readonly suggestions: SuggestionStore;
   readonly keyFrames: KeyFrameStore;
+  /** Who else has the recording open. */
+  readonly people: Store<readonly PersonHere[]>;
+  /** Of everything that the person does here: hands, key frames, and what they have in hand. */
+  saving(): SaveStatus;
+  watchSaving(watcher: () => void): () => void;
+  /** Try to send everything now. */
+  flush(): void;
   close(): void;
 }
 
@@ -62,13 +70,33 @@ export function openSession(recording: Recording, annotations: readonly Annotati
       queue.put(key, pose ? toKept(pose) : null);
     }
   });
+  const describe = (): SaveStatus => joinStatus(queue.status(), keyFrames.queue.status(), store.get().draft !== null);
+  let saving = describe();
+  const watchers = new Set<() => void>();
+  const tell = (): void => {
+    saving = describe();
+    watchers.forEach((watcher) => watcher());
+  };
+  const stops = [queue.watch(tell), keyFrames.queue.watch(tell), store.watch((now, before) => (now.draft !== null) !== (before.draft !== null) && tell())];
   return {
     store,
     undo,
     queue,
     suggestions,
     keyFrames,
+    people: createStore<readonly PersonHere[]>([]),
+    saving: () => saving,
+    watchSaving(watcher) {
+      watchers.add(watcher);
+      return () => watchers.delete(watcher);
+    },
+    flush() {
+      queue.flush();
+      keyFrames.queue.flush();
+    },
     close() {
+      stops.forEach((stop) => stop());
+      keyFrames.close();
       stopInterpolation();
       stopSaving();
       undo.stop();

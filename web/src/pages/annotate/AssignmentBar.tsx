@@ -75,14 +75,14 @@ export function AssignmentBar() {
   sendNow.current = send;
   const submit = (): void => {
     if (!progress) return;
-    if (isStuck(session.queue.status())) notifications.show({ color: "yellow", message: "Settle the changes that are not saved, then submit." });
+    if (isStuck(session.saving())) notifications.show({ color: "yellow", message: "Settle the changes that are not saved, then submit." });
     else if (unfinished !== "" && !isSure) setSure(true);
     else setWaiting(true);
   };
   // Work goes once the server has all of it: a key right after the last joint is not lost. The queue itself is asked,
   // because what is drawn here may be a moment old.
   useEffect(() => {
-    const now = session.queue.status();
+    const now = session.saving();
     if (!isWaiting || (!isStuck(now) && (now.waiting > 0 || now.isSending))) return;
     setWaiting(false);
     if (!isStuck(now)) sendNow.current("submit");

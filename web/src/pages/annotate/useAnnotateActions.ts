@@ -81,6 +81,6 @@ export function annotateActions(session: Session, recording: Recording, act: Ann
     "drag.cancel": simple(cancelDrag),
     undo: () => session.undo.undo(),
     redo: () => session.undo.redo(),
-    "save.now": () => session.queue.flush(),
+    "save.now": () => session.flush(),
   };
 }

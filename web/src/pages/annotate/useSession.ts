@@ -1,17 +1,19 @@
 import { useQueryClient } from "@tanstack/react-query";
 import { useCallback, useEffect, useState, useSyncExternalStore } from "react";
 import { notifications } from "@mantine/notifications";
-import { annotationKeys, fetchAnnotations, fetchKeyFrames, sendKeyFrame } from "../../api/annotations";
+import { annotationKeys, fetchAnnotations, fetchKeyFrames } from "../../api/annotations";
 import { ApiError } from "../../api/client";
 import { recordingKeys } from "../../api/recordings";
 import type { Recording } from "../../api/types";
 import type { AnnotatorState } from "../../state/annotator";
-import { queueOf, scopeOf } from "../../state/saving";
+import { useMe } from "../../state/me";
+import { keyQueueOf, queueOf, scopeOf } from "../../state/saving";
 import type { SaveStatus } from "../../state/saveQueue";
 import { createKeyFrames, type KeyFrames } from "../../state/keyFrames";
-import { keyText, parseKey } from "../../model/pose";
+import { keyText } from "../../model/pose";
 import type { SuggestionsState } from "../../state/suggestions";
 import { openSession, revisionsOf, type Session, type Start } from "../../state/session";
+import { openLive } from "./openLive";
 
 interface Opened {
   session: Session | null;
@@ -25,25 +27,31 @@ export function useSession(recording: Recording | undefined, start: () => Start,
   const [failure, setFailure] = useState<Error | null>(null);
   const [attempt, setAttempt] = useState(0);
   const client = useQueryClient();
+  const me = useMe();
   const id = recording?.id;
 
   useEffect(() => {
     if (!recording) return;
     let isGone = false;
-    let opened: Session | null = null;
-    const queue = queueOf(scopeOf(recording.id, replica));
+    let close = (): void => undefined;
+    const scope = scopeOf(recording.id, replica);
+    const queue = queueOf(scope);
     const open = async (): Promise<void> => {
       for (let tries = 0; tries < 3; tries += 1) {
         const [annotations, keys] = await Promise.all([fetchAnnotations(recording.id, replica), fetchKeyFrames(recording.id, replica)]);
         if (isGone) return;
         // A save of an earlier visit may arrive while we load: then load again.
         if (!queue.learn(revisionsOf(annotations), tries === 2)) continue;
-        const keyFrames = createKeyFrames(
-          keys.map(keyText),
-          (key, isKey) => sendKeyFrame(recording.id, parseKey(key), isKey, replica),
-          (reason) => notifications.show({ color: "red", title: "The key frame was not kept", message: reason.message }),
+        const keyFrames = createKeyFrames(keys.map(keyText), keyQueueOf(scope), (message) =>
+          notifications.show({ color: "red", title: "The key frame was not kept", message }),
         );
-        opened = openSession(recording, annotations, queue, start(), keyFrames);
+        keyFrames.queue.flush();
+        const opened = openSession(recording, annotations, queue, start(), keyFrames);
+        const leave = openLive({ recording, replica, session: opened, me, annotations, client });
+        close = () => {
+          leave();
+          opened.close();
+        };
         setSession(opened);
         return;
       }
@@ -54,7 +62,7 @@ export function useSession(recording: Recording | undefined, start: () => Start,
     );
     return () => {
       isGone = true;
-      opened?.close();
+      close();
       setSession(null);
       void client.invalidateQueries({ queryKey: annotationKeys.of(recording.id) });
       void client.invalidateQueries({ queryKey: recordingKeys.all });
@@ -77,7 +85,7 @@ export const useAnnotatorState = (session: Session): AnnotatorState =>
   useSyncExternalStore(useCallback((tell) => session.store.watch(tell), [session]), session.store.get);
 
 export const useSaveStatus = (session: Session): SaveStatus =>
-  useSyncExternalStore(useCallback((tell) => session.queue.watch(tell), [session]), session.queue.status);
+  useSyncExternalStore(session.watchSaving, session.saving);
 
 export const useSuggestions = (session: Session): SuggestionsState =>
   useSyncExternalStore(useCallback((tell) => session.suggestions.watch(tell), [session]), session.suggestions.get);

@@ -153,7 +153,7 @@ export default function CuratePage() {
         )}
       </div>
       <div className={frame.line}>
-        <SaveState status={{ ...status, refusals: status.refusals.size }} what="Every decision is kept in this browser until the server has it" action="curate.save" onFlush={() => decisionLog().flush()} />
+        <SaveState status={{ ...status, refusals: status.refusals.size }} own="decisions" what="Every decision is kept in this browser until the server has it" action="curate.save" onFlush={() => decisionLog().flush()} />
         {HINTS.filter(([id]) => !isEnd || id === "curate.undo").map(([id, label]) => (
           <span key={id} className={frame.hint}>
             <Kbd size="xs">{id === "curate.reason1" && keyOf(id) === "1" ? "1–9" : keyOf(id) || "–"}</Kbd>

@@ -3,6 +3,7 @@ import { useMemo, useRef, useState } from "react";
 import { useSaveCrop, useScanCrop, type Scan, type ScanCrop } from "../../api/scans";
 import type { HandGeometry } from "../../canvas/hand3d/geometry";
 import { countTaken, cutOf, readStroke, smallerSide, takenByAny, type Cut, type Point, type Projection, type Stroke } from "../../model/crop";
+import { cropKey } from "../../state/elsewhere";
 
 /** What is not saved yet: the strokes as they should be, and those taken back. */
 interface Draft {
@@ -27,7 +28,7 @@ const isOfObject = (colors: Uint8Array, point: number): boolean => (colors[3 * p
 /** The crop of a scan: strokes with undo, kept over a reload until they are saved. */
 export function useCrop(scan: Scan, geometry: HandGeometry | null) {
   const saved = useScanCrop(scan).data;
-  const key = `handloom/crop/${scan.id}`;
+  const key = cropKey(scan.id);
   const [kept, setDraft, dropDraft] = useSessionStorage<Draft | null>({ key, defaultValue: null, getInitialValueInEffect: false });
   const [last, setLast] = useState<LastStroke | null>(null);
   const sent = useRef("");

@@ -23,7 +23,17 @@ if TYPE_CHECKING:
     from tracker.capture.import_run import run_import
     from tracker.capture.joint_source import JointSource, JointSources
     from tracker.capture.relative_path import find_path_fault
-    from tracker.capture.scan import SCAN_SUFFIXES, Scan, load_scan, save_scan
+    from tracker.capture.scan import SCAN_SUFFIXES, Scan, find_unit, load_scan, read_scan, save_scan
+    from tracker.capture.scan_size import (
+        HAND_LENGTHS,
+        LONGEST_SCENE,
+        SIZES_NEEDED,
+        find_possible_units,
+        find_size_fault,
+        is_certain,
+        measure_size,
+        write_length,
+    )
     from tracker.capture.sensor_presets import SENSOR_PRESETS, SensorPreset
     from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
     from tracker.capture.source_choice import (
@@ -169,6 +179,16 @@ _HOMES = {
     "load_blend_model": "tracker.model.blend_files",
     "load_registration": "tracker.registration.registration_files",
     "load_scan": "tracker.capture.scan",
+    "read_scan": "tracker.capture.scan",
+    "find_unit": "tracker.capture.scan",
+    "HAND_LENGTHS": "tracker.capture.scan_size",
+    "LONGEST_SCENE": "tracker.capture.scan_size",
+    "SIZES_NEEDED": "tracker.capture.scan_size",
+    "find_possible_units": "tracker.capture.scan_size",
+    "find_size_fault": "tracker.capture.scan_size",
+    "is_certain": "tracker.capture.scan_size",
+    "measure_size": "tracker.capture.scan_size",
+    "write_length": "tracker.capture.scan_size",
     "load_sequence": "tracker.capture.sequence",
     "load_training_set": "tracker.training.training_set",
     "load_track": "tracker.tracking.track",
@@ -248,14 +268,17 @@ __all__ = [
     "EXPORT_KINDS",
     "HAND_EDGES",
     "HAND_JOINTS",
+    "HAND_LENGTHS",
     "IMPORT_FORMATS",
     "JOINT_ORDERS",
     "JUDGING",
     "LABEL_FORMATS",
+    "LONGEST_SCENE",
     "MIN_FIT_JOINTS",
     "PRESETS",
     "SCAN_SUFFIXES",
     "SENSOR_PRESETS",
+    "SIZES_NEEDED",
     "SOURCE_CHOICES",
     "STUDY_LEVELS",
     "USUAL_PRESET",
@@ -330,9 +353,13 @@ __all__ = [
     "find_hand_points",
     "find_origin",
     "find_path_fault",
+    "find_possible_units",
+    "find_size_fault",
+    "find_unit",
     "fit_marked",
     "generalize_shapes",
     "import_labels",
+    "is_certain",
     "is_independent",
     "join_chunks",
     "keep_joints",
@@ -349,11 +376,13 @@ __all__ = [
     "make_gaussian_prior",
     "make_test_hand",
     "make_training_set",
+    "measure_size",
     "mirror_blend",
     "pack_arrays",
     "pack_files",
     "read_import_picture",
     "read_label_files",
+    "read_scan",
     "register_scan",
     "render_overlay",
     "run_import",
@@ -379,6 +408,7 @@ __all__ = [
     "warm_up",
     "write_csv",
     "write_html",
+    "write_length",
     "write_model_html",
 ]
 

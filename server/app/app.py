@@ -25,6 +25,7 @@ from server.app.parts import (
     PLACE_GUARDS,
     ROUTERS,
     SCAN_FACTS,
+    SCAN_RESIZED,
     SEQUENCE_FACTS,
     SIGHT_GUARDS,
 )
@@ -62,6 +63,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.sight_guards = SIGHT_GUARDS
     app.state.sequence_facts = SEQUENCE_FACTS
     app.state.scan_facts = SCAN_FACTS
+    app.state.scan_resized = SCAN_RESIZED
     install_error_handler(app)
     app.router.routes.extend(_routes())
     app.router.default = BrowserApp(settings.web_dist)  # what no route takes

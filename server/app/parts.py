@@ -26,9 +26,10 @@ from server.live import routes as live
 from server.quality import routes as quality
 from server.registrations import model_routes
 from server.registrations import routes as registrations
-from server.registrations.service import find_newest
+from server.registrations.service import find_newest, settle_current
 from server.scans import routes as scans
 from server.scans.facts import FactFinder as ScanFactFinder
+from server.scans.facts import Resized
 from server.sequences import frame_routes
 from server.sequences import routes as sequences
 from server.sequences.facts import FactFinder
@@ -86,6 +87,9 @@ SEQUENCE_FACTS: tuple[FactFinder, ...] = (find_annotated_frames, find_best_track
 
 SCAN_FACTS: tuple[ScanFactFinder, ...] = (find_newest,)
 """What rooms above the scans know of them."""
+
+SCAN_RESIZED: tuple[Resized, ...] = (settle_current,)
+"""What rooms above the scans do when the size of one was corrected."""
 
 PLACE_GUARDS: tuple[PlaceGuard, ...] = (ASSIGNMENTS,)
 """What rooms above the annotations forbid at a place."""

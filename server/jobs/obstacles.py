@@ -6,14 +6,17 @@ import uuid
 from collections.abc import Sequence
 from typing import Any
 
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.errors import StudioError
 from server.hand_models.service import get_hand_model
 from server.hand_models.storing import UNTRAINED_ID, UNTRAINED_NAME, find_file
 from server.jobs import service, workers
-from server.jobs.scan_choice import choose_scans
+from server.jobs.scan_choice import AT_ONCE, choose_scans
 from server.jobs.schemas import JobCheck, RegisterCreate
+from server.scans.models import ScanRow
+from server.scans.units import find_rows_out_of_size
 from server.storage import Storage
 
 
@@ -48,8 +51,8 @@ def find_register_obstacles(session: Session, storage: Storage, asked: RegisterC
     if obstacles:
         return obstacles
     model_id = asked.model_id or UNTRAINED_ID
-    if choose_scans(session, asked, model_id):
-        return []
+    if scans := choose_scans(session, asked, model_id):
+        return find_size_obstacles(session, scans)
     where = (f" of {asked.collection}" if asked.collection else "") + (f" of {asked.subject}" if asked.subject else "")
     there = len(choose_scans(session, asked.model_copy(update={"only": "all"}), model_id))
     if there == 0:
@@ -60,6 +63,24 @@ def find_register_obstacles(session: Session, storage: Storage, asked: RegisterC
         return [f"{name} has registered {those}{where} as cropped now. Choose all scans to register them once more."]
     return [
         f"Somebody has accepted the newest registration of {those}{where}. Choose all scans to register them once more."
+    ]
+
+
+def find_size_obstacles(session: Session, scans: Sequence[uuid.UUID]) -> list[str]:
+    """Which of these scans have a size that no hand has, so that to register them is in vain."""
+    from tracker import SIZES_NEEDED
+
+    faults: dict[str, str] = {}
+    for first in range(0, len(scans), AT_ONCE):
+        query = select(ScanRow).where(ScanRow.id.in_(scans[first : first + AT_ONCE]))
+        faults |= find_rows_out_of_size(session.scalars(query).all())
+    if not faults:
+        return []
+    told = "; ".join(f"{name} {fault}" for name, fault in list(faults.items())[:5])
+    more = f"; and {len(faults) - 5} others" if len(faults) > 5 else ""
+    return [
+        f"{len(faults)} of {len(scans)} scans have a size that no hand has ({told}{more}); needed {SIZES_NEEDED}. "
+        "Correct their unit, crop what is no hand, or choose other scans."
     ]
 
 

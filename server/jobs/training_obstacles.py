@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID
 from server.jobs.held_out import choose_held_out, make_rule
-from server.jobs.obstacles import find_model_obstacles
+from server.jobs.obstacles import find_model_obstacles, find_size_obstacles
 from server.jobs.schemas import LoopCreate, TrainCreate
 from server.registrations import service as registrations
 from server.scans.models import ScanRow
@@ -48,7 +48,7 @@ def find_loop_obstacles(session: Session, storage: Storage, asked: LoopCreate, s
     if not scans:
         where = f" in {asked.collection}" if asked.collection else ""
         return [f"There are no scans{where}. Add some, or choose another collection."]
-    obstacles = find_model_obstacles(session, storage, asked.model_id)
+    obstacles = find_model_obstacles(session, storage, asked.model_id) + find_size_obstacles(session, scans)
     if asked.by == "decisions" and asked.rounds != 1:
         obstacles.append(
             f"rounds is {asked.rounds}; by people's decisions it is 1: what the new model registers waits for people."

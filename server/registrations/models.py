@@ -48,7 +48,9 @@ class RegistrationRow(Base):
     """mean, median, p95."""
     seconds: Mapped[float]
     is_current: Mapped[bool] = mapped_column(default=True)
-    """Whether it is the newest one of its scan."""
+    """Whether it is the newest one of its scan that is not outdated."""
+    is_outdated: Mapped[bool] = mapped_column(default=False)
+    """Whether the scan has another size by now: somebody corrected the unit of its file."""
     decision: Mapped[str | None] = mapped_column(String(10))
     """The last one of anybody that stands; copied here from `decisions` in the transaction that adds one."""
     standing: Mapped[dict[str, Any]] = mapped_column(default=dict)

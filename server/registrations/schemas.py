@@ -53,7 +53,8 @@ class RegistrationOut(BaseModel):
     reasons: list[str]
     scan_to_mesh_mm: ScanToMesh
     seconds: float
-    is_current: bool = Field(description="Whether it is the newest one of its scan.")
+    is_current: bool = Field(description="Whether it is the newest one of its scan that is not outdated.")
+    is_outdated: bool = Field(description="The scan has another size by now: somebody corrected the unit of its file.")
     decision: Standing | None = Field(
         description="The last one that stands; null when none does, or when it is hidden."
     )

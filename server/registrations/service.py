@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from sqlalchemy import ColumnElement, Select, and_, func, not_, or_, select, tuple_, update
+from sqlalchemy import ColumnElement, Select, and_, func, not_, or_, select, tuple_
 from sqlalchemy.orm import Session
 
 from server.database.paging import read_id_cursor, read_moment_cursor, write_cursor
@@ -25,7 +25,8 @@ from server.registrations.schemas import (
 )
 from server.scans.geometry import choose_points, pack_arrays
 from server.scans.models import ScanRow
-from server.scans.service import write_geometry_key
+from server.scans.service import list_crops, write_geometry_key
+from server.scans.units import find_revision_unit
 from server.storage import Storage
 
 AREA = "registrations"
@@ -151,12 +152,28 @@ def add_registration(session: Session, row: RegistrationRow) -> RegistrationRow:
     known = session.get(RegistrationRow, row.id)
     if known is not None:
         return known
-    older = (RegistrationRow.scan_id == row.scan_id) & RegistrationRow.is_current
-    session.execute(update(RegistrationRow).where(older).values(is_current=False))
     session.add(row)
-    session.execute(update(ScanRow).where(ScanRow.id == row.scan_id).values(state="registered", problem=None))
     session.flush()
+    settle_current(session, session.get_one(ScanRow, row.scan_id, with_for_update=True, populate_existing=True))
     return row
+
+
+def settle_current(session: Session, scan: ScanRow) -> None:
+    """See which registrations of a scan were made at the size that it has now; the newest of these is the current one.
+
+    Called when there is a new one, and when somebody corrects the unit of the scan.
+    """
+    units = {1: scan.first_metres_per_unit}
+    units |= {row.revision: find_revision_unit(scan, row) for row in list_crops(session, scan.id)}
+    query = select(RegistrationRow).where(RegistrationRow.scan_id == scan.id)
+    is_found = False
+    for row in session.scalars(query.order_by(RegistrationRow.created_at.desc(), RegistrationRow.id)).all():
+        row.is_outdated = units[row.crop_revision] != scan.metres_per_unit
+        row.is_current = not (row.is_outdated or is_found)
+        is_found |= row.is_current
+    if is_found:
+        scan.state, scan.problem = "registered", None
+    session.flush()
 
 
 def find_newest(session: Session, scan_ids: Sequence[uuid.UUID]) -> dict[uuid.UUID, dict[str, Any]]:
@@ -184,7 +201,7 @@ def _describe(row: RegistrationRow, scan: ScanRow, model_name: str, account_id: 
     mine = row.standing.get(str(account_id))
     hidden = is_hidden(row, account_id)
     own = ("id", "model_id", "job_id", "round", "side", "verdict", "score", "reasons", "seconds")
-    more = ("is_current", "reviewer_count", "needs_second", "created_at")
+    more = ("is_current", "is_outdated", "reviewer_count", "needs_second", "created_at")
     return RegistrationOut.model_validate(
         {name: getattr(row, name) for name in own + more}
         | {

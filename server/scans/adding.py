@@ -9,7 +9,6 @@ import json
 import os
 import shutil
 import uuid
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,15 +23,13 @@ from server.database import Database
 from server.database.texts import Label, Name
 from server.errors import InvalidError, StudioError
 from server.scans.cropping import find_flags
+from server.scans.folder import ListedScan, find_scans
 from server.scans.models import ScanRow
 from server.scans.schemas import ScanCrop, ScanRefusal, Side, UnitScale
 from server.scans.service import AREA
+from server.scans.units import measure_kept
 from server.storage import Storage
 from server.storage.digest import compute_digest
-
-SUFFIXES = (".ply", ".obj", ".stl")
-LIST_NAME = "scans.json"
-MAX_LIST_BYTES = 64 * 2**20
 
 
 class ScanOptions(BaseModel):
@@ -45,19 +42,8 @@ class ScanOptions(BaseModel):
     pose: Label = ""
     side: Side | None = None
     metres_per_unit: UnitScale | None = None
-
-
-class ListedScan(BaseModel):
-    """A line of `scans.json`."""
-
-    model_config = ConfigDict(extra="ignore")
-
-    file: str = Field(max_length=1000)
-    name: Name | None = None
-    subject: Label = ""
-    pose: Label = ""
-    side: Side | None = None
-    metres_per_unit: UnitScale | None = None
+    units: dict[str, UnitScale] = Field(default={}, max_length=2000)
+    """By the path of a file in the upload, of those that have another unit."""
 
 
 @dataclass
@@ -106,20 +92,12 @@ def add_scans(
         account_id: Who.
         moves: Whether the files may be moved away, such as those of an upload.
     """
+    found = find_scans(folder)
     done = Added()
-    paths = [folder] if folder.is_file() else sorted(path for path in folder.rglob("*") if path.is_file())
-    root = folder.parent if folder.is_file() else folder
-    listed = _read_lists([path for path in paths if path.name == LIST_NAME], root)
-    scans = [path for path in paths if path.suffix.lower() in SUFFIXES]
-    if not scans:
-        raise InvalidError(
-            f"There are no scans in it; needed files that end in {', '.join(SUFFIXES)}, or a zip of them."
-        )
-    for path in scans:
-        name = path.relative_to(root).as_posix()
-        line = listed.pop(name, None)
+    for name, path in found.scans.items():
+        columns = _describe(name, found.listed.get(name), options)
         try:
-            row, is_new = _add_one(database, storage, path, _describe(name, line, options), account_id, moves)
+            row, is_new = _add_one(database, storage, path, columns, account_id, moves)
         except StudioError as fault:
             done.refused.append(ScanRefusal(file=name, detail=fault.detail))
         except Exception as fault:
@@ -127,37 +105,24 @@ def add_scans(
 
             if not isinstance(fault, TrackerError):
                 raise
-            done.refused.append(ScanRefusal(file=name, detail=str(fault).replace(f"{root}/", "")))
+            done.refused.append(ScanRefusal(file=name, detail=found.hide_root(str(fault))))
         else:
             (done.added if is_new else done.known).append(row)
-    if listed:
-        done.notes.append(
-            f"{LIST_NAME} names {len(listed)} files that are not there, such as {next(iter(listed))[:200]!r}."
-        )
-    if others := len(paths) - len(scans) - sum(path.name == LIST_NAME for path in paths):
-        done.notes.append(f"{others} other files were left aside.")
+            if not is_new and (note := _compare_unit(name, row, columns["metres_per_unit"])):
+                done.notes.append(note)
+    done.notes += found.write_notes()
     return done
 
 
-def _read_lists(paths: Iterable[Path], root: Path) -> dict[str, ListedScan]:
-    """Lines of every `scans.json`, by the path of the file from the root."""
-    found: dict[str, ListedScan] = {}
-    for path in paths:
-        name = path.relative_to(root).as_posix()
-        if path.stat().st_size > MAX_LIST_BYTES:
-            raise InvalidError(f"{name} has more than {MAX_LIST_BYTES} bytes.")
-        try:
-            document = json.loads(path.read_bytes())
-            lines = document["scans"] if isinstance(document, dict) else document
-            read = [ListedScan.model_validate(line) for line in lines]
-        except (ValueError, KeyError, TypeError, RecursionError) as fault:
-            raise InvalidError(
-                f"{name} cannot be read: {str(fault)[:300]} Needed a list of objects with `file`, and `subject`, "
-                "`pose`, `side` (right or left) and `metres_per_unit` where they are known."
-            ) from None
-        base = path.parent.relative_to(root).as_posix()
-        found |= {line.file if base == "." else f"{base}/{line.file}": line for line in read}
-    return found
+def _compare_unit(name: str, row: ScanRow, wanted: float | None) -> str | None:
+    """That a scan which is there already has another unit than was said this time, if so."""
+    if wanted is None or row.metres_per_unit in (None, wanted):
+        return None
+    assert row.metres_per_unit is not None
+    return (
+        f"{name} is there already as {row.name}, with 1 unit = {1e3 * row.metres_per_unit:.6g} mm. It keeps that; its "
+        "page changes it."
+    )
 
 
 def _describe(name: str, line: ListedScan | None, options: ScanOptions) -> dict[str, Any]:
@@ -169,7 +134,7 @@ def _describe(name: str, line: ListedScan | None, options: ScanOptions) -> dict[
         "subject": line.subject or options.subject,
         "pose": line.pose or options.pose,
         "side": line.side or options.side,
-        "metres_per_unit": line.metres_per_unit or options.metres_per_unit,
+        "metres_per_unit": line.metres_per_unit or options.units.get(name) or options.metres_per_unit,
     }
 
 
@@ -184,13 +149,17 @@ def _add_one(
     database: Database, storage: Storage, path: Path, columns: dict[str, Any], account_id: uuid.UUID, moves: bool
 ) -> tuple[ScanRow, bool]:
     """Gives the scan and whether it is new. The file first, then its row; without the row no file."""
-    from tracker import load_scan
+    from tracker import find_unit, read_scan
 
     digest = compute_digest(path)
     with database.reading() as session:
         if (known := _find_known(session, columns["collection"], digest)) is not None:
             return known, False
-    scan = load_scan(path, columns["metres_per_unit"])
+    scan, said = read_scan(path), columns["metres_per_unit"]
+    unit = find_unit(path, scan, said)
+    scan = scan.scaled(unit)
+    flags = find_flags(scan, ScanCrop(strokes=[]))
+    size = measure_kept(scan, flags)
     scan_id = uuid.uuid4()
     file = f"scan{path.suffix.lower()}"
     destination = storage.folder(AREA, scan_id)
@@ -209,10 +178,13 @@ def _add_one(
             face_count=0 if scan.faces is None else len(scan.faces),
             has_colors=scan.colors is not None,
             extent_m=[float(value) for value in scan.points.max(axis=0) - scan.points.min(axis=0)],
+            size_m=size,
+            first_metres_per_unit=unit,
+            is_unit_guessed=said is None,
             notes=[],
-            removed_count=int(np.count_nonzero(find_flags(scan, ScanCrop(strokes=[])))),
+            removed_count=int(np.count_nonzero(flags)),
             created_by=account_id,
-            **columns,
+            **columns | {"metres_per_unit": unit},
         )
         storage.publish(AREA, scan_id)
         with database.writing() as session:

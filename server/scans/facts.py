@@ -24,6 +24,16 @@ def get_fact_finders(connection: HTTPConnection) -> tuple[FactFinder, ...]:
     return connection.app.state.scan_facts
 
 
+Resized = Callable[[Session, ScanRow], None]
+"""What a room does when a scan's size was corrected."""
+
+
+def get_resized(connection: HTTPConnection) -> tuple[Resized, ...]:
+    """Those the app was put together with."""
+    return connection.app.state.scan_resized
+
+
+ResizedDep = Annotated[tuple[Resized, ...], Depends(get_resized)]
 FactsDep = Annotated[tuple[FactFinder, ...], Depends(get_fact_finders)]
 
 
@@ -35,11 +45,12 @@ def describe_scans(session: Session, rows: Sequence[ScanRow], finders: Sequence[
         for id_, found in find(session, ids).items():
             facts[id_] |= found
     people = find_names(session, (row.created_by for row in rows))
-    own = ScanOut.model_fields.keys() - {"registration", "created_by_name", "geometry_key"}
+    own = ScanOut.model_fields.keys() - {"registration", "created_by_name", "geometry_key", "size_m"}
     return [
         ScanOut.model_validate(
             {field: getattr(row, field) for field in own}
             | {
+                "size_m": row.size_m or sorted(row.extent_m, reverse=True),
                 "created_by_name": people.get(row.created_by),
                 "geometry_key": write_geometry_key(row.digest, row.revision),
             }

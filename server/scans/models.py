@@ -46,12 +46,18 @@ class ScanRow(Base):
     has_colors: Mapped[bool]
     extent_m: Mapped[list[Any]]
     """Of its box along x, y and z."""
+    size_m: Mapped[list[Any] | None]
+    """Sides of a box along what is registered, the longest first; None in rows older than migration 0012."""
     metres_per_unit: Mapped[float | None]
-    """Of the file, when somebody said so; None was found out from its size."""
+    """Of the file. None in rows of before migration 0012 for which nobody said it: `extent_m` tells."""
+    first_metres_per_unit: Mapped[float | None]
+    """As it was uploaded; None likewise."""
+    is_unit_guessed: Mapped[bool] = mapped_column(default=False)
+    """Nobody said the unit; the size told it."""
     notes: Mapped[list[Any]]
     """What was noticed when it was read, sentences."""
     revision: Mapped[int] = mapped_column(default=1)
-    """Of what is cropped: 1 is the whole scan."""
+    """Of what is cropped and of the unit: 1 is the scan as it was uploaded."""
     removed_count: Mapped[int] = mapped_column(default=0)
     """Points that are left out now."""
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
@@ -60,7 +66,7 @@ class ScanRow(Base):
 
 
 class ScanCropRow(Base):
-    """What is left out of a scan, as of one revision. Rows are only ever added."""
+    """What is left out of a scan, and its unit, as of one revision. Rows are only ever added."""
 
     __tablename__ = "scan_crops"
     __table_args__ = (UniqueConstraint("scan_id", "revision"),)
@@ -73,5 +79,7 @@ class ScanCropRow(Base):
     """Whether points of an object, known by its colour, are left out too."""
     removed_count: Mapped[int]
     """Points that are left out."""
+    metres_per_unit: Mapped[float | None]
+    """Of the scan's file as of this revision; None is as it was uploaded."""
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     author_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Query, Request, Response
+from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
 from server.accounts.audit import record_act
@@ -15,11 +16,11 @@ from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.database.revision import IfMatch, read_if_match, write_etag
 from server.errors import ConflictError, error_responses
-from server.scans import service
+from server.scans import measuring, service
 from server.scans.adding import add_scans, parse_options
-from server.scans.facts import FactsDep, describe_scans
+from server.scans.facts import FactFinder, FactsDep, ResizedDep, describe_scans
 from server.scans.geometry import MEDIA_TYPE
-from server.scans.models import ScanCropRow
+from server.scans.models import ScanCropRow, ScanRow
 from server.scans.schemas import (
     CollectionOut,
     ScanCrop,
@@ -27,9 +28,12 @@ from server.scans.schemas import (
     ScanOut,
     ScanPatch,
     ScansAdded,
+    ScansMeasured,
+    ScanUnit,
     Side,
     State,
 )
+from server.scans.units import find_revision_unit
 from server.storage import StorageDep
 from server.storage.upload import Upload, UploadLimits, work_on_upload
 from tracker import ArchiveLimits, extract_archive
@@ -61,7 +65,7 @@ _BODY: dict[str, Any] = {
                         "options": {
                             "type": "string",
                             "description": "JSON: `collection`, and for scans that no `scans.json` names `subject`, "
-                            "`pose`, `side`, `metres_per_unit`.",
+                            "`pose`, `side`, `metres_per_unit`; `units`, metres per unit by the path of a file.",
                         },
                     },
                 }
@@ -112,16 +116,11 @@ async def create_scans(
     request: Request, database: DatabaseDep, storage: StorageDep, facts: FactsDep, account_id: AccountIdDep
 ) -> ScansAdded:
     """Upload scans. Each file is judged by itself; one sent again is not kept twice."""
-    settings = request.app.state.settings
-    limits = UploadLimits(settings.max_upload_files, settings.max_upload_bytes)
+    limits = _read_limits(request)
 
     def work(folder: Path, upload: Upload) -> ScansAdded:
         options = parse_options(upload.fields.get("options", ""))
-        source = folder
-        if len(upload.names) == 1 and upload.names[0].lower().endswith(".zip"):
-            source = folder / ".unpacked"
-            allowed = ArchiveLimits(files=limits.files, total_bytes=limits.total_bytes)
-            extract_archive(folder / upload.names[0], source, allowed)
+        source = _unpack(folder, upload, limits)
         done = add_scans(database, storage, source, options, account_id, moves=True)
         with database.reading() as session:
             return ScansAdded(
@@ -132,6 +131,33 @@ async def create_scans(
             )
 
     return await work_on_upload(request, storage, UPLOADS, limits, work)
+
+
+@router.post("/measure", responses=error_responses(413, 507), openapi_extra=_BODY, dependencies=[Depends(require_lead)])
+async def measure_scans(request: Request, storage: StorageDep) -> ScansMeasured:
+    """How large scans would be, in which units: the files of an upload are looked at, and nothing is stored."""
+    limits = _read_limits(request)
+    return await work_on_upload(
+        request,
+        storage,
+        UPLOADS,
+        limits,
+        lambda folder, upload: measuring.measure_scans(_unpack(folder, upload, limits)),
+    )
+
+
+def _read_limits(request: Request) -> UploadLimits:
+    settings = request.app.state.settings
+    return UploadLimits(settings.max_upload_files, settings.max_upload_bytes)
+
+
+def _unpack(folder: Path, upload: Upload, limits: UploadLimits) -> Path:
+    """The folder with the files of an upload, those of a zip when it is one."""
+    if len(upload.names) != 1 or not upload.names[0].lower().endswith(".zip"):
+        return folder
+    allowed = ArchiveLimits(files=limits.files, total_bytes=limits.total_bytes)
+    extract_archive(folder / upload.names[0], folder / ".unpacked", allowed)
+    return folder / ".unpacked"
 
 
 @router.get("/collections")
@@ -201,7 +227,7 @@ def get_scan_geometry(
     """Points for the browser: positions, normals, colours, flags (1 cropped, 2 object or loose). It never changes."""
     row = service.get_scan(session, scan_id, deleted_too=True)
     revision = service.find_geometry_revision(row, key)
-    crop = service.read_crop(service.get_crop(session, scan_id, revision))
+    crop = service.get_crop(session, scan_id, revision)
     return Response(shelf.pack(row, crop, size), media_type=MEDIA_TYPE, headers={"Cache-Control": IMMUTABLE})
 
 
@@ -214,7 +240,7 @@ def get_scan_geometry(
 def get_scan_thumbnail(scan_id: uuid.UUID, key: str, session: SessionDep, shelf: ShelfDep) -> Response:
     """A small picture for lists, of what is not left out; `key` is the `geometry_key`. It never changes."""
     row = service.get_scan(session, scan_id, deleted_too=True)
-    crop = service.read_crop(service.get_crop(session, scan_id, service.find_geometry_revision(row, key)))
+    crop = service.get_crop(session, scan_id, service.find_geometry_revision(row, key))
     return Response(shelf.draw(row, crop), media_type="image/png", headers={"Cache-Control": IMMUTABLE})
 
 
@@ -223,7 +249,7 @@ def get_scan_crop(scan_id: uuid.UUID, session: SessionDep, response: Response) -
     """What is left out of a scan now."""
     row = service.get_scan(session, scan_id)
     response.headers["ETag"] = write_etag(row.revision)
-    return _describe_crops(session, [service.get_crop(session, scan_id, row.revision)])[0]
+    return _describe_crops(session, row, [service.get_crop(session, scan_id, row.revision)])[0]
 
 
 @router.put("/{scan_id}/crop", responses=error_responses(404, 409, 428))
@@ -241,37 +267,70 @@ def put_scan_crop(
     row = service.get_scan(session, scan_id)
     revision = read_if_match(if_match)
     try:
-        row = service.put_crop(session, row, crop, service.count_removed(shelf.get(row), crop), revision, account.id)
+        row = service.put_crop(session, row, crop, service.judge_crop(shelf.get(row), crop), revision, account.id)
     except service.StaleScanError as stale:
-        row = service.get_scan(session, scan_id)
-        theirs = describe_scans(session, [row], facts)[0].model_dump(mode="json")
-        raise ConflictError(stale.detail, headers={"ETag": write_etag(row.revision)}, theirs=theirs) from None
+        raise _write_conflict(session, scan_id, facts, stale) from None
     record_act(session, account.id, "scan.crop", "scan", row.id, revision=row.revision)
     response.headers["ETag"] = write_etag(row.revision)
     return describe_scans(session, [row], facts)[0]
 
 
+@router.put("/{scan_id}/unit", responses=error_responses(404, 409, 428))
+def put_scan_unit(
+    scan_id: uuid.UUID,
+    unit: ScanUnit,
+    session: SessionDep,
+    shelf: ShelfDep,
+    facts: FactsDep,
+    resized: ResizedDep,
+    lead: LeadAccount,
+    response: Response,
+    if_match: IfMatch = None,
+) -> ScanOut:
+    """Say or correct the unit of a scan's file. Crops stay; registrations of another size no longer count. 409 carries
+    the scan as it is now in `theirs`."""
+    row = service.get_scan(session, scan_id)
+    revision = read_if_match(if_match)
+    service.settle_old_unit(session, shelf.storage, row)
+    before = row.metres_per_unit
+    try:
+        row = service.put_unit(session, row, shelf.get(row), unit.metres_per_unit, revision, lead.id)
+    except service.StaleScanError as stale:
+        raise _write_conflict(session, scan_id, facts, stale) from None
+    for settle in resized:
+        settle(session, row)
+    detail = {"revision": row.revision, "from": before, "to": row.metres_per_unit}
+    record_act(session, lead.id, "scan.unit", "scan", row.id, **detail)
+    response.headers["ETag"] = write_etag(row.revision)
+    return describe_scans(session, [row], facts)[0]
+
+
+def _write_conflict(
+    session: Session, scan_id: uuid.UUID, facts: tuple[FactFinder, ...], stale: service.StaleScanError
+) -> ConflictError:
+    row = service.get_scan(session, scan_id)
+    theirs = describe_scans(session, [row], facts)[0].model_dump(mode="json")
+    return ConflictError(stale.detail, headers={"ETag": write_etag(row.revision)}, theirs=theirs)
+
+
 @router.get("/{scan_id}/crop/history", responses=error_responses(404))
 def list_scan_crops(scan_id: uuid.UUID, session: SessionDep) -> Page[ScanCropOut]:
     """Every crop of a scan, the newest first. To go back to one, put its strokes again."""
-    service.get_scan(session, scan_id)
-    return Page(items=_describe_crops(session, [*service.list_crops(session, scan_id), None]), next_cursor=None)
+    row = service.get_scan(session, scan_id)
+    crops = [*service.list_crops(session, scan_id), None]
+    return Page(items=_describe_crops(session, row, crops), next_cursor=None)
 
 
-def _describe_crops(session: Any, rows: list[ScanCropRow | None]) -> list[ScanCropOut]:
+def _describe_crops(session: Session, scan: ScanRow, rows: list[ScanCropRow | None]) -> list[ScanCropOut]:
     people = find_names(session, (row.author_id for row in rows if row is not None))
-    whole = ScanCropOut(revision=1, strokes=[], drops_objects=True, removed_count=0, author_name=None, created_at=None)
+    names = ("revision", "strokes", "drops_objects", "removed_count", "created_at")
+    whole = {"revision": 1, "strokes": [], "drops_objects": True, "removed_count": 0, "created_at": None}
     return [
-        whole
-        if row is None
-        else ScanCropOut.model_validate(
-            {
-                "revision": row.revision,
-                "strokes": row.strokes,
-                "drops_objects": row.drops_objects,
-                "removed_count": row.removed_count,
-                "author_name": people.get(row.author_id),
-                "created_at": row.created_at,
+        ScanCropOut.model_validate(
+            (whole if row is None else {name: getattr(row, name) for name in names})
+            | {
+                "metres_per_unit": find_revision_unit(scan, row),
+                "author_name": None if row is None else people.get(row.author_id),
             }
         )
         for row in rows

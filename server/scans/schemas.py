@@ -51,11 +51,18 @@ class ScanOut(BaseModel):
     face_count: int
     has_colors: bool
     extent_m: list[float] = Field(description="Of its box along x, y, z.")
-    metres_per_unit: float | None
+    size_m: list[float] = Field(
+        description="Of what is registered, without what is cropped or left out: sides of a box that stands along it, "
+        "the longest first."
+    )
+    metres_per_unit: float | None = Field(
+        description="Length of the file's unit. Null: found from the size by an earlier version, and never confirmed."
+    )
+    is_unit_guessed: bool = Field(description="Nobody said the unit; the size told it.")
     notes: list[str] = Field(description="What was noticed when it was read.")
-    revision: int = Field(description="Of what is cropped; 1 is the whole scan.")
+    revision: int = Field(description="Of what is cropped and of the unit; 1 is the scan as it was uploaded.")
     removed_count: int = Field(description="Points that are cropped, of an object, or loose.")
-    geometry_key: str = Field(description="Part of the address of its geometry; changes with every crop.")
+    geometry_key: str = Field(description="Part of the address of its geometry; changes with every crop and unit.")
     registration: ScanRegistration | None = None
     created_at: datetime
     created_by_name: str | None
@@ -87,6 +94,39 @@ class ScansAdded(BaseModel):
     known: list[ScanOut] = Field(description="Files that the collection held already, by their SHA-256.")
     refused: list[ScanRefusal]
     notes: list[str] = Field(description="What was noticed beside, such as lines of scans.json without a file.")
+
+
+class ScanMeasure(BaseModel):
+    """How large a file is, before it is stored."""
+
+    file: str
+    point_count: int
+    size_units: list[float] = Field(
+        description="Sides of a box that stands along the scan, in the file's unit, the longest first."
+    )
+    metres_per_unit: float | None = Field(description="As the `scans.json` beside it says; it wins.")
+    guess: float | None = Field(description="A unit that makes a hand of it, m; null when no usual one does.")
+    is_certain: bool = Field(description="No other usual unit makes a hand of it: it is taken when nobody says one.")
+    picture: str = Field(description="A PNG as `data:` address: the longest way up, seen from the flat side.")
+    picture_units: float = Field(description="Length of a side of the picture, in the file's unit.")
+
+
+class ScansMeasured(BaseModel):
+    """What files would be as scans. Nothing is stored."""
+
+    files: list[ScanMeasure]
+    refused: list[ScanRefusal]
+    notes: list[str]
+    hand_lengths_m: list[float] = Field(description="Shortest and longest longest side that a hand may have.")
+    longest_scene_m: float = Field(description="Longest side of a scan with other things in it, to be cropped.")
+
+
+class ScanUnit(BaseModel):
+    """The unit of a scan's file."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    metres_per_unit: UnitScale
 
 
 class ScanPatch(BaseModel):
@@ -152,5 +192,6 @@ class ScanCropOut(BaseModel):
     strokes: list[Stroke]
     drops_objects: bool
     removed_count: int
+    metres_per_unit: float | None = Field(description="The unit of the file as of this revision; the strokes are m.")
     author_name: str | None
     created_at: datetime | None = Field(description="Null for the whole scan.")

@@ -22,6 +22,7 @@ from server.scans.geometry import pack_scan
 from server.scans.models import ScanCropRow, ScanRow
 from server.scans.schemas import CollectionOut, ScanCrop, ScanPatch
 from server.scans.thumbnails import draw_thumbnail
+from server.scans.units import check_size, find_old_unit, find_revision_unit, measure_kept, scale_strokes
 from server.storage import Storage
 
 if TYPE_CHECKING:
@@ -123,32 +124,89 @@ def read_crop(row: ScanCropRow | None) -> ScanCrop:
 
 
 def open_scan(storage: Storage, row: ScanRow) -> Scan:
-    """The whole scan, as it was uploaded."""
-    from tracker import load_scan
-
-    return load_scan(storage.folder(AREA, row.id) / row.file, row.metres_per_unit)
+    """The whole scan, in the unit that it has now."""
+    return _open_file(storage, row, row.metres_per_unit)
 
 
-def count_removed(scan: Scan, crop: ScanCrop) -> int:
-    """Points that a crop leaves out; raises when it leaves too few."""
+def _open_file(storage: Storage, row: ScanRow, metres_per_unit: float | None) -> Scan:
+    from tracker import read_scan
+
+    scan = read_scan(storage.folder(AREA, row.id) / row.file)
+    return scan.scaled(find_old_unit(row, scan) if metres_per_unit is None else metres_per_unit)
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What a crop leaves of a scan: how many points go, and the sides (m) of a box around the others."""
+
+    removed: int
+    size_m: list[float]
+
+
+def judge_crop(scan: Scan, crop: ScanCrop) -> Kept:
+    """What a crop leaves; raises when that is too little."""
     check_crop(crop)
-    removed = int(np.count_nonzero(find_flags(scan, crop)))
+    flags = find_flags(scan, crop)
+    removed = int(np.count_nonzero(flags))
     if len(scan.points) - removed < min(LEAST_LEFT, len(scan.points)):
         raise InvalidError(
             f"The crop leaves {len(scan.points) - removed} of {len(scan.points)} points; needed at least {LEAST_LEFT}. "
             "Remove less."
         )
-    return removed
+    return Kept(removed, measure_kept(scan, flags))
 
 
 def put_crop(
-    session: Session, row: ScanRow, crop: ScanCrop, removed: int, revision: int, account_id: uuid.UUID
+    session: Session, row: ScanRow, crop: ScanCrop, kept: Kept, revision: int, account_id: uuid.UUID
 ) -> ScanRow:
     """Replace what is left out of a scan, if that is still the revision given."""
+    columns = {"removed_count": kept.removed, "size_m": kept.size_m}
+    return _add_revision(session, row, crop, columns, revision, account_id)
+
+
+def settle_old_unit(session: Session, storage: Storage, row: ScanRow) -> None:
+    """Note the unit that an earlier version found for a scan without storing it; nothing changes by that."""
+    from tracker import read_scan
+
+    if row.metres_per_unit is None:
+        unit = find_old_unit(row, read_scan(storage.folder(AREA, row.id) / row.file))
+        row.metres_per_unit = row.first_metres_per_unit = unit
+        session.flush()
+
+
+def put_unit(
+    session: Session, row: ScanRow, scan: Scan, metres_per_unit: float, revision: int, account_id: uuid.UUID
+) -> ScanRow:
+    """Correct the unit of a scan's file, if that is still the revision given. What is cropped stays cropped.
+
+    Args:
+        scan: The whole scan in the unit that it has now, which `settle_old_unit` has noted.
+    """
+    assert row.metres_per_unit is not None
+    factor = metres_per_unit / row.metres_per_unit
+    scaled = scan.scaled(factor)
+    crop = read_crop(get_crop(session, row.id, row.revision))
+    crop = crop.model_copy(update={"strokes": scale_strokes(crop.strokes, factor)})
+    size = measure_kept(scaled, find_flags(scaled, crop))
+    check_size(size[0], metres_per_unit)
+    columns = {
+        "metres_per_unit": metres_per_unit,
+        "is_unit_guessed": False,
+        "extent_m": [factor * side for side in row.extent_m],
+        "size_m": size,
+        "state": "new",
+        "problem": None,
+    }
+    return _add_revision(session, row, crop, columns, revision, account_id)
+
+
+def _add_revision(
+    session: Session, row: ScanRow, crop: ScanCrop, columns: dict[str, Any], revision: int, account_id: uuid.UUID
+) -> ScanRow:
     statement = (
         update(ScanRow)
         .where(ScanRow.id == row.id, ScanRow.revision == revision, ScanRow.deleted_at.is_(None))
-        .values(revision=revision + 1, removed_count=removed)
+        .values(revision=revision + 1, **columns)
         .execution_options(synchronize_session=False)
     )
     result = session.execute(statement)
@@ -156,14 +214,15 @@ def put_crop(
     now = session.get(ScanRow, row.id, populate_existing=True)
     assert now is not None
     if result.rowcount != 1:
-        raise StaleScanError(f"The scan was cropped meanwhile and is at revision {now.revision}. Load it again.")
+        raise StaleScanError(f"The scan was changed meanwhile and is at revision {now.revision}. Load it again.")
     session.add(
         ScanCropRow(
             scan_id=row.id,
             revision=revision + 1,
             strokes=[stroke.model_dump(mode="json") for stroke in crop.strokes],
             drops_objects=crop.drops_objects,
-            removed_count=removed,
+            removed_count=now.removed_count,
+            metres_per_unit=now.metres_per_unit,
             author_id=account_id,
         )
     )
@@ -184,7 +243,7 @@ def restore_scan(session: Session, row: ScanRow) -> None:
 
 
 def write_geometry_key(digest: str, revision: int) -> str:
-    """Part of the address of a scan's geometry: another file or another crop has another."""
+    """Part of the address of a scan's geometry: another file, another crop or another unit has another."""
     return f"{digest[:24]}-{revision}"
 
 
@@ -200,30 +259,34 @@ class ScanShelf:
     """Scans that were asked for lately, so that who moves on and back does not wait for the disk again."""
 
     def __init__(self, storage: Storage, most: int = 8) -> None:
-        self._storage, self._most = storage, most
-        self._scans: OrderedDict[uuid.UUID, Scan] = OrderedDict()
+        self.storage, self._most = storage, most
+        self._scans: OrderedDict[tuple[uuid.UUID, float | None], Scan] = OrderedDict()
         self._lock = threading.Lock()
 
     def get(self, row: ScanRow) -> Scan:
-        """The whole scan."""
+        """The whole scan, in the unit that it has now."""
+        return self._get(row, row.metres_per_unit)
+
+    def _get(self, row: ScanRow, metres_per_unit: float | None) -> Scan:
+        key = row.id, metres_per_unit
         with self._lock:
-            if (scan := self._scans.get(row.id)) is not None:
-                self._scans.move_to_end(row.id)
+            if (scan := self._scans.get(key)) is not None:
+                self._scans.move_to_end(key)
                 return scan
-        scan = open_scan(self._storage, row)
+        scan = _open_file(self.storage, row, metres_per_unit)
         with self._lock:
-            self._scans[row.id] = scan
+            self._scans[key] = scan
             while len(self._scans) > self._most:
                 self._scans.popitem(last=False)
         return scan
 
-    def pack(self, row: ScanRow, crop: ScanCrop, size: int) -> bytes:
-        """A scan for the browser."""
-        scan = self.get(row)
-        flags = find_flags(scan, crop)
+    def pack(self, row: ScanRow, crop: ScanCropRow | None, size: int) -> bytes:
+        """A scan for the browser, as of a revision."""
+        scan = self._get(row, find_revision_unit(row, crop))
+        flags = find_flags(scan, read_crop(crop))
         return pack_scan(scan.points, scan.normals, scan.colors, flags, size, row.digest)
 
-    def draw(self, row: ScanRow, crop: ScanCrop) -> bytes:
-        """A small picture of what the crop leaves of a scan."""
-        scan = self.get(row)
-        return draw_thumbnail(scan, find_flags(scan, crop) == 0, row.digest)
+    def draw(self, row: ScanRow, crop: ScanCropRow | None) -> bytes:
+        """A small picture of what is left of a scan as of a revision."""
+        scan = self._get(row, find_revision_unit(row, crop))
+        return draw_thumbnail(scan, find_flags(scan, read_crop(crop)) == 0, row.digest)

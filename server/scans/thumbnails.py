@@ -20,30 +20,38 @@ Array = npt.NDArray[np.float64]
 
 
 def draw_thumbnail(scan: Scan, is_kept: npt.NDArray[np.bool_], digest: str) -> bytes:
-    """A square PNG of the points that are kept, on transparent ground; far ones first, so that near ones hide them."""
+    """A square PNG of the points that are kept, on transparent ground."""
+    return draw_picture(scan, is_kept, digest, SIZE_PX)[0]
+
+
+def draw_picture(scan: Scan, is_kept: npt.NDArray[np.bool_], digest: str, size_px: int) -> tuple[bytes, float]:
+    """Such a picture of `size_px` a side, and the length of a side in the unit of the scan's points. Far points are
+    drawn first, so that near ones hide them."""
     kept = np.flatnonzero(is_kept)
     chosen = kept[choose_points(len(kept), MOST_POINTS, digest)]
-    image = np.zeros((SIZE_PX, SIZE_PX, 4), dtype=np.uint8)
+    image = np.zeros((size_px, size_px, 4), dtype=np.uint8)
+    side = 0.0
     if len(chosen):
         turn = find_upright(scan.points[chosen])
         points = (scan.points[chosen] - scan.points[chosen].mean(axis=0)) @ turn.T
         facing = scan.normals[chosen] @ turn[2]
         colors = np.full((len(chosen), 3), PLAIN) if scan.colors is None else scan.colors[chosen]
         low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
-        scale = (1.0 - 2.0 * MARGIN) * SIZE_PX / max(float((high - low).max()), 1e-9)
+        side = max(float((high - low).max()), 1e-9) / (1.0 - 2.0 * MARGIN)
+        scale = size_px / side
         middle = (low + high) / 2.0
-        columns = np.floor(SIZE_PX / 2.0 + scale * (points[:, 0] - middle[0])).astype(int)
-        rows = np.floor(SIZE_PX / 2.0 - scale * (points[:, 1] - middle[1])).astype(int)
+        columns = np.floor(size_px / 2.0 + scale * (points[:, 0] - middle[0])).astype(int)
+        rows = np.floor(size_px / 2.0 - scale * (points[:, 1] - middle[1])).astype(int)
         shade = (0.35 + 0.65 * np.abs(facing))[:, None]
         order = np.argsort(points[:, 2], kind="stable")
         painted = np.concatenate([shade * colors, np.full((len(chosen), 1), 255.0)], axis=1).astype(np.uint8)[order]
         for down, right in ((0, 0), (0, 1), (1, 0), (1, 1)):
-            image[np.clip(rows[order] + down, 0, SIZE_PX - 1), np.clip(columns[order] + right, 0, SIZE_PX - 1)] = (
+            image[np.clip(rows[order] + down, 0, size_px - 1), np.clip(columns[order] + right, 0, size_px - 1)] = (
                 painted
             )
     done, data = cv2.imencode(".png", cv2.cvtColor(image, cv2.COLOR_RGBA2BGRA))
     assert done
-    return data.tobytes()
+    return data.tobytes(), side
 
 
 def find_upright(points: Array) -> Array:

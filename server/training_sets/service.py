@@ -60,7 +60,7 @@ def choose_registrations(session: Session, rule: TrainingRule) -> list[Chosen]:
     query = (
         select(RegistrationRow, ScanRow)
         .join(ScanRow, ScanRow.id == RegistrationRow.scan_id)
-        .where(ScanRow.deleted_at.is_(None))
+        .where(ScanRow.deleted_at.is_(None), ~RegistrationRow.is_outdated)
         .order_by(RegistrationRow.created_at.desc(), RegistrationRow.id)
     )
     if rule.by == "decisions":

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import base64
 import re
+import zipfile
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.web.hands import write_scans
+from tracker import load_scan, measure_size, save_scan
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 
@@ -83,8 +85,12 @@ def test_scans_dropped_on_the_page_are_added_and_each_that_cannot_be_used_says_w
     drop(page, archive.name, archive.read_bytes())
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Collection").fill("dropped")
+    add = dialog.get_by_role("button", name="Add 1 file")
+    dialog.get_by_text("Confirm the guessed size, or choose the unit.").wait_for()
+    expect(add).to_be_disabled()
     screenshots.take(page, "scans-add")
-    dialog.get_by_role("button", name="Add 1 file").click()
+    dialog.get_by_label("The sizes are right").check()
+    add.click()
     dialog.get_by_text("2 scans added.").wait_for()
     dialog.get_by_role("button", name="Done").click()
     page.goto("/scans?collection=dropped")
@@ -92,13 +98,65 @@ def test_scans_dropped_on_the_page_are_added_and_each_that_cannot_be_used_says_w
     expect(row).to_contain_text("22,000")
 
     drop(page, "broken.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nend_header\n")
-    dialog.get_by_role("button", name="Add 1 file").click()
-    dialog.get_by_text("1 refused").wait_for()
+    dialog.get_by_text("None of these files is a scan.").wait_for()
+    expect(add).to_be_disabled()
     expect(dialog.get_by_role("alert")).to_contain_text("broken.ply")
     expect(dialog.get_by_role("alert")).to_contain_text("found an element 'vertex' without properties; needed a PLY")
     screenshots.take(page, "scans-refused")
-    dialog.get_by_role("button", name="Done").click()
+    dialog.get_by_role("button", name="Cancel").click()
     assert len(studio.get("/scans?collection=dropped")["items"]) == 2
+
+
+def test_a_unit_is_said_beside_a_hand_before_anything_is_stored_and_corrected_afterwards(
+    studio, open_page, archive, tmp_path, screenshots
+):
+    """A scan in a unit of its own, as real ones come: 1 unit is 28.5 mm, and inches make a hand of it too."""
+    from playwright.sync_api import expect
+
+    with zipfile.ZipFile(archive) as packed:
+        name = next(name for name in packed.namelist() if name.endswith(".ply"))
+        packed.extract(name, tmp_path)
+    scan = load_scan(tmp_path / name)
+    save_scan(scan.scaled(1 / 0.0285), tmp_path / "own_unit.ply")
+    page = open_page()
+    page.goto("/scans")
+    page.get_by_role("button", name=re.compile("^Add")).first.wait_for()
+    drop(page, "own_unit.ply", (tmp_path / "own_unit.ply").read_bytes())
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_text("Guess", exact=True)).to_be_visible()
+    add = dialog.get_by_role("button", name="Add 1 file")
+    expect(add).to_be_disabled()
+    dialog.get_by_label("Collection").fill("units")
+
+    def choose(unit: str) -> None:
+        dialog.get_by_role("combobox", name="Unit of the files").click()
+        page.get_by_role("option", name=unit).click()
+
+    choose("Centimetres")
+    dialog.get_by_text("1 scan has a size that no hand has: correct the unit.").wait_for()
+    expect(add).to_be_disabled()
+    choose("Another")
+    dialog.get_by_label("1 unit is, in mm").fill("28.5")
+    length = 100 * float(measure_size(scan.points)[0])
+    expect(dialog.get_by_test_id("scan-length")).to_contain_text(f"{length:.1f} cm")
+    screenshots.take(page, "scans-unit")
+    add.click()
+    dialog.get_by_text("1 scan added.").wait_for()
+    dialog.get_by_role("button", name="Done").click()
+    [added] = studio.get("/scans?collection=units")["items"]
+    assert (added["metres_per_unit"], added["is_unit_guessed"]) == (0.0285, False)
+
+    page = open_scan(open_page, added)
+    panel = page.get_by_role("region", name="Unit and size")
+    panel.get_by_role("button", name="Correct the unit …").click()
+    panel.get_by_label("1 unit is, in mm").fill("27")
+    screenshots.take(page, "scan-unit")
+    panel.get_by_role("button", name="Set the unit").click()
+    expect(panel).to_contain_text("1 unit = 27 mm")
+    expect(panel.get_by_role("button", name="Set the unit")).to_have_count(0)
+    now = studio.get(f"/scans/{added['id']}")
+    assert (now["metres_per_unit"], now["revision"]) == (0.027, 2)
+    assert now["size_m"][0] == pytest.approx(added["size_m"][0] * 27 / 28.5)
 
 
 def test_the_list_is_narrowed_and_the_address_holds_how(scans, open_page):

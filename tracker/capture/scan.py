@@ -13,6 +13,15 @@ from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan_npz import pack_npz_scan, read_npz_scan
 from tracker.capture.scan_obj import read_obj_scan
 from tracker.capture.scan_ply import read_ply_scan, write_ply
+from tracker.capture.scan_size import (
+    LONGEST_SCENE,
+    SIZES_NEEDED,
+    find_possible_units,
+    find_size_fault,
+    is_certain,
+    measure_size,
+    write_length,
+)
 from tracker.capture.scan_stl import read_stl_scan
 from tracker.capture.scan_values import MAX_FILE_BYTES, RawScan
 from tracker.errors import ScanError
@@ -28,15 +37,6 @@ MAX_POINTS = 200_000
 """So many points are kept of a larger scan, drawn at random with the same draw every time."""
 
 MIN_POINTS = 50
-
-UNITS = (1.0, 1e-3, 1e-2)
-"""Metres per unit, tried in this order when nobody says which it is: metres, millimetres, centimetres."""
-
-SIZES = (0.05, 1.2)
-"""m; diagonal of the box around a hand, perhaps with forearm and what it holds."""
-
-POSSIBLE_SIZES = (0.02, 3.0)
-"""m; sizes that are believed when the unit is given."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +70,10 @@ class Scan:
         colors = None if self.colors is None else self.colors[keep]
         return replace(self, points=self.points[keep], normals=self.normals[keep], faces=faces, colors=colors)
 
+    def scaled(self, factor: float) -> Scan:
+        """The scan so many times as large, from its origin."""
+        return replace(self, points=self.points * factor)
+
     def mirrored(self) -> Scan:
         """The scan seen in the mirror x = 0."""
         flip = np.array([-1.0, 1.0, 1.0])
@@ -85,11 +89,18 @@ def load_scan(path: Path | str, metres_per_unit: float | None = None) -> Scan:
 
     Args:
         path: The file.
-        metres_per_unit: Length of the file's unit; guessed from the size when left out.
+        metres_per_unit: Length of the file's unit. When left out, metres and millimetres are told by the size; what
+            may be another unit is refused.
 
     Raises:
         ScanError: With what was found and what is needed.
     """
+    scan = read_scan(path)
+    return scan.scaled(find_unit(path, scan, metres_per_unit))
+
+
+def read_scan(path: Path | str) -> Scan:
+    """The same with `points` in the file's own unit, whatever that is."""
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
@@ -101,9 +112,7 @@ def load_scan(path: Path | str, metres_per_unit: float | None = None) -> Scan:
         raw = reader(path, path.read_bytes())
     except OSError as error:
         raise ScanError(path, f"a file that cannot be read ({error.strerror})", "a readable file") from error
-    scan = _clean(path, raw)
-    scale = _find_scale(path, scan.points, metres_per_unit)
-    return replace(scan, points=scan.points * scale)
+    return _clean(path, raw)
 
 
 def save_scan(scan: Scan, path: Path) -> None:
@@ -191,19 +200,32 @@ def _as_keys(points: Array) -> npt.NDArray[np.void]:
     return rows.view(np.dtype((np.void, rows.dtype.itemsize * 3))).ravel()
 
 
-def _find_scale(path: Path, points: Array, metres_per_unit: float | None) -> float:
-    low, high = np.percentile(points, [0.5, 99.5], axis=0)
-    size = float(np.linalg.norm(high - low))
-    needed = f"a hand of {1e3 * SIZES[0]:.0f} mm to {SIZES[1]:.1f} m across, or its unit said (metres per unit)"
+def find_unit(path: Path | str, scan: Scan, metres_per_unit: float | None) -> float:
+    """Metres per unit of a file: what was said, or what its size tells for certain.
+
+    Args:
+        path: The file, to name it.
+        scan: What was read of it, in its own unit.
+        metres_per_unit: What was said; None when nobody did.
+
+    Raises:
+        ScanError: It makes no hand, or nobody said it and the size leaves it open.
+    """
+    size = float(measure_size(scan.points)[0])
     if metres_per_unit is not None:
         if not (np.isfinite(metres_per_unit) and metres_per_unit > 0.0):
             raise ScanError(path, f"a unit of {metres_per_unit} m", "a positive number of metres")
-        if not POSSIBLE_SIZES[0] <= size * metres_per_unit <= POSSIBLE_SIZES[1]:
-            raise ScanError(path, f"a size of {size * metres_per_unit:.3g} m with the unit given", needed)
+        if fault := find_size_fault(size * metres_per_unit, LONGEST_SCENE):
+            raise ScanError(
+                path,
+                f"a scan that {fault} with 1 unit = {1e3 * metres_per_unit:.6g} mm",
+                f"{SIZES_NEEDED}; correct its unit (metres per unit)",
+            )
         return metres_per_unit
-    for scale in UNITS:
-        if SIZES[0] <= size * scale <= SIZES[1]:
-            return scale
-    raise ScanError(
-        path, f"a size of {size:.4g} units, in metres, millimetres or centimetres not that of a hand", needed
-    )
+    if is_certain(size):
+        return next(iter(find_possible_units(size).values()))
+    found = f"a size of {size:.4g} units (longest side), which is no hand in metres, millimetres, centimetres or inches"
+    if possible := find_possible_units(size):
+        lengths = " or ".join(f"{write_length(size * metres)} (1 unit = 1 {name})" for name, metres in possible.items())
+        found = f"a size of {size:.4g} units (longest side), which may be {lengths} or something else"
+    raise ScanError(path, found, f"its unit (metres per unit) that makes {SIZES_NEEDED}")

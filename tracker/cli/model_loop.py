@@ -10,7 +10,7 @@ from typing import Any
 
 from tracker.cli.command import add_json, run_guarded
 from tracker.cli.progress import ProgressLine
-from tracker.cli.register import list_scans, name_scans, run_jobs
+from tracker.cli.register import UNIT_HELP, list_scans, name_scans, run_jobs
 from tracker.cli.train_model import add_training_options, read_accepted, train_from
 from tracker.errors import TrackerError
 
@@ -28,7 +28,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
     parser.add_argument("--rounds", type=int, default=2, metavar="N", help="of registering and training (2)")
     parser.add_argument("--model", type=Path, metavar="FILE", help="to begin with (default: the untrained hand)")
-    parser.add_argument("--metres-per-unit", type=float, metavar="M", help="unit of the files (guessed from the size)")
+    parser.add_argument("--metres-per-unit", type=float, metavar="M", help=UNIT_HELP)
     parser.add_argument("--processes", type=int, default=1, metavar="N", help="scans at a time (1)")
     add_training_options(parser)
     add_json(parser)

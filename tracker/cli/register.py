@@ -27,6 +27,11 @@ Job = tuple[Path, Path, Path | None, Path | None, "RegistrationOptions", float |
 NO_SCANS = ("truth.npz", "registration.npz", "registration.ply", "registration_surface.ply")
 """Files of other meaning that may lie among scans."""
 
+UNIT_HELP = (
+    "unit of the files, where no scans.json says it (metres and millimetres are told by the size; what may be another "
+    "unit is refused without this)"
+)
+
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
@@ -43,7 +48,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--model", type=Path, metavar="FILE", help="the hand model (default: the untrained hand)")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="the folder for the registrations")
     parser.add_argument("--side", choices=("right", "left"), help="which hand, if known (both are tried)")
-    parser.add_argument("--metres-per-unit", type=float, metavar="M", help="unit of the files (guessed from the size)")
+    parser.add_argument("--metres-per-unit", type=float, metavar="M", help=UNIT_HELP)
     parser.add_argument("--start", type=Path, metavar="DIR", help="begin with these earlier registrations of the scans")
     parser.add_argument("--no-colors", action="store_true", help="keep green points (else taken for an object)")
     parser.add_argument("--processes", type=int, default=1, metavar="N", help="scans at a time (1)")
@@ -132,6 +137,7 @@ def _leave_interrupts_to_the_parent() -> None:
 def register_one(job: Job, again: bool) -> dict[str, Any]:
     """Register one scan to its folder, unless that is done; what `--json` lists of it."""
     from tracker.capture.scan import load_scan
+    from tracker.capture.scan_size import measure_size
     from tracker.registration.register import prepare_tools, register_scan
     from tracker.registration.registration import digest_scan
     from tracker.registration.registration_files import (
@@ -144,13 +150,16 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
 
     path, folder, model_path, start_folder, options, metres_per_unit = job
     try:
-        scan = load_scan(path, metres_per_unit)
+        row = _find_row(path)
+        said = _read_unit(path, row, metres_per_unit)
+        scan = load_scan(path, said)
+        size = {"longest_m": round(float(measure_size(scan.points)[0]), 4), "is_unit_guessed": said is None}
         model = load_hand_model(model_path)
         if not again and (folder / REGISTRATION_FILE).is_file():
             try:
                 done = load_registration(folder)
                 if (done.scan_digest, done.model_digest) == (digest_scan(scan), prepare_tools(model).model_digest):
-                    return summarize_registration(done)
+                    return summarize_registration(done) | size
             except RegistrationError:
                 pass  # damaged: made anew
         start = None
@@ -158,11 +167,11 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
             earlier = load_registration(start_folder)
             start = earlier.as_start() if earlier.verdict == "good" else None
         registration = register_scan(scan, model, options, start)
-        subject, pose_name = _read_labels(path)
-        registration = replace(registration, subject=subject, pose_name=pose_name)
+        labels = {"subject": str(row.get("subject", ""))[:100], "pose_name": str(row.get("pose", ""))[:100]}
+        registration = replace(registration, **labels)
         save_surface(registration, folder)
         save_registration(registration, folder)
-        return summarize_registration(registration)
+        return summarize_registration(registration) | size
     except (ScanError, RegistrationError) as error:
         nothing = {"mean": None, "median": None, "p95": None}
         return {
@@ -195,13 +204,23 @@ def load_hand_model(path: Path | None):
     return _models[path]
 
 
-def _read_labels(path: Path) -> tuple[str, str]:
-    """Subject and pose from `scans.json` beside the scan or one folder up, if that names it; else empty."""
+def _find_row(path: Path) -> dict[str, Any]:
+    """The row of a scan in the `scans.json` beside it or one folder up; empty if neither names it."""
     for folder in (path.parent, path.parent.parent):
         row = _read_listing(folder / "scans.json").get(path.stem)
         if row is not None:
-            return str(row.get("subject", ""))[:100], str(row.get("pose", ""))[:100]
-    return "", ""
+            return row
+    return {}
+
+
+def _read_unit(path: Path, row: dict[str, Any], given: float | None) -> float | None:
+    """Metres per unit as the row of a scan says it, else as the command does; None when nobody does."""
+    said = row.get("metres_per_unit")
+    if said is None:
+        return given
+    if isinstance(said, bool) or not isinstance(said, int | float):
+        raise ScanError(path, f"metres_per_unit {str(said)[:40]!r} in scans.json", "a positive number of metres")
+    return float(said)
 
 
 @lru_cache(maxsize=4)
@@ -224,6 +243,15 @@ def show(results: list[dict[str, Any]]) -> str:
         distance = result["scan_to_mesh_mm"]["median"]
         told = "" if distance is None else f"{distance:.2f} mm median scan to mesh, "
         why = f"; {result['reasons'][0]}" if result["verdict"] != "good" and result["reasons"] else ""
-        lines.append(f"{result['scan']}: {result['verdict']}, {told}{result['seconds']:.1f} s{why}")
+        length = _write_size(result)
+        lines.append(f"{result['scan']}: {result['verdict']}, {told}{length}{result['seconds']:.1f} s{why}")
     counts = {name: sum(r["verdict"] == name for r in results) for name in ("good", "doubtful", "bad")}
     return "\n".join([*lines, ", ".join(f"{count} {name}" for name, count in counts.items())])
+
+
+def _write_size(result: dict[str, Any]) -> str:
+    """How long a scan is, and that nobody said its unit, where that is so."""
+    if "longest_m" not in result:
+        return ""
+    guessed = " (its unit is a guess; --metres-per-unit says it)" if result["is_unit_guessed"] else ""
+    return f"{100 * result['longest_m']:.1f} cm long{guessed}, "

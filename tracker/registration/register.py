@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.scan import MAX_POINTS, Scan
+from tracker.capture.scan_size import SIZES_NEEDED, find_size_fault, measure_size
 from tracker.model.blend_limits import blend_limits
 from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.blend_model import BlendModel
@@ -29,9 +30,6 @@ from tracker.registration.vertex_fit import fit_to_vertices
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
-
-SIZES = (0.06, 1.5)
-"""m; box around the points of a hand, with forearm: beyond, the unit is wrong or there is no hand."""
 
 MIN_POINTS = 50
 
@@ -216,12 +214,9 @@ def _find_fault(scan: Scan, keep: npt.NDArray[np.bool_]) -> str | None:
     count = int(keep.sum())
     if count < MIN_POINTS:
         return f"{count} of {len(keep)} points may be a hand's; needed at least {MIN_POINTS}"
-    low, high = np.percentile(scan.points[keep], [1.0, 99.0], axis=0)
-    size = float(np.linalg.norm(high - low))
-    if not SIZES[0] <= size <= SIZES[1]:
+    if fault := find_size_fault(float(measure_size(scan.points[keep])[0])):
         return (
-            f"the points are {size:.3g} m across, a hand {SIZES[0]:g} m to {SIZES[1]:g} m with its forearm: "
-            "say the scan's unit (metres per unit)"
+            f"the scan {fault}; needed {SIZES_NEEDED}: say the scan's unit (metres per unit), or crop what is no hand"
         )
     return None
 

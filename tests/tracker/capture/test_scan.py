@@ -95,11 +95,21 @@ def test_npz_keeps_every_bit(scan, tmp_path):
     assert {tuple(p) for p in back.points} == {tuple(p) for p in scan.points}
 
 
-@pytest.mark.parametrize(("scale", "unit"), [(1e3, "mm"), (1e2, "cm"), (1.0, "m")])
-def test_the_unit_is_guessed_from_the_size(scan, tmp_path, scale, unit):
+@pytest.mark.parametrize(("scale", "unit"), [(1e3, "mm"), (1.0, "m")])
+def test_metres_and_millimetres_are_told_by_the_size(scan, tmp_path, scale, unit):
     big = Scan(scan.points * scale, scan.normals, scan.faces)
     save_scan(big, tmp_path / "scan.ply")
     assert np.ptp(load_scan(tmp_path / "scan.ply").points[:, 0]) == pytest.approx(np.ptp(scan.points[:, 0]), rel=1e-5)
+
+
+@pytest.mark.parametrize("metres_per_unit", [0.01, 0.0254, 0.0285, 0.1])
+def test_a_unit_that_the_size_leaves_open_is_asked_for_and_not_guessed(scan, tmp_path, metres_per_unit):
+    save_scan(Scan(scan.points / metres_per_unit, scan.normals, scan.faces), tmp_path / "scan.ply")
+    with pytest.raises(ScanError, match=r"a size of .* units.*its unit \(metres per unit\)"):
+        load_scan(tmp_path / "scan.ply")
+    assert np.ptp(load_scan(tmp_path / "scan.ply", metres_per_unit).points[:, 0]) == pytest.approx(
+        np.ptp(scan.points[:, 0]), rel=1e-5
+    )
 
 
 def test_a_given_unit_is_taken_unless_no_hand_has_that_size(scan, tmp_path):
@@ -107,8 +117,9 @@ def test_a_given_unit_is_taken_unless_no_hand_has_that_size(scan, tmp_path):
     assert np.ptp(load_scan(tmp_path / "scan.ply", 0.0285).points[:, 0]) == pytest.approx(
         np.ptp(scan.points[:, 0]), rel=1e-5
     )
-    with pytest.raises(ScanError, match=r"a size of .* m with the unit given"):
-        load_scan(tmp_path / "scan.ply", 5.0)
+    for unit, told in ((5.0, r"33.* m long"), (0.01, r"6.* cm long")):
+        with pytest.raises(ScanError, match=rf"a scan that is {told} with 1 unit = .* mm.*correct its unit"):
+            load_scan(tmp_path / "scan.ply", unit)
     for unit in (0.0, -1.0, float("nan")):
         with pytest.raises(ScanError, match="positive"):
             load_scan(tmp_path / "scan.ply", unit)

@@ -103,3 +103,23 @@ def test_bench_registration_prints_cold_and_warm_by_stage(capsys):
     assert found["cold"]["median_s"] > found["warm"]["median_s"]
     assert run("bench", "registration", "--scans", 0) == 2
     assert re.search("needed 1 to 1000", capsys.readouterr().err)
+
+
+def test_a_unit_that_is_open_is_asked_for_and_scans_json_says_it(tmp_path, capsys):
+    scan = scan_model(2, 4000).scan
+    save_scan(scan.scaled(1 / 0.0285), tmp_path / "open.ply")
+    assert run("register", tmp_path, "--out", tmp_path / "out") == 2
+    assert "its unit (metres per unit)" in capsys.readouterr().err
+    assert run("register", tmp_path, "--out", tmp_path / "out", "--metres-per-unit", "0.01") == 2
+    assert "cm long with 1 unit = 10 mm" in capsys.readouterr().err
+    listed, metres = tmp_path / "listed", tmp_path / "metres"
+    listed.mkdir()
+    metres.mkdir()
+    save_scan(scan.scaled(1 / 0.0285), listed / "open.ply")
+    (listed / "scans.json").write_text(json.dumps([{"file": "open.ply", "metres_per_unit": 0.0285}]))
+    assert run("register", listed, "--out", tmp_path / "out", "--metres-per-unit", "0.01", "--json") == 0
+    [row] = json.loads(capsys.readouterr().out)
+    assert not row["is_unit_guessed"] and 0.1 < row["longest_m"] < 0.3
+    save_scan(scan, metres / "hand.ply")
+    assert run("register", metres, "--out", tmp_path / "out", "--side", "right") == 0
+    assert "its unit is a guess" in capsys.readouterr().out

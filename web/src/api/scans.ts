@@ -13,6 +13,8 @@ type Schemas = components["schemas"];
 export type Scan = Schemas["ScanOut"];
 export type ScanCollection = Schemas["CollectionOut"];
 export type ScansAdded = Schemas["ScansAdded"];
+export type ScansMeasured = Schemas["ScansMeasured"];
+export type ScanMeasure = Schemas["ScanMeasure"];
 export type ScanCrop = Schemas["ScanCrop"];
 export type ScanCropRevision = Schemas["ScanCropOut"];
 
@@ -68,7 +70,7 @@ export function useSaveCrop(onSaved: (scan: Scan) => void) {
       requestWithHeaders<Scan>("PUT", `/scans/${scan.id}/crop`, { body: crop, headers: { "If-Match": `"${scan.revision}"` } }),
     onSuccess: ({ data }, { crop }) => {
       // Known before it is asked for, so that what was cropped stays on the screen.
-      client.setQueryData<ScanCropRevision>(cropKey(data), { ...crop, drops_objects: crop.drops_objects ?? false, revision: data.revision, removed_count: data.removed_count, author_name: null, created_at: null });
+      client.setQueryData<ScanCropRevision>(cropKey(data), { ...crop, drops_objects: crop.drops_objects ?? false, revision: data.revision, removed_count: data.removed_count, metres_per_unit: data.metres_per_unit, author_name: null, created_at: null });
       client.setQueryData(scanKeys.one(data.id), data);
       onSaved(data);
     },
@@ -81,6 +83,20 @@ export function useChangeScan() {
   return useMutation({
     mutationFn: ({ id, ...body }: { id: string } & Schemas["ScanPatch"]) => request<Scan>("PATCH", `/scans/${id}`, { body }),
     onSettled: () => client.invalidateQueries({ queryKey: scanKeys.all }),
+  });
+}
+
+/** Say or correct the unit of scans, one after the other; each must still be as it is known here. */
+export function useChangeUnits() {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: async ({ scans, metresPerUnit }: { scans: readonly Pick<Scan, "id" | "revision">[]; metresPerUnit: number }) => {
+      for (const { id, revision } of scans) {
+        const body = { metres_per_unit: metresPerUnit };
+        await request<Scan>("PUT", `/scans/${id}/unit`, { body, headers: { "If-Match": `"${revision}"` } });
+      }
+    },
+    onSettled: () => Promise.all([client.invalidateQueries({ queryKey: scanKeys.all }), client.invalidateQueries({ queryKey: ["registrations"] })]),
   });
 }
 
@@ -100,13 +116,24 @@ export interface ScanUploadOptions {
   pose?: string;
   side?: Side | null;
   metres_per_unit?: number | null;
+  /** By file, where it is another. */
+  units?: Record<string, number>;
 }
 
 export function sendScans(files: readonly DroppedFile[], options: ScanUploadOptions, onProgress: (part: number) => void, signal: AbortSignal): Promise<ScansAdded> {
-  const form = new FormData();
+  const form = writeForm(files);
   form.append("options", JSON.stringify(options));
-  for (const { path, file } of files) form.append("files", file, path);
   return upload<ScansAdded>("/scans", form, onProgress, signal);
+}
+
+/** How large the scans in some files are; nothing is stored. */
+export const measureScans = (files: readonly DroppedFile[], onProgress: (part: number) => void, signal: AbortSignal): Promise<ScansMeasured> =>
+  upload<ScansMeasured>("/scans/measure", writeForm(files), onProgress, signal);
+
+function writeForm(files: readonly DroppedFile[]): FormData {
+  const form = new FormData();
+  for (const { path, file } of files) form.append("files", file, path);
+  return form;
 }
 
 export const scanFileUrl = (scan: { id: string }): string => `${API}/scans/${scan.id}/file`;

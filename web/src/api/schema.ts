@@ -2014,6 +2014,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/scans/measure": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Measure Scans
+         * @description How large scans would be, in which units: the files of an upload are looked at, and nothing is stored.
+         */
+        post: operations["measure_scans"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/scans/{scan_id}": {
         parameters: {
             query?: never;
@@ -2159,6 +2179,27 @@ export interface paths {
          */
         get: operations["get_scan_thumbnail"];
         put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/scans/{scan_id}/unit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Put Scan Unit
+         * @description Say or correct the unit of a scan's file. Crops stay; registrations of another size no longer count. 409 carries
+         *     the scan as it is now in `theirs`.
+         */
+        put: operations["put_scan_unit"];
         post?: never;
         delete?: never;
         options?: never;
@@ -6404,7 +6445,7 @@ export interface components {
             id: string;
             /**
              * Is Current
-             * @description Whether it is the newest one of its scan.
+             * @description Whether it is the newest one of its scan that is not outdated.
              */
             is_current: boolean;
             /**
@@ -6412,6 +6453,11 @@ export interface components {
              * @description Somebody has decided, and you are to decide without seeing it.
              */
             is_hidden: boolean;
+            /**
+             * Is Outdated
+             * @description The scan has another size by now: somebody corrected the unit of its file.
+             */
+            is_outdated: boolean;
             /** Job Id */
             job_id: string | null;
             /**
@@ -6687,12 +6733,57 @@ export interface components {
             created_at: string | null;
             /** Drops Objects */
             drops_objects: boolean;
+            /**
+             * Metres Per Unit
+             * @description The unit of the file as of this revision; the strokes are m.
+             */
+            metres_per_unit: number | null;
             /** Removed Count */
             removed_count: number;
             /** Revision */
             revision: number;
             /** Strokes */
             strokes: (components["schemas"]["PolygonStroke"] | components["schemas"]["PlaneStroke"])[];
+        };
+        /**
+         * ScanMeasure
+         * @description How large a file is, before it is stored.
+         */
+        ScanMeasure: {
+            /** File */
+            file: string;
+            /**
+             * Guess
+             * @description A unit that makes a hand of it, m; null when no usual one does.
+             */
+            guess: number | null;
+            /**
+             * Is Certain
+             * @description No other usual unit makes a hand of it: it is taken when nobody says one.
+             */
+            is_certain: boolean;
+            /**
+             * Metres Per Unit
+             * @description As the `scans.json` beside it says; it wins.
+             */
+            metres_per_unit: number | null;
+            /**
+             * Picture
+             * @description A PNG as `data:` address: the longest way up, seen from the flat side.
+             */
+            picture: string;
+            /**
+             * Picture Units
+             * @description Length of a side of the picture, in the file's unit.
+             */
+            picture_units: number;
+            /** Point Count */
+            point_count: number;
+            /**
+             * Size Units
+             * @description Sides of a box that stands along the scan, in the file's unit, the longest first.
+             */
+            size_units: number[];
         };
         /**
          * Scan
@@ -6727,7 +6818,7 @@ export interface components {
             face_count: number;
             /**
              * Geometry Key
-             * @description Part of the address of its geometry; changes with every crop.
+             * @description Part of the address of its geometry; changes with every crop and unit.
              */
             geometry_key: string;
             /** Has Colors */
@@ -6737,7 +6828,15 @@ export interface components {
              * Format: uuid
              */
             id: string;
-            /** Metres Per Unit */
+            /**
+             * Is Unit Guessed
+             * @description Nobody said the unit; the size told it.
+             */
+            is_unit_guessed: boolean;
+            /**
+             * Metres Per Unit
+             * @description Length of the file's unit. Null: found from the size by an earlier version, and never confirmed.
+             */
             metres_per_unit: number | null;
             /** Name */
             name: string;
@@ -6763,7 +6862,7 @@ export interface components {
             removed_count: number;
             /**
              * Revision
-             * @description Of what is cropped; 1 is the whole scan.
+             * @description Of what is cropped and of the unit; 1 is the scan as it was uploaded.
              */
             revision: number;
             /**
@@ -6771,6 +6870,11 @@ export interface components {
              * @description As the uploader says; null leaves it to the registration.
              */
             side: ("right" | "left") | null;
+            /**
+             * Size M
+             * @description Of what is registered, without what is cropped or left out: sides of a box that stands along it, the longest first.
+             */
+            size_m: number[];
             /**
              * State
              * @description `failed`: it could not be registered; `problem` says why.
@@ -6848,6 +6952,14 @@ export interface components {
             p95: number | null;
         };
         /**
+         * ScanUnit
+         * @description The unit of a scan's file.
+         */
+        ScanUnit: {
+            /** Metres Per Unit */
+            metres_per_unit: number;
+        };
+        /**
          * ScansAdded
          * @description What an upload brought.
          */
@@ -6863,6 +6975,28 @@ export interface components {
              * Notes
              * @description What was noticed beside, such as lines of scans.json without a file.
              */
+            notes: string[];
+            /** Refused */
+            refused: components["schemas"]["ScanRefusal"][];
+        };
+        /**
+         * ScansMeasured
+         * @description What files would be as scans. Nothing is stored.
+         */
+        ScansMeasured: {
+            /** Files */
+            files: components["schemas"]["ScanMeasure"][];
+            /**
+             * Hand Lengths M
+             * @description Shortest and longest longest side that a hand may have.
+             */
+            hand_lengths_m: number[];
+            /**
+             * Longest Scene M
+             * @description Longest side of a scan with other things in it, to be cropped.
+             */
+            longest_scene_m: number;
+            /** Notes */
             notes: string[];
             /** Refused */
             refused: components["schemas"]["ScanRefusal"][];
@@ -18152,7 +18286,7 @@ export interface operations {
                 "multipart/form-data": {
                     /** @description PLY, OBJ or STL files, perhaps with a `scans.json`; or one .zip of them. */
                     files: string[];
-                    /** @description JSON: `collection`, and for scans that no `scans.json` names `subject`, `pose`, `side`, `metres_per_unit`. */
+                    /** @description JSON: `collection`, and for scans that no `scans.json` names `subject`, `pose`, `side`, `metres_per_unit`; `units`, metres per unit by the path of a file. */
                     options?: string;
                 };
             };
@@ -18279,6 +18413,107 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    measure_scans: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "multipart/form-data": {
+                    /** @description PLY, OBJ or STL files, perhaps with a `scans.json`; or one .zip of them. */
+                    files: string[];
+                    /** @description JSON: `collection`, and for scans that no `scans.json` names `subject`, `pose`, `side`, `metres_per_unit`; `units`, metres per unit by the path of a file. */
+                    options?: string;
+                };
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScansMeasured"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -19170,6 +19405,116 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    put_scan_unit: {
+        parameters: {
+            query?: never;
+            header: {
+                /** @description The revision that is changed, such as `"3"`. */
+                "if-match": string;
+            };
+            path: {
+                scan_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ScanUnit"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScanOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Precondition Required */
+            428: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -21461,8 +21806,8 @@ export interface operations {
     stream_recording: {
         parameters: {
             query?: {
-                /** @description Labels changed since then come first. */
-                since?: string;
+                /** @description As `Last-Event-ID`, or `~` and the time of the labels at hand. */
+                after?: string;
                 /** @description Of the page that listens; it ends with the stream. */
                 visit?: string;
                 /** @description The account that the page was opened for. */

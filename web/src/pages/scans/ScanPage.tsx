@@ -1,4 +1,4 @@
-import { ActionIcon, Button, Group, Kbd, Text, TextInput, Title, Tooltip } from "@mantine/core";
+import { ActionIcon, Badge, Button, Group, Kbd, Text, TextInput, Title, Tooltip } from "@mantine/core";
 import { IconArrowBackUp, IconChevronLeft, IconChevronRight, IconDownload, IconFlipHorizontal, IconScissors } from "@tabler/icons-react";
 import { useQuery, useQueryClient } from "@tanstack/react-query";
 import { useDisclosure } from "@mantine/hooks";
@@ -12,6 +12,7 @@ import type { Staged } from "../../canvas/hand3d/staged";
 import { useStage } from "../../canvas/hand3d/useStage";
 import type { Point } from "../../model/crop";
 import { formatAgo, formatBytes, formatNumber } from "../../model/format";
+import { formatSize } from "../../model/scanUnit";
 import { useHint, useKeyOf } from "../../state/keys";
 import { DecisionBadge, VerdictBadge } from "../curate/Verdict";
 import { HandRail } from "../hand3d/HandRail";
@@ -30,6 +31,7 @@ import { RegisterDialog } from "./RegisterDialog";
 import frame from "../hand3d/HandPage.module.css";
 import classes from "./ScanPage.module.css";
 import { StrokeLayer } from "./StrokeLayer";
+import { UnitPanel } from "./UnitPanel";
 import { useCrop } from "./useCrop";
 
 const HINTS = [
@@ -44,7 +46,7 @@ const HINTS = [
 function useGeometry(scan: Scan, registration: Registration | undefined) {
   const client = useQueryClient();
   return useQuery({
-    queryKey: ["scans", "one", scan.id, "geometry", registration?.id ?? null],
+    queryKey: ["scans", "one", scan.id, "geometry", registration?.id ?? null, scan.metres_per_unit],
     queryFn: async ({ signal }) =>
       registration ? fetchRegistrationGeometry(registration, await fetchPattern(client, registration.model_id), signal) : fetchScanGeometry(scan, scan.side, signal),
     enabled: !scan.registration || registration !== undefined,
@@ -114,7 +116,7 @@ function Registrations({ scan }: { scan: Scan }) {
           <li key={one.id}>
             <Link to={`/curate?queue=all&registration=${one.id}`} className={classes.row} title={`By ${one.model_name}`}>
               <span>round {one.round}</span>
-              <VerdictBadge verdict={one.verdict} />
+              {one.is_outdated ? <Badge color="gray" variant="light" size="sm" title="The unit of the scan was corrected since: it no longer counts">another size</Badge> : <VerdictBadge verdict={one.verdict} />}
               {one.decision && <DecisionBadge decision={one.decision} />}
               <span className="quiet" style={{ marginLeft: "auto" }}>
                 {formatNumber(one.scan_to_mesh_mm.mean, 2)} mm
@@ -265,8 +267,8 @@ function OpenScan({ scan }: { scan: Scan }) {
               <dd>{scan.point_count.toLocaleString("en")}</dd>
               <dt>Triangles</dt>
               <dd>{scan.face_count.toLocaleString("en")}</dd>
-              <dt>Box</dt>
-              <dd>{scan.extent_m.map((value) => (100 * value).toFixed(1)).join(" × ")} cm</dd>
+              <dt>Size</dt>
+              <dd data-testid="scan-size">{formatSize(scan.size_m)}</dd>
               <dt>File</dt>
               <dd title={scan.digest}>
                 {formatBytes(scan.byte_count)}, {scan.digest.slice(0, 12)}
@@ -285,6 +287,7 @@ function OpenScan({ scan }: { scan: Scan }) {
               </ul>
             )}
           </section>
+          <UnitPanel scan={scan} hasUnsavedCrop={crop.isChanged} />
           <For role="lead">
             <Details key={`${scan.name}/${scan.subject}/${scan.pose}/${scan.collection}`} scan={scan} />
           </For>

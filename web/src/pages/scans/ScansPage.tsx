@@ -6,6 +6,7 @@ import { Link } from "react-router";
 import { useDeleteScans, useScanCollections, useScanList, type Scan, scanThumbnailUrl } from "../../api/scans";
 import type { Side } from "../../api/types";
 import { formatAgo, formatCount } from "../../model/format";
+import { judgeSize } from "../../model/scanUnit";
 import { VerdictBadge } from "../curate/Verdict";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
@@ -16,6 +17,7 @@ import { offerUndo, tellFailure } from "../projects/offerUndo";
 import { AddScansButton, ScanDrops } from "./AddScans";
 import { RegisterDialog } from "./RegisterDialog";
 import classes from "./ScansPage.module.css";
+import { UnitsDialog } from "./UnitsDialog";
 import { UploadDialog } from "./UploadDialog";
 import { useScanAddress } from "./useScanAddress";
 
@@ -48,6 +50,25 @@ function State({ scan }: { scan: Scan }) {
   );
 }
 
+/** Longest side of a scan; says when its unit is a guess or no hand has that size. */
+function Length({ scan }: { scan: Scan }) {
+  const length = scan.size_m[0] ?? 0;
+  const { state, text } = judgeSize(length);
+  const told = [text, scan.is_unit_guessed ? "Nobody said the unit: it was guessed from the size." : ""].filter(Boolean).join(" ");
+  const shown = (
+    <Text size="sm" span c={state === "bad" ? "var(--bad-text)" : state === "crop" ? "var(--warn-text)" : undefined} tabIndex={told ? 0 : undefined}>
+      {(100 * length).toFixed(length < 1 ? 1 : 0)} cm{told ? " ?" : ""}
+    </Text>
+  );
+  return told ? (
+    <Tooltip label={told} multiline maw={320}>
+      {shown}
+    </Tooltip>
+  ) : (
+    shown
+  );
+}
+
 /** Scans of hands: added by drag and drop, looked for, registered. */
 export default function ScansPage() {
   useTitle("Scans");
@@ -58,6 +79,7 @@ export default function ScansPage() {
   const seek = useDebouncedCallback((text: string) => setFilters({ search: text.trim() || undefined }), 250);
   const [chosen, setChosen] = useState<ReadonlySet<string>>(new Set());
   const [isRegistering, registering] = useDisclosure(false);
+  const [isChangingUnits, units] = useDisclosure(false);
   const remove = useDeleteScans();
   const scans = data?.pages.flatMap((page) => page.items) ?? [];
   const selected = scans.filter((scan) => chosen.has(scan.id));
@@ -75,7 +97,7 @@ export default function ScansPage() {
       {
         onSuccess: () => {
           setChosen(new Set());
-          offerUndo(`${formatCount(ids.length, "scan")} deleted.`, () => remove.mutateAsync({ ids, isBack: true }));
+          offerUndo(`${formatCount(ids.length, "scan")} moved to the bin.`, () => remove.mutateAsync({ ids, isBack: true }));
         },
         onError: tellFailure,
       },
@@ -169,8 +191,11 @@ export default function ScansPage() {
             </Button>
           </For>
           <For role="lead">
+            <Button size="xs" variant="default" onClick={units.open}>
+              Unit …
+            </Button>
             <Button size="xs" variant="default" loading={remove.isPending} leftSection={<IconTrash size={14} aria-hidden />} onClick={hide}>
-              Delete (can be undone)
+              Move to the bin
             </Button>
           </For>
           <Button size="xs" variant="subtle" onClick={() => setChosen(new Set())}>
@@ -216,9 +241,12 @@ export default function ScansPage() {
                 <Table.Th w={144}>Pose</Table.Th>
                 <Table.Th w={88}>Hand</Table.Th>
                 <Table.Th w={96} ta="right">
+                  Length
+                </Table.Th>
+                <Table.Th w={88} ta="right">
                   Points
                 </Table.Th>
-                <Table.Th w={104} ta="right">
+                <Table.Th w={88} ta="right">
                   Left out
                 </Table.Th>
                 <Table.Th w={200}>Registration</Table.Th>
@@ -246,6 +274,9 @@ export default function ScansPage() {
                     {scan.pose || <span className="quiet">–</span>}
                   </Table.Td>
                   <Table.Td>{scan.side ? <HandBadge hand={scan.side} /> : <span className="quiet">–</span>}</Table.Td>
+                  <Table.Td ta="right">
+                    <Length scan={scan} />
+                  </Table.Td>
                   <Table.Td ta="right">{scan.point_count.toLocaleString("en")}</Table.Td>
                   <Table.Td ta="right">{scan.removed_count > 0 ? `${((100 * scan.removed_count) / scan.point_count).toFixed(1)} %` : <span className="quiet">–</span>}</Table.Td>
                   <Table.Td>
@@ -267,6 +298,7 @@ export default function ScansPage() {
           </Button>
         </Group>
       )}
+      {isChangingUnits && selected.length > 0 && <UnitsDialog scans={selected} onClose={units.close} />}
       <RegisterDialog isOpen={isRegistering} onClose={registering.close} scanIds={selected.map((scan) => scan.id)} collection={filters.collection} />
     </div>
   );

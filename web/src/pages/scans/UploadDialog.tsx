@@ -1,12 +1,48 @@
-import { Button, Group, Loader, Modal, NumberInput, Progress, ScrollArea, Select, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Button, Group, Loader, Modal, Progress, ScrollArea, Select, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
 import { useQueryClient } from "@tanstack/react-query";
 import { useEffect, useState } from "react";
-import { scanKeys, useScanCollections, type ScansAdded } from "../../api/scans";
+import { scanKeys, useScanCollections, type ScansAdded, type ScansMeasured } from "../../api/scans";
 import type { Side } from "../../api/types";
 import { formatBytes, formatCount } from "../../model/format";
-import { endScanUpload, sendChosenScans, useScanUpload } from "../../state/scanUpload";
+import { isGuess, judgeSize, unitOf, writeUnits, type UnitAnswers } from "../../model/scanUnit";
+import { endScanUpload, measureChosenScans, sendChosenScans, useScanUpload } from "../../state/scanUpload";
+import { limitsOf, SizeCheck } from "./SizeCheck";
 
 const ASK = "";
+
+const NO_ANSWERS: UnitAnswers = { all: null, own: {} };
+
+/** Why the scans cannot be added yet; null when they can. */
+function findFault(measured: ScansMeasured | null, answers: UnitAnswers, isConfirmed: boolean): string | null {
+  if (!measured) return "The scans are still being measured.";
+  if (measured.files.length === 0) return "None of these files is a scan.";
+  const units = measured.files.map((one) => unitOf(one, answers));
+  const unknown = units.filter((unit) => unit === null).length;
+  if (unknown > 0) return `${formatCount(unknown, "scan")} without a unit: say it.`;
+  const bad = measured.files.filter((one, index) => judgeSize((units[index] ?? 0) * (one.size_units[0] ?? 0), limitsOf(measured)).state === "bad").length;
+  if (bad > 0) return `${formatCount(bad, "scan has a size", "scans have a size")} that no hand has: correct the unit.`;
+  if (!isConfirmed && measured.files.some((one) => isGuess(one, answers))) return "Confirm the guessed size, or choose the unit.";
+  return null;
+}
+
+function Refused({ refused }: { refused: ScansAdded["refused"] }) {
+  return (
+    <ScrollArea.Autosize mah={240} tabIndex={0} aria-label="Refused files">
+      <Stack gap="sm" role="alert">
+        {refused.map(({ file, detail }) => (
+          <div key={file} style={{ overflowWrap: "anywhere" }}>
+            <Text size="sm" fw={600}>
+              {file}
+            </Text>
+            <Text size="xs" c="var(--bad-text)">
+              {detail.replace(`${file}: `, "")}
+            </Text>
+          </div>
+        ))}
+      </Stack>
+    </ScrollArea.Autosize>
+  );
+}
 
 function Result({ result, onDone }: { result: ScansAdded; onDone: () => void }) {
   return (
@@ -21,22 +57,7 @@ function Result({ result, onDone }: { result: ScansAdded; onDone: () => void }) 
           {note}
         </Text>
       ))}
-      {result.refused.length > 0 && (
-        <ScrollArea.Autosize mah={240} tabIndex={0} aria-label="Refused files">
-          <Stack gap="sm" role="alert">
-            {result.refused.map(({ file, detail }) => (
-              <div key={file} style={{ overflowWrap: "anywhere" }}>
-                <Text size="sm" fw={600}>
-                  {file}
-                </Text>
-                <Text size="xs" c="var(--bad-text)">
-                  {detail.replace(`${file}: `, "")}
-                </Text>
-              </div>
-            ))}
-          </Stack>
-        </ScrollArea.Autosize>
-      )}
+      {result.refused.length > 0 && <Refused refused={result.refused} />}
       <Group justify="flex-end">
         <Button onClick={onDone} data-autofocus>
           Done
@@ -55,12 +76,23 @@ export function UploadDialog() {
   const [subject, setSubject] = useState("");
   const [pose, setPose] = useState("");
   const [side, setSide] = useState<string>(ASK);
-  const [unit, setUnit] = useState<string | number>("");
+  const [answers, setAnswers] = useState<UnitAnswers>(NO_ANSWERS);
+  const [shown, setShown] = useState(0);
+  const [isOnlyThis, setOnlyThis] = useState(false);
+  const [isConfirmed, setConfirmed] = useState(false);
+  const files = upload?.files;
+  useEffect(() => {
+    setAnswers(NO_ANSWERS);
+    setShown(0);
+    setOnlyThis(false);
+    setConfirmed(false);
+  }, [files]);
   const hasResult = Boolean(upload?.result);
   useEffect(() => {
     if (hasResult) void client.invalidateQueries({ queryKey: scanKeys.all });
   }, [hasResult, client]);
   if (!upload) return null;
+  const { measured } = upload;
   const isSending = upload.sent !== null && !upload.result;
   const send = (): void =>
     void sendChosenScans({
@@ -68,10 +100,11 @@ export function UploadDialog() {
       ...(subject.trim() ? { subject: subject.trim() } : {}),
       ...(pose.trim() ? { pose: pose.trim() } : {}),
       ...(side === ASK ? {} : { side: side as Side }),
-      ...(typeof unit === "number" && unit > 0 ? { metres_per_unit: unit } : {}),
+      ...writeUnits(measured?.files ?? [], answers),
     });
+  const fault = findFault(measured, answers, isConfirmed);
   return (
-    <Modal opened onClose={endScanUpload} closeOnClickOutside={false} size={560} title={<Title order={2}>Add scans</Title>}>
+    <Modal opened onClose={endScanUpload} closeOnClickOutside={false} size={720} title={<Title order={2}>Add scans</Title>}>
       {upload.result ? (
         <Result result={upload.result} onDone={endScanUpload} />
       ) : isSending ? (
@@ -105,23 +138,47 @@ export function UploadDialog() {
               ))}
             </datalist>
             <Group grow gap="md">
+              <Select label="Hand" description="When it is known" data={[{ value: ASK, label: "Find out" }, { value: "right", label: "Right" }, { value: "left", label: "Left" }]} value={side} onChange={(value) => setSide(value ?? ASK)} allowDeselect={false} />
               <TextInput label="Subject" description="Whose hand" maxLength={100} value={subject} onChange={(event) => setSubject(event.currentTarget.value)} />
               <TextInput label="Pose" description="When all show the same" maxLength={100} value={pose} onChange={(event) => setPose(event.currentTarget.value)} />
             </Group>
-            <Group grow gap="md" align="flex-start">
-              <Select label="Hand" description="When it is known" data={[{ value: ASK, label: "Find out" }, { value: "right", label: "Right" }, { value: "left", label: "Left" }]} value={side} onChange={(value) => setSide(value ?? ASK)} allowDeselect={false} />
-              <NumberInput label="Metres in one unit" description="0.001 for millimetres" placeholder="Find out" min={0} max={1000} decimalScale={9} value={unit} onChange={setUnit} />
-            </Group>
+            {measured ? (
+              <SizeCheck
+                measured={measured}
+                answers={answers}
+                shown={shown}
+                isOnlyThis={isOnlyThis}
+                isConfirmed={isConfirmed}
+                onAnswers={setAnswers}
+                onShow={setShown}
+                onOnlyThis={setOnlyThis}
+                onConfirm={setConfirmed}
+              />
+            ) : (
+              !upload.failure && <Skeleton height={296} role="status" aria-label="The scans are measured" />
+            )}
+            {measured && measured.refused.length > 0 && <Refused refused={measured.refused} />}
             {upload.failure && (
               <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
                 {upload.failure.message} Nothing was stored; try again.
               </Text>
             )}
             <Group justify="flex-end" gap="sm">
+              {measured && fault && (
+                <Text size="xs" className="quiet" mr="auto" maw={400}>
+                  {fault}
+                </Text>
+              )}
               <Button variant="default" onClick={endScanUpload}>
                 Cancel
               </Button>
-              <Button type="submit">Add {formatCount(upload.files.length, "file")}</Button>
+              {upload.failure && !measured ? (
+                <Button onClick={() => void measureChosenScans()}>Try again</Button>
+              ) : (
+                <Button type="submit" disabled={fault !== null}>
+                  Add {formatCount(upload.files.length, "file")}
+                </Button>
+              )}
             </Group>
           </Stack>
         </form>

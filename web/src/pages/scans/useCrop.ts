@@ -12,6 +12,18 @@ interface Draft {
   readonly cuts: readonly Cut[];
   readonly undone: readonly Cut[];
   readonly dropsObjects: boolean;
+  /** Metres per unit of the scan when it was drawn. */
+  readonly unit?: number | null;
+}
+
+/** A draft for the scan at the size that it has now: a corrected unit scales the strokes with the scan. */
+function fitDraft(draft: Draft | null, unit: number | null): Draft | null {
+  if (!draft || draft.unit === undefined || draft.unit === unit) return draft;
+  if (draft.unit === null || unit === null) return null;
+  const factor = unit / draft.unit;
+  const fit = (cut: Cut): Cut =>
+    cut.kind === "plane" ? { ...cut, offset: cut.offset * factor } : { ...cut, view: cut.view.map((value, at) => (at % 4 < 3 ? value / factor : value)) };
+  return { ...draft, unit, cuts: draft.cuts.map(fit), undone: draft.undone.map(fit) };
 }
 
 interface LastStroke {
@@ -29,7 +41,8 @@ const isOfObject = (colors: Uint8Array, point: number): boolean => (colors[3 * p
 export function useCrop(scan: Scan, geometry: HandGeometry | null) {
   const saved = useScanCrop(scan).data;
   const key = cropKey(scan.id);
-  const [kept, setDraft, dropDraft] = useSessionStorage<Draft | null>({ key, defaultValue: null, getInitialValueInEffect: false });
+  const [stored, setDraft, dropDraft] = useSessionStorage<Draft | null>({ key, defaultValue: null, getInitialValueInEffect: false });
+  const kept = useMemo(() => fitDraft(stored, scan.metres_per_unit), [stored, scan.metres_per_unit]);
   const [last, setLast] = useState<LastStroke | null>(null);
   const sent = useRef("");
   const save = useSaveCrop(({ revision }) => {
@@ -51,7 +64,7 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
   const isReady = saved !== undefined && geometry !== null;
   // Strokes belong to the scan on the screen: none is drawn or taken back before it is there.
   const set = (next: Partial<Draft>): void => {
-    if (isReady) setDraft({ ...draft, ...next });
+    if (isReady) setDraft({ ...draft, ...next, unit: scan.metres_per_unit });
   };
   const canFlip = last?.stroke.kind === "line" && last.count === draft.cuts.length;
   return {

@@ -30,6 +30,7 @@ from server.annotations.service import Change, Place, StaleAnnotationError
 from server.database import SessionDep
 from server.database.paging import Cursor, Page
 from server.database.revision import IfMatch, IfNoneMatch, read_if_match, write_etag
+from server.download import name_download
 from server.errors import ConflictError, InvalidError, error_responses
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
@@ -115,7 +116,7 @@ def get_annotation_file(
 ) -> JSONResponse:
     """All annotations as the file `annotations.json` of a recording folder."""
     hidden = guards.find_hidden(guarding, session, account, sequence.id, replica)
-    headers = {"Content-Disposition": 'attachment; filename="annotations.json"'}
+    headers = name_download(sequence.name, "annotations", suffix=".json")
     return JSONResponse(service.export_annotations(session, sequence.id, replica, hidden), headers=headers)
 
 

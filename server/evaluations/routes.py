@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 from server.accounts.service import CurrentAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import DatabaseDep
+from server.download import name_download
 from server.errors import InvalidError, error_responses
 from server.evaluations import service
 from server.evaluations.judge import JudgeDep
@@ -110,10 +111,9 @@ def get_report(
         text = write_csv(judged)
     else:
         text = comparison.model_dump_json(indent=1)
-    name = f"evaluation-{comparison.made_at:%Y%m%d-%H%M}.{kind}"
-    headers = {
-        "Content-Disposition": f'attachment; filename="{name}"',
-        "Content-Security-Policy": REPORT_POLICY,
-        "Cache-Control": "no-store",
-    }
+    recordings = list(dict.fromkeys(track.recording for track in comparison.tracks))
+    others = [f"and {len(recordings) - 1} more"] if len(recordings) > 1 else []
+    what = f"evaluation-{comparison.made_at:%Y%m%d-%H%M}"
+    name = name_download(*recordings[:1], *others, what, suffix=f".{kind}")
+    headers = name | {"Content-Security-Policy": REPORT_POLICY, "Cache-Control": "no-store"}
     return Response(text, media_type=MEDIA_TYPES[kind], headers=headers)

@@ -16,6 +16,7 @@ from server.accounts.service import CurrentAccount, LeadAccount
 from server.annotations.guards import GuardsDep
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import Database, DatabaseDep
+from server.download import make_file_name, name_download
 from server.errors import InvalidError, error_responses
 from server.exchange import importing
 from server.exchange.describe import describe_imported, describe_report
@@ -109,7 +110,7 @@ def export_recording_labels(
     made = _export(
         database, storage, account, guards, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id)
     )
-    return _answer(made, format_)
+    return _answer(database, made, format_, [sequence_id])
 
 
 @router.get("/sequences/{sequence_id}/labels/export/notes", responses=error_responses(403, 409))
@@ -130,7 +131,7 @@ def preview_export(
     )
     return ExportNotes(
         format=format_,
-        file=LABEL_FORMATS[format_].file,
+        file=make_file_name(_name_export(database, format_, [sequence_id]), Path(LABEL_FORMATS[format_].file).suffix),
         items=made.items,
         joints=made.joints,
         bytes=len(_pack(made, format_)),
@@ -152,7 +153,7 @@ def export_several(
     if len(set(sequence_ids)) != len(sequence_ids):
         raise InvalidError("A recording is named twice.")
     made = _export(database, storage, account, guards, sequence_ids, ExportChoice(format_, source))
-    return _answer(made, format_)
+    return _answer(database, made, format_, sequence_ids)
 
 
 @dataclass(frozen=True)
@@ -186,10 +187,18 @@ def _pack(made: ExportedLabels, format_: str) -> bytes:
     return pack_files(made.files) if is_packed else next(iter(made.files.values()))
 
 
-def _answer(made: ExportedLabels, format_: str) -> Response:
-    name = LABEL_FORMATS[format_].file
-    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
-    return Response(_pack(made, format_), media_type=MEDIA_TYPES[Path(name).suffix], headers=headers)
+def _answer(database: Database, made: ExportedLabels, format_: str, ids: Sequence[uuid.UUID]) -> Response:
+    suffix = Path(LABEL_FORMATS[format_].file).suffix
+    headers = name_download(*_name_export(database, format_, ids), suffix=suffix)
+    return Response(_pack(made, format_), media_type=MEDIA_TYPES[suffix], headers=headers)
+
+
+def _name_export(database: Database, format_: str, ids: Sequence[uuid.UUID]) -> list[str]:
+    """What a file of exported labels is called after: the recording, how many more there are, the format."""
+    with database.reading() as session:
+        first = get_sequence(session, ids[0]).name
+    others = [f"and {len(ids) - 1} more"] if len(ids) > 1 else []
+    return [first, *others, Path(LABEL_FORMATS[format_].file).stem]
 
 
 @router.post(

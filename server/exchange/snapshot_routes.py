@@ -12,6 +12,7 @@ from server.annotations.guards import GuardsDep
 from server.annotations.service import load_annotations
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
+from server.download import name_download
 from server.errors import InvalidError, error_responses
 from server.exchange import snapshots
 from server.exchange.comparison import compare_labels
@@ -74,8 +75,9 @@ def download_snapshot(
     """The file, as `annotations.json` of a recording folder; its SHA-256 is `content_hash`."""
     row = snapshots.get_snapshot(session, snapshot_id)
     check_sees_all(guards, session, account, row.sequence_id)
-    name = f"labels-v{row.version}-{row.content_hash[:12]}.json"
-    headers = {"Content-Disposition": f'attachment; filename="{name}"', "ETag": f'"{row.content_hash}"'}
+    recording = get_sequence(session, row.sequence_id, deleted_too=True).name
+    what = f"labels-v{row.version}-{row.content_hash[:12]}"
+    headers = name_download(recording, what, suffix=".json") | {"ETag": f'"{row.content_hash}"'}
     return Response(snapshots.read_snapshot_bytes(storage, row), media_type="application/json", headers=headers)
 
 

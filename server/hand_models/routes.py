@@ -13,6 +13,7 @@ from server.accounts.audit import record_act
 from server.accounts.service import AccountIdDep, LeadAccount, require_lead
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
+from server.download import name_download
 from server.errors import InvalidError, NotFoundError, error_responses
 from server.hand_models import service, storing
 from server.hand_models.schemas import HandModelOptions, HandModelOut, HandModelReport, HandSkeleton
@@ -92,11 +93,8 @@ def download_hand_model_report(model_id: uuid.UUID, session: SessionDep) -> Resp
         raise NotFoundError(f"{row.name} was not trained here, so there is no report of its training.")
     facts = {"Round": str(row.round), "Training set": str(row.training_set_id), "SHA-256": row.digest}
     text = write_model_html(row.report, title=row.name, made_at=f"{row.created_at:%Y-%m-%d %H:%M} UTC", facts=facts)
-    headers = {
-        "Content-Disposition": f'attachment; filename="hand-model-{row.digest[:12]}.html"',
-        "Content-Security-Policy": REPORT_POLICY,
-        "Cache-Control": "no-store",
-    }
+    name = name_download(row.name, "hand-model", row.digest[:12], suffix=".html")
+    headers = name | {"Content-Security-Policy": REPORT_POLICY, "Cache-Control": "no-store"}
     return Response(text, media_type="text/html; charset=utf-8", headers=headers)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from fastapi import APIRouter, Response
 
 from server.database import SessionDep
+from server.download import name_download
 from server.errors import error_responses
 from server.hand_models import storing
 from server.hand_models.service import get_hand_model
@@ -36,10 +37,7 @@ def download_hand_model(model_id: uuid.UUID, session: SessionDep, storage: Stora
     """The model's file, as `handloom register` and the tracker take it."""
     row = get_hand_model(session, model_id)
     data = storing.find_file(storage, row).read_bytes()
-    headers = {
-        "Content-Disposition": f'attachment; filename="hand-model-{row.digest[:12]}.npz"',
-        "ETag": f'"{row.digest}"',
-    }
+    headers = name_download(row.name, "hand-model", row.digest[:12], suffix=".npz") | {"ETag": f'"{row.digest}"'}
     return Response(data, media_type="application/octet-stream", headers=headers)
 
 
@@ -47,5 +45,6 @@ def download_hand_model(model_id: uuid.UUID, session: SessionDep, storage: Stora
 def download_hand_model_as_mano(model_id: uuid.UUID, side: Side, session: SessionDep, storage: StorageDep) -> Response:
     """The model as a MANO file, which `smplx` loads; the other hand is the mirror image."""
     data = write_mano(open_any_model(session, storage, model_id), side)
-    headers = {"Content-Disposition": f'attachment; filename="MANO_{side.upper()}.pkl"'}
+    name = get_hand_model(session, model_id).name
+    headers = name_download(name, f"MANO_{side.upper()}", suffix=".pkl")
     return Response(data, media_type="application/octet-stream", headers=headers)

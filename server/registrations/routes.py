@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Query, Response
 from server.accounts.service import AccountIdDep
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
+from server.download import name_download
 from server.errors import error_responses
 from server.registrations import service
 from server.registrations.schemas import Order, Queue, RegistrationCounts, RegistrationOut, Standing
@@ -99,5 +100,6 @@ def download_registration(registration_id: uuid.UUID, session: SessionDep, stora
     """The file, as `handloom register` writes it."""
     row = service.get_registration(session, registration_id)
     data = (storage.folder(service.AREA, row.id) / service.FILE).read_bytes()
-    headers = {"Content-Disposition": f'attachment; filename="registration-{row.digest[:12]}.npz"'}
+    scan = get_scan(session, row.scan_id, deleted_too=True)
+    headers = name_download(scan.name, "registration", row.digest[:12], suffix=".npz")
     return Response(data, media_type="application/octet-stream", headers=headers | {"ETag": f'"{row.digest}"'})

@@ -15,6 +15,7 @@ from server.accounts.service import AccountIdDep, CurrentAccount, LeadAccount, f
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.database.revision import IfMatch, read_if_match, write_etag
+from server.download import name_download
 from server.errors import ConflictError, error_responses
 from server.scans import measuring, service
 from server.scans.adding import add_scans, parse_options
@@ -211,8 +212,8 @@ def download_scan(scan_id: uuid.UUID, session: SessionDep, storage: StorageDep) 
     """The file as it was uploaded."""
     row = service.get_scan(session, scan_id)
     data = (storage.folder(service.AREA, row.id) / row.file).read_bytes()
-    name = f"scan-{row.digest[:12]}{Path(row.file).suffix}"
-    headers = {"Content-Disposition": f'attachment; filename="{name}"', "ETag": f'"{row.digest}"'}
+    headers = name_download(row.name, "scan", row.digest[:12], suffix=Path(row.file).suffix)
+    headers |= {"ETag": f'"{row.digest}"'}
     return Response(data, media_type="application/octet-stream", headers=headers)
 
 

@@ -11,6 +11,7 @@ from server.accounts.service import CurrentAccount, LeadAccount, ReviewerAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
+from server.download import name_download
 from server.errors import error_responses
 from server.teams import projects, replicas
 from server.teams.agreement_report import AgreementReport, make_report, write_csv, write_html
@@ -100,7 +101,7 @@ def get_agreement(report: ReportDep) -> AgreementReport:
 )
 def get_agreement_csv(report: ReportDep) -> Response:
     """The agreement as a table."""
-    headers = {"Content-Disposition": 'attachment; filename="agreement.csv"'}
+    headers = name_download(report.recording, report.name, "agreement", suffix=".csv")
     return Response(write_csv(report), media_type="text/csv; charset=utf-8", headers=headers)
 
 
@@ -111,8 +112,6 @@ def get_agreement_csv(report: ReportDep) -> Response:
 )
 def get_agreement_page(report: ReportDep) -> Response:
     """The agreement as a page that stands alone, to be kept or sent."""
-    headers = {
-        "Content-Disposition": 'attachment; filename="agreement.html"',
-        "Content-Security-Policy": PAGE_POLICY,
-    }
+    name = name_download(report.recording, report.name, "agreement", suffix=".html")
+    headers = name | {"Content-Security-Policy": PAGE_POLICY}
     return Response(write_html(report), media_type="text/html; charset=utf-8", headers=headers)

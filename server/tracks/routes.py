@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import uuid
+from pathlib import PurePosixPath
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends
 from fastapi.responses import FileResponse
+from sqlalchemy import select
+from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
 from server.accounts.audit import record_act
 from server.accounts.service import LeadAccount
-from server.database import SessionDep
+from server.database import Base, SessionDep
 from server.database.paging import Cursor, Limit, Page
+from server.download import name_download
 from server.errors import NotFoundError, error_responses
 from server.storage import StorageDep
 from server.tracks import service
 from server.tracks.exports import MEDIA_TYPES, find_export
 from server.tracks.guard import SeenTrack
+from server.tracks.models import TrackRow
 from server.tracks.overlay import Overlays
 from server.tracks.schemas import FrameEnergy, TrackFrames, TrackJoints, TrackOut
 
@@ -114,13 +119,14 @@ def get_track_overlay(
     responses={200: {"content": {"application/octet-stream": {}}}} | error_responses(404),
 )
 def download_track_file(
-    track: SeenTrack, name: Literal["track.npz", "summary.json"], storage: StorageDep
+    track: SeenTrack, name: Literal["track.npz", "summary.json"], session: SessionDep, storage: StorageDep
 ) -> FileResponse:
     """A file of the track."""
     path = storage.folder("tracks", track.id) / name
     if not path.is_file():
         raise NotFoundError(f"The file {name} of this track is gone from the data folder.")
-    return FileResponse(path, media_type="application/octet-stream", filename=f"{track.name.replace(' ', '_')}-{name}")
+    headers = _name_file(session, track, name)
+    return FileResponse(path, media_type="application/octet-stream", headers=headers)
 
 
 @router.get(
@@ -128,9 +134,19 @@ def download_track_file(
     response_class=FileResponse,
     responses={200: {"content": {kind: {} for kind in sorted(set(MEDIA_TYPES.values()))}}} | error_responses(404),
 )
-def export_track(track: SeenTrack, kind: Literal["npz", "csv", "glb", "mano"], storage: StorageDep) -> FileResponse:
+def export_track(
+    track: SeenTrack, kind: Literal["npz", "csv", "glb", "mano"], session: SessionDep, storage: StorageDep
+) -> FileResponse:
     """The track for other programs: npz, CSV of its joints, glTF animation (GLB) or MANO-style parameters (npz)."""
     folder = storage.folder("tracks", track.id)
     path = find_export(folder, storage.folder("sequences", track.sequence_id), kind)
-    name = path.name.partition("-")[2]
-    return FileResponse(path, media_type=MEDIA_TYPES[kind], filename=f"{track.name.replace(' ', '_')}-{name}")
+    headers = _name_file(session, track, path.name.partition("-")[2])
+    return FileResponse(path, media_type=MEDIA_TYPES[kind], headers=headers)
+
+
+def _name_file(session: Session, track: TrackRow, name: str) -> dict[str, str]:
+    """A file of a track is called after its recording and the track."""
+    sequences = Base.metadata.tables["sequences"]  # a table of a room that this one does not see
+    recording = session.scalars(select(sequences.c.name).where(sequences.c.id == track.sequence_id)).one()
+    own = () if recording in track.name else (recording,)
+    return name_download(*own, track.name, PurePosixPath(name).stem, suffix=PurePosixPath(name).suffix)

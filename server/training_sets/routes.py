@@ -13,6 +13,7 @@ from fastapi.responses import StreamingResponse
 from server.accounts.service import ReviewerAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
+from server.download import name_download
 from server.errors import error_responses
 from server.storage import StorageDep
 from server.training_sets import service
@@ -90,10 +91,8 @@ def download_training_set(training_set_id: uuid.UUID, session: SessionDep, stora
     except BaseException:
         file.close()
         raise
-    headers = {
-        "Content-Disposition": f'attachment; filename="training-set-{row.digest[:12]}.zip"',
-        "Content-Length": str(file.tell()),
-    }
+    name = name_download(row.name, "training-set", row.digest[:12], suffix=".zip")
+    headers = name | {"Content-Length": str(file.tell())}
     return StreamingResponse(_read_pieces(file), media_type="application/zip", headers=headers)
 
 

@@ -23,7 +23,7 @@ def folder(tmp_path: Path) -> Path:
     for number in range(3):
         for name, image in {
             "infrared": rng.integers(300, 9000, hand.shape).astype(np.uint16),
-            "range": hand + np.uint16(number),
+            "range": np.where(hand > 0, hand + number, 0).astype(np.uint16),
             "rgb": np.full((424, 512, 3), 80 * number, np.uint8),
         }.items():
             path = tmp_path / "my take" / name / f"{number:04d}.png"

@@ -210,7 +210,7 @@ def test_what_a_format_loses_is_told_before(studio: Studio, add_recording: AddRe
     put(studio.client, sequence, 0, points)
     address = f"{API}/sequences/{sequence['id']}/labels/export/notes"
     notes = studio.client.get(address, params={"format": "deeplabcut"}).json()
-    assert (notes["items"], notes["joints"], notes["file"]) == (1, 20, "deeplabcut.zip")
+    assert (notes["items"], notes["joints"], notes["file"]) == (1, 20, "waving-deeplabcut.zip")
     assert notes["notes"] == [
         "1 occluded joints: DeepLabCut does not say what is occluded.",
         "1 joints marked as outside the image: DeepLabCut holds them like joints nobody looked at.",

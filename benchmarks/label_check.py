@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from server.quality.find import Setting, find_flags
-from server.quality.labels import DepthReader
+from server.quality.labels import LabelReader
 from tests.server.quality.errors import KINDS, Item, inject
 from tracker import load_annotations, load_sequence
 
@@ -31,7 +31,7 @@ class Row:
     """A label as the table of annotations holds it."""
 
     def __init__(self, item: Item) -> None:
-        self.id, self.revision, self.camera = uuid.uuid4(), 1, "cam0"
+        self.id, self.revision, self.camera, self.sources = uuid.uuid4(), 1, "cam0", None
         self.frame, self.hand, self.points = item.frame, item.hand, item.points.tolist()
 
 
@@ -59,7 +59,7 @@ def main() -> None:
                 ]
                 for item in items:
                     item.points[:, :2] += rng.normal(0, NOISE_PX, (21, 2)) * (item.points[:, 2:] > 0)
-                rows = DepthReader().read(recording, [Row(item) for item in items])
+                rows = LabelReader().read(recording, [Row(item) for item in items])
                 clean_flags += len({flag.label.id for flag in find_flags(rows, setting)})
                 clean_labels += len(rows)
                 kinds.update(flag.kind for flag in find_flags(rows, setting))
@@ -71,7 +71,7 @@ def main() -> None:
                 is_wrong = {
                     k for item in items if not np.array_equal(before[k := (item.frame, item.hand)], item.points)
                 }
-                flags = find_flags(DepthReader().read(recording, [Row(item) for item in items]), setting)
+                flags = find_flags(LabelReader().read(recording, [Row(item) for item in items]), setting)
                 places = list(dict.fromkeys((flag.label.frame, flag.label.hand) for flag in flags))
                 for frame, kind in made.items():
                     found[kind].append(any(place in places for place in is_wrong if place[0] == frame))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from server.quality.finding import Finding
+from server.quality.finding import Finding, Looked
 from server.quality.hand import EDGES, find_bone_lengths, joint_name
 from server.quality.labels import Label, find_median
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 
-def check_bone_lengths(labels: Sequence[Label], cameras: dict[str, Camera]) -> Iterator[Finding]:
+def check_bone_lengths(labels: Sequence[Label], cameras: dict[str, Camera], looked: Looked) -> Iterator[Finding]:
     """Bones longer or shorter in space than this hand's usually are; without depth, far too long for their hand."""
     lengths = find_bone_lengths()
     in_space: dict[str, list[tuple[Label, Array]]] = defaultdict(list)
@@ -28,11 +28,13 @@ def check_bone_lengths(labels: Sequence[Label], cameras: dict[str, Camera]) -> I
     for items in in_space.values():
         table = np.stack([possible[MIDDLE] for _, possible in items])
         enough = np.isfinite(table).sum(axis=0) >= 5
-        usual = np.where(enough, find_median(table, axis=0), lengths)
+        usual = np.where(enough, np.clip(find_median(table, axis=0), SMALLEST * lengths, LARGEST * lengths), lengths)
         spread = np.where(enough, 1.4826 * find_median(np.abs(table - usual), axis=0), 0.006)
         limit = np.maximum(0.015 + 0.15 * usual, 6 * spread)
         for label, possible in items:
             found = possible[MIDDLE]
+            if np.isfinite(found).any() or _count_flat(label) >= LEAST_FLAT:
+                looked.at("bone_length", label)
             off = _find_least(np.abs(possible - usual)) / limit
             if np.isfinite(off).any() and np.nanmax(off) > 1:
                 bone = int(np.nanargmax(off))
@@ -48,6 +50,10 @@ def check_bone_lengths(labels: Sequence[Label], cameras: dict[str, Camera]) -> I
                 yield finding
 
 
+SMALLEST, LARGEST = 0.6, 1.5
+"""No hand's bones are shorter or longer than these times the default hand's, however many labels say so."""
+LEAST_FLAT = 8
+"""Bones that must be seen in an image to know how long bones look in it."""
 MIDDLE = 4
 """The row of `_possible_lengths` with the median depth at both ends."""
 
@@ -67,10 +73,15 @@ def _find_least(values: Array) -> Array:
     )
 
 
+def _count_flat(label: Label) -> int:
+    """Bones of which both ends are placed."""
+    return int(label.is_placed[EDGES].all(axis=1).sum())
+
+
 def _flat_bone(label: Label, lengths: Array) -> Finding | None:
     """A bone that looks too long beside the others: turning away makes bones look shorter only."""
     seen = np.linalg.norm(label.pixels[EDGES[:, 0]] - label.pixels[EDGES[:, 1]], axis=1) / lengths
-    if np.isfinite(seen).sum() < 8:
+    if _count_flat(label) < LEAST_FLAT:
         return None
     usual = float(np.nanpercentile(seen, 75))
     off = seen / (1.7 * usual)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from server.quality.finding import Finding
+from server.quality.finding import Finding, Looked
 from server.quality.hand import joint_name
 from server.quality.labels import Label, find_median
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 
 
-def check_reprojection(labels: Sequence[Label], cameras: dict[str, Camera]) -> Iterator[Finding]:
+def check_reprojection(labels: Sequence[Label], cameras: dict[str, Camera], looked: Looked) -> Iterator[Finding]:
     """Joints that lie beside where the other cameras' labels put them."""
     from tracker import triangulate
 
@@ -33,6 +33,8 @@ def check_reprojection(labels: Sequence[Label], cameras: dict[str, Camera]) -> I
         found = triangulate([cameras[view.camera] for view in views], marks)
         for column, view in enumerate(views):
             residual = found.residuals[:, column]
+            if np.isfinite(residual).any():
+                looked.at("reprojection", view)
             limit = max(6.0, 0.03 * view.size_px)
             if np.isfinite(residual).any() and np.nanmax(residual) > limit:
                 joint = int(np.nanargmax(residual))
@@ -41,19 +43,48 @@ def check_reprojection(labels: Sequence[Label], cameras: dict[str, Camera]) -> I
                 yield Finding(view, "reprojection", min(10.0, float(residual[joint] / limit)), joints, reason)
 
 
-def check_residuals(labels: Sequence[Label], tracked: dict[tuple[str, int, str], Array]) -> Iterator[Finding]:
-    """Joints farther from the track than that joint of the track usually is; `tracked` holds (21, 2) px by place."""
+LEAST_JOINTS = 4
+"""Joints of a hand that must be compared with a track to say something of the whole hand."""
+APART_PX, APART_SHARE = 8.0, 0.08
+"""A label and a track of which half the joints are farther apart than this, and than this share of the hand, are not
+of the same pose: 8 % of a hand is a finger's width."""
+
+
+def check_residuals(
+    labels: Sequence[Label], tracked: dict[tuple[str, int, str], Array], looked: Looked
+) -> Iterator[Finding]:
+    """Labels that are not where the track has the hand, and joints farther from it than that joint usually is.
+
+    `tracked` holds (21, 2) px by place. Joints that a track had a part in say nothing here and are left out.
+    """
     known = [
         (label, tracked[place]) for label in labels if (place := (label.camera, label.frame, label.hand)) in tracked
     ]
     if not known:
         return
-    distances = np.stack([np.linalg.norm(label.pixels - joints, axis=1) for label, joints in known])
+    distances = np.stack(
+        [
+            np.where(label.is_independent, np.linalg.norm(label.pixels - joints, axis=1), np.nan)
+            for label, joints in known
+        ]
+    )
+    compared = np.asarray(np.isfinite(distances).any(axis=1))
     usual = find_median(distances, axis=0)
     spread = 1.4826 * find_median(np.abs(distances - usual), axis=0)
-    for (label, _), distance in zip(known, distances, strict=True):
+    whole = np.where(np.isfinite(distances).sum(axis=1) >= LEAST_JOINTS, find_median(distances, axis=1), np.nan)
+    limits = np.array([max(APART_PX, APART_SHARE * label.size_px) for label, _ in known])
+    apart = whole > limits
+    for row, (label, _) in enumerate(known):
+        if not compared[row]:
+            continue
+        looked.at("residual", label)
+        distance = distances[row]
         limit = np.maximum(usual + 6 * spread, np.maximum(10.0, 0.08 * label.size_px))
         off = distance / limit
+        if apart[row]:
+            hands = f"as in {apart.sum()} of {compared.sum()} hands that were compared"
+            reason = f"The label and the track are {whole[row]:.0f} px apart, {hands}: one of the two is wrong."
+            yield Finding(label, "residual", min(10.0, float(whole[row] / limits[row])), (), reason)
         if np.isfinite(off).any() and np.nanmax(off) > 1:
             joint = int(np.nanargmax(off))
             joints = tuple(int(j) for j in np.flatnonzero(off > 1))

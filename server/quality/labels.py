@@ -1,4 +1,4 @@
-"""The labels of a recording as arrays, with what the depth images say at their joints."""
+"""The labels of a recording as arrays, with what the images say at their joints."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from server.annotations.sources import read_sources
+from server.quality.surroundings import Images, Surroundings, look_around
+
 if TYPE_CHECKING:
     from tracker import Sequence
 
 Array = npt.NDArray[np.float64]
-
-WINDOW = 3
-"""Depth is looked at this far around a joint, px: a label may lie beside the silhouette by as much."""
 
 
 def find_median(values: Array, axis: int | None = None) -> Array:
@@ -35,7 +35,8 @@ class Label:
 
     Attributes:
         points: (21, 3) x, y px and v.
-        depths: (21, K) sorted depths around each joint, m; NaN where there are none, or where it is not visible.
+        around: What the images show around each joint.
+        is_independent: (21,) joints that no track had a part in.
     """
 
     id: uuid.UUID
@@ -44,7 +45,13 @@ class Label:
     frame: int
     hand: str
     points: Array
-    depths: Array
+    around: Surroundings
+    is_independent: npt.NDArray[np.bool_]
+
+    @property
+    def depths(self) -> Array:
+        """(21, K) sorted depths around each joint, m; NaN where there are none, or where it is not visible."""
+        return self.around.depths
 
     @cached_property
     def is_placed(self) -> npt.NDArray[np.bool_]:
@@ -75,49 +82,27 @@ class Label:
         return float(np.max(np.nanmax(self.pixels, axis=0) - np.nanmin(self.pixels, axis=0)))
 
 
-class DepthReader:
-    """Reads the depth at joints once for each revision of a label."""
+class LabelReader:
+    """Looks at the images around joints once for each revision of a label."""
 
     def __init__(self, kept: int = 50_000) -> None:
-        self._known: OrderedDict[tuple[uuid.UUID, int], Array] = OrderedDict()
+        self._known: OrderedDict[tuple[uuid.UUID, int], Surroundings] = OrderedDict()
         self._kept = kept
 
     def read(self, recording: Sequence, rows: Many) -> list[Label]:
         """Labels of annotation rows, in their order (by frame)."""
-        last: tuple[tuple[str, int], Array | None] = (("", -1), None)
+        from tracker import JUDGING, find_counted
+
+        images = Images(recording)
         labels = []
         for row in rows:
             points = np.array(row.points, dtype=np.float64)
-            depths = self._known.get((row.id, row.revision))
-            if depths is None:
-                if last[0] != (row.camera, row.frame):
-                    last = (row.camera, row.frame), _load(recording, row.camera, row.frame)
-                depths = _around(last[1], points)
-                self._known[row.id, row.revision] = depths
+            around = self._known.get((row.id, row.revision))
+            if around is None:
+                around = look_around(images, row.camera, row.frame, points)
+                self._known[row.id, row.revision] = around
                 while len(self._known) > self._kept:
                     self._known.popitem(last=False)
-            labels.append(Label(row.id, row.revision, row.camera, row.frame, row.hand, points, depths))
+            counted = find_counted(read_sources(row.sources), JUDGING)
+            labels.append(Label(row.id, row.revision, row.camera, row.frame, row.hand, points, around, counted))
         return labels
-
-
-def _load(recording: Sequence, camera_id: str, frame: int) -> Array | None:
-    camera = recording.camera(camera_id)
-    if not camera.has_depth:
-        return None
-    return recording.depth_raw(frame, camera_id).astype(np.float64) * camera.depth_scale
-
-
-def _around(depth: Array | None, points: Array) -> Array:
-    side = 2 * WINDOW + 1
-    found = np.full((21, side * side), np.nan)
-    if depth is None:
-        return found
-    height, width = depth.shape
-    for joint in np.flatnonzero(points[:, 2] == 2):
-        column, row = round(points[joint, 0]), round(points[joint, 1])
-        rows = slice(max(0, row - WINDOW), max(0, min(height, row + WINDOW + 1)))
-        columns = slice(max(0, column - WINDOW), max(0, min(width, column + WINDOW + 1)))
-        values = depth[rows, columns]
-        values = np.sort(values[values > 0])
-        found[joint, : len(values)] = values
-    return found

@@ -5,17 +5,13 @@ from __future__ import annotations
 import warnings
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from server.quality.finding import Finding
+from server.quality.finding import Finding, Looked
 from server.quality.hand import joint_name
 from server.quality.labels import Label, find_median
-
-if TYPE_CHECKING:
-    pass
 
 Array = npt.NDArray[np.float64]
 
@@ -27,13 +23,15 @@ STILL_FRAMES = 3
 """Annotated frames farther apart than this may well differ by a motion: a joint must be the farther off."""
 
 
-def check_handedness(labels: Sequence[Label], hands: Sequence[str]) -> Iterator[Finding]:
+def check_handedness(labels: Sequence[Label], hands: Sequence[str], looked: Looked) -> Iterator[Finding]:
     """Labels nearer to the other hand in the neighbouring frames than to their own."""
     tracks = _by_hand(labels)
     for label in labels:
         other = "left" if label.hand == "right" else "right"
         own_px = _nearest(label, tracks[label.camera, label.hand])
         other_px = _nearest(label, tracks[label.camera, other])
+        if np.isfinite([own_px, other_px]).any() or (hands and label.hand not in hands):
+            looked.at("handedness", label)
         if not np.isfinite(other_px) or other_px > 0.5 * label.size_px:
             if hands and label.hand not in hands and not np.isfinite(own_px):
                 yield Finding(label, "handedness", 2.0, (), f"This recording is said to have no {label.hand} hand.")
@@ -48,13 +46,16 @@ def check_handedness(labels: Sequence[Label], hands: Sequence[str]) -> Iterator[
             yield Finding(label, "handedness", score, (), reason)
 
 
-def check_jumps(labels: Sequence[Label]) -> Iterator[Finding]:
-    """Joints far from where they are in the annotated frames before and after, the hand's own motion taken off."""
+def check_jumps(labels: Sequence[Label], looked: Looked) -> Iterator[Finding]:
+    """Joints far from where they are in the annotated frames before and after, the hand's own motion taken off; and
+    whole hands that are elsewhere than just before and just after."""
     for track in _by_hand(labels).values():
+        yield from _find_stray_hands(track)
         jumps = [_jump(track, place) for place in range(len(track))]
         for place, (label, jump) in enumerate(zip(track, jumps, strict=True)):
             if not np.isfinite(jump).any():
                 continue
+            looked.at("jump", label)
             typical = float(np.nanmedian(jump))
             others = [track[other] for other in (place - 1, place + 1) if 0 <= other < len(track)]
             apart = min(abs(label.frame - other.frame) for other in others)
@@ -69,6 +70,28 @@ def check_jumps(labels: Sequence[Label]) -> Iterator[Finding]:
                 worst = joints[np.argmax(jump[joints])]
                 reason = f"The {joint_name(worst)} is {jump[worst]:.0f} px from where the neighbouring frames have it."
                 yield Finding(label, "jump", float(jump[worst] / limit), tuple(map(int, joints)), reason)
+
+
+def _find_stray_hands(track: Sequence[Label]) -> Iterator[Finding]:
+    """A hand that is elsewhere in one frame, and at the same place in the labelled frames just before and just after:
+    its label may belong to another frame."""
+    for before, label, after in zip(track, track[1:], track[2:], strict=False):
+        if after.frame - before.frame > 2 * STILL_FRAMES:
+            continue
+        to_before, to_after = _find_shift(before, label), _find_shift(after, label)
+        limit = max(20.0, 0.2 * label.size_px) + 2.0 * _find_shift(before, after)
+        away = min(to_before, to_after)
+        if away > limit:
+            reason = (
+                f"The whole hand is {away:.0f} px from where frames {before.frame} and {after.frame} have it: is this "
+                "the label of another frame?"
+            )
+            yield Finding(label, "jump", min(10.0, float(away / limit)), (), reason)
+
+
+def _find_shift(one: Label, other: Label) -> float:
+    """How far a hand as a whole is from where it is in another frame, px; NaN where no joint is in both."""
+    return float(np.linalg.norm(find_median(one.pixels - other.pixels, axis=0)))
 
 
 def _by_hand(labels: Sequence[Label]) -> dict[tuple[str, str], list[Label]]:

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from server.quality.finding import Finding
+from server.quality.finding import Finding, Looked
 from server.quality.hand import EDGES, FINGERS, KNUCKLES, find_bone_lengths, joint_name
 from server.quality.labels import Label, find_median
-
-if TYPE_CHECKING:
-    pass
 
 Array = npt.NDArray[np.float64]
 
 
-def check_outside(labels: Sequence[Label], sizes: dict[str, tuple[int, int]]) -> Iterator[Finding]:
+def check_outside(labels: Sequence[Label], sizes: dict[str, tuple[int, int]], looked: Looked) -> Iterator[Finding]:
     """Joints that are said to be there but lie outside the image."""
     for label in labels:
+        looked.at("outside", label)
         width, height = sizes[label.camera]
         x, y = label.pixels.T
         with np.errstate(invalid="ignore"):
@@ -37,13 +34,14 @@ def check_outside(labels: Sequence[Label], sizes: dict[str, tuple[int, int]]) ->
             )
 
 
-def check_finger_order(labels: Sequence[Label]) -> Iterator[Finding]:
+def check_finger_order(labels: Sequence[Label], looked: Looked) -> Iterator[Finding]:
     """Joints of a finger that go back and forth, and knuckles that do not stand side by side in their order."""
     for label in labels:
         for finger, name in enumerate(FINGERS):
             chain = label.pixels[1 + 4 * finger : 5 + 4 * finger]
             if not np.isfinite(chain).all():
                 continue
+            looked.at("finger_order", label)
             steps = np.diff(chain, axis=0)
             lengths = np.linalg.norm(steps, axis=1)
             if lengths.min() < 3:
@@ -80,13 +78,14 @@ def check_finger_order(labels: Sequence[Label]) -> Iterator[Finding]:
                 )
 
 
-def check_depth(labels: Sequence[Label]) -> Iterator[Finding]:
+def check_depth(labels: Sequence[Label], looked: Looked) -> Iterator[Finding]:
     """Visible joints farther in depth from the joint they hang on than a bone is long: one of them is elsewhere."""
     lengths = find_bone_lengths()
     for label in labels:
         near = label.depths[:, 0]
         if np.isfinite(near).sum() < 4:
             continue
+        looked.at("depth", label)
         everything = find_median(label.depth)
         best: tuple[float, int, float] | None = None
         joints = []

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Query
 
 from server.accounts.service import CurrentAccount
 from server.annotations.guards import GuardsDep, find_hidden
+from server.annotations.models import AnnotationRow
 from server.annotations.routes import PlaceDep
 from server.annotations.service import Place, list_annotations
 from server.database import DatabaseDep, SessionDep
@@ -17,10 +18,11 @@ from server.database.paging import Cursor, Limit, read_cursor, write_cursor
 from server.errors import error_responses
 from server.quality import service
 from server.quality.finding import Finding, Kind
-from server.quality.schemas import FlagLook, FlagOut, FlagPage
-from server.quality.service import FlagFinderDep
+from server.quality.schemas import Checked, CheckOut, FlagLook, FlagOut, FlagPage
+from server.quality.service import Compared, FlagFinderDep
 from server.sequences.service import get_sequence
 from server.tracks.facts import find_best_tracks
+from server.tracks.service import get_track
 
 router = APIRouter(prefix="/sequences/{sequence_id}", tags=["quality"], responses=error_responses(404))
 
@@ -37,17 +39,22 @@ def list_flags(
     cursor: Cursor = None,
     limit: Limit = 100,
 ) -> FlagPage:
-    """Labels that look wrong as they are now, the worst first."""
+    """Labels that look wrong as they are now, the worst first, and what the checks could look at."""
+    track = None
     with database.reading() as session:
         sequence = get_sequence(session, sequence_id)
         rows, _ = list_annotations(session, sequence_id)
         hidden = find_hidden(guards, session, account, sequence_id)
         put_away = service.find_dismissed(session, sequence_id)
         best = find_best_tracks(session, [sequence_id]).get(sequence_id)
+        if best is not None:
+            row = get_track(session, best["best_track"]["id"])
+            track = Compared(row.id, row.name)
         session.expunge_all()
-    track_id = best["best_track"]["id"] if best else None
-    flags = finder.find(sequence_id, sequence.content_key, sequence.hands, rows, track_id)
-    flags = [flag for flag in flags if not any(_place(sequence_id, flag) in places for places in hidden)]
+    check = finder.find(sequence_id, sequence.content_key, sequence.hands, rows, track)
+    shown = [row for row in rows if not any(_place_of(row) in places for places in hidden)]
+    seen = {row.id for row in shown}
+    flags = [flag for flag in check.findings if flag.label.id in seen]
     is_away = {id(flag): (flag.label.id, flag.label.revision, flag.kind) in put_away for flag in flags}
     counts = Counter(flag.kind for flag in flags if not is_away[id(flag)])
     wanted = [flag for flag in flags if is_away[id(flag)] == dismissed and kind in (None, flag.kind)]
@@ -60,6 +67,14 @@ def list_flags(
         next_cursor=write_cursor(*_order(items[-1])) if len(wanted) > limit else None,
         counts=dict(counts),
         dismissed=sum(is_away.values()),
+        checked=Checked(
+            labels=len(shown),
+            frames=len({row.frame for row in shown}),
+            track=None if track is None else track.name,
+            checks=[
+                CheckOut(kind=one.kind, labels=len(one.labels & seen), missing=one.missing) for one in check.coverage
+            ],
+        ),
     )
 
 
@@ -77,8 +92,8 @@ def restore_flag(
     service.restore(session, place, kind, revision)
 
 
-def _place(sequence_id: uuid.UUID, flag: Finding) -> Place:
-    return Place(sequence_id, flag.label.camera, flag.label.frame, flag.label.hand)
+def _place_of(row: AnnotationRow) -> Place:
+    return Place(row.sequence_id, row.camera, row.frame, row.hand)
 
 
 def _order(flag: Finding) -> tuple[int, str, str]:

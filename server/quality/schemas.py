@@ -26,11 +26,31 @@ class FlagOut(BaseModel):
     is_dismissed: bool = Field(description="Somebody looked at this revision and the label is right.")
 
 
+class CheckOut(BaseModel):
+    """How many labels one check could look at."""
+
+    model_config = ConfigDict(title="Check")
+
+    kind: Kind
+    labels: int
+    missing: str = Field(description="What it lacks for the other labels; empty where it looked at all.")
+
+
+class Checked(BaseModel):
+    """What was looked at: an all-clear says no more than this."""
+
+    labels: int = Field(description="Labelled hands in images.")
+    frames: int
+    track: str | None = Field(description="Name of the track that they are compared with; null where there is none.")
+    checks: list[CheckOut]
+
+
 class FlagPage(Page[FlagOut]):
     """Part of the flags, the worst first."""
 
     counts: dict[str, int] = Field(description="Open flags of each kind in the whole recording.")
     dismissed: int = Field(description="Flags that were put away.")
+    checked: Checked
 
 
 class FlagLook(BaseModel):

@@ -6,6 +6,7 @@ import threading
 import uuid
 from collections import OrderedDict
 from collections.abc import Sequence as Many
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -20,9 +21,8 @@ from starlette.requests import HTTPConnection
 from server.annotations.models import AnnotationRow
 from server.annotations.service import Place, get_annotation
 from server.errors import ConflictError
-from server.quality.find import Setting, find_flags
-from server.quality.finding import Finding
-from server.quality.labels import DepthReader
+from server.quality.find import LabelCheck, Setting, check_labels
+from server.quality.labels import LabelReader
 from server.quality.models import DismissalRow
 from server.storage import Storage
 
@@ -33,33 +33,56 @@ KEPT = 16
 """Recordings whose flags are remembered."""
 
 
+@dataclass(frozen=True)
+class Compared:
+    """The track that labels are compared with."""
+
+    id: uuid.UUID
+    name: str
+
+
 class FlagFinder:
     """Finds flags, once for each state of a recording's labels."""
 
     def __init__(self, storage: Storage) -> None:
         self._storage = storage
-        self._reader = DepthReader()
-        self._known: OrderedDict[tuple, list[Finding]] = OrderedDict()
+        self._reader = LabelReader()
+        self._known: OrderedDict[tuple, LabelCheck] = OrderedDict()
         self._lock = threading.Lock()
 
     def find(
-        self, sequence_id: uuid.UUID, content_key: str, hands: Many[str], rows: Many[AnnotationRow], track_id: Any
-    ) -> list[Finding]:
-        """Flags of the labels, the worst first; `track_id` names the track that they are compared with, if any."""
+        self,
+        sequence_id: uuid.UUID,
+        content_key: str,
+        hands: Many[str],
+        rows: Many[AnnotationRow],
+        track: Compared | None,
+    ) -> LabelCheck:
+        """What the checks of the labels found and looked at; `track` is the one they are compared with, if any."""
         from tracker import load_sequence
 
         state = frozenset((row.id, row.revision) for row in rows)
-        key = (sequence_id, content_key, tuple(hands), track_id, state)
+        key = (sequence_id, content_key, tuple(hands), track, state)
         with self._lock:  # one at a time: several people open the same page
             if key not in self._known:
                 recording = load_sequence(self._storage.folder("sequences", sequence_id))
-                tracked = {} if track_id is None else _read_track(self._storage.folder("tracks", track_id))
-                setting = Setting(tuple(hands), {c.id: c for c in recording.cameras}, tracked)
-                self._known[key] = find_flags(self._read(recording, rows), setting)
+                setting = self._describe(recording, hands, track)
+                self._known[key] = check_labels(self._read(recording, rows), setting)
                 while len(self._known) > KEPT:
                     self._known.popitem(last=False)
             self._known.move_to_end(key)
             return self._known[key]
+
+    def _describe(self, recording: Sequence, hands: Many[str], track: Compared | None) -> Setting:
+        cameras = {camera.id: camera for camera in recording.cameras}
+        setting = Setting(tuple(hands), dict(cameras), any(camera.has_depth for camera in cameras.values()))
+        if track is None:
+            return setting
+        missing = (
+            f"{track.name} does not have this hand or frame, lost it, or the joints of the label came from a track"
+        )
+        tracked = _read_track(self._storage.folder("tracks", track.id))
+        return replace(setting, tracked=tracked, track_missing=missing)
 
     def _read(self, recording: Sequence, rows: Many[AnnotationRow]) -> list[Any]:
         cameras = {camera.id for camera in recording.cameras}
@@ -67,9 +90,13 @@ class FlagFinder:
 
 
 def _read_track(folder: Path) -> dict[tuple[str, int, str], npt.NDArray[np.float64]]:
-    """(21, 2) px of a track's hands by camera, frame and hand; frames that it lost are left out."""
+    """(21, 2) px of a track's hands by camera, frame and hand; hands that it lost are left out."""
     with np.load(folder / "track.npz", allow_pickle=False) as arrays:
         frames, status = arrays["frame"].tolist(), arrays["status"].tolist()
+        of_hands = {
+            str(hand): arrays["hand_status"][:, column].tolist()
+            for column, hand in enumerate(arrays["hand_names"].tolist() if "hand_status" in arrays else [])
+        }
         cameras = [str(name) for name in arrays["camera_ids"]]
         names = [str(name) for name in arrays["joint_names"]]
         joints = arrays["joints_2d"].astype(np.float64)
@@ -79,7 +106,7 @@ def _read_track(folder: Path) -> dict[tuple[str, int, str], npt.NDArray[np.float
         if len(columns) != 21:
             continue
         for row, frame in enumerate(frames):
-            if status[row] != "lost":
+            if "lost" not in (status[row], of_hands.get(hand, status)[row]):
                 for index, camera in enumerate(cameras):
                     found[camera, frame, hand] = joints[row, index, columns]
     return found

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 import uuid
 
+import cv2
 import numpy as np
 import pytest
 
@@ -78,6 +80,115 @@ def test_a_label_far_from_the_track_is_flagged(client, tracked):
     [flag] = find(client, sequence, kind="residual")["items"]
     assert flag["frame"] == 5
     assert "from the track" in flag["reason"]
+
+
+def by_kind(page):
+    return {one["kind"]: one for one in page["checked"]["checks"]}
+
+
+def shift(client, sequence, frames, offset, sources=None):
+    """Move whole labels, as by hand or with sources."""
+    for frame in frames:
+        stored = client.get(f"{sequence}/annotations/cam0/{frame}/right").json()
+        points = [[x + offset[0], y + offset[1], v] for x, y, v in stored["points"]]
+        body = {"points": points, "operation_id": str(uuid.uuid4()), "sources": sources}
+        headers = {"If-Match": f'"{stored["revision"]}"'}
+        assert client.put(f"{sequence}/annotations/cam0/{frame}/right", json=body, headers=headers).status_code == 200
+
+
+def test_a_whole_recording_beside_its_track_is_flagged(client, tracked):
+    sequence = f"/api/v1/sequences/{tracked.sequence_id}"
+    assert find(client, sequence, kind="residual")["items"] == []
+    shift(client, sequence, range(45), (18, 22))
+    flags = find(client, sequence, kind="residual")["items"]
+    assert sorted(flag["frame"] for flag in flags) == list(range(12)), "all that the track holds"
+    assert all("as in 12 of 12 hands that were compared: one of the two is wrong" in flag["reason"] for flag in flags)
+    checked = by_kind(find(client, sequence))["residual"]
+    assert checked["labels"] == 12 and "Track 1 does not have this hand or frame" in checked["missing"]
+
+
+def test_what_came_from_the_track_is_not_compared_with_it(client, tracked):
+    sequence = f"/api/v1/sequences/{tracked.sequence_id}"
+    accepted = {"kind": "track", "label": "Track 1", "track_id": str(tracked.track_id)}
+    shift(client, sequence, range(6), (0, 0), [accepted] * 21)
+    page = find(client, sequence)
+    assert by_kind(page)["residual"]["labels"] == 6
+    shift(client, sequence, range(6, 12), (18, 22))
+    flags = find(client, sequence, kind="residual")["items"]
+    assert sorted(flag["frame"] for flag in flags) == list(range(6, 12))
+    assert "as in 6 of 6 hands" in flags[0]["reason"]
+
+
+def test_a_hand_of_another_frame_is_told_from_its_neighbours(client, labelled):
+    shift(client, labelled, [20], (70, 0))
+    flags = [flag for flag in find(client, labelled)["items"] if "the label of another frame" in flag["reason"]]
+    assert [flag["frame"] for flag in flags] == [20]
+
+
+def change_background(source, folder, color=None, depth=0):
+    """A copy of a recording with another background; None leaves the colour as it is."""
+    shutil.copytree(source, folder)
+    for file in sorted((folder / "depth").iterdir()):
+        image = cv2.imread(str(file), cv2.IMREAD_UNCHANGED)
+        shown = next((folder / "color").glob(f"{file.stem}.*"))
+        picture = cv2.imread(str(shown))
+        if color is not None:
+            picture[image == 0] = color
+            cv2.imwrite(str(shown), picture)
+        image[image == 0] = depth
+        cv2.imwrite(str(file), image)
+    return folder
+
+
+def test_joints_in_the_empty_part_of_a_masked_image_are_flagged(studio, client, rendered, tmp_path):
+    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    folder = change_background(rendered, tmp_path / "masked", color=0)
+    masked = f"/api/v1/sequences/{import_recording(desk, folder, {}, LOCAL_ACCOUNT_ID)}"
+    page = find(client, masked)
+    assert [flag for flag in page["items"] if flag["kind"] == "background"] == []
+    assert by_kind(page)["background"]["labels"] == page["checked"]["labels"] == 45
+    shift(client, masked, range(5, 9), (24, 24))
+    flags = find(client, masked, kind="background")["items"]
+    assert sorted(flag["frame"] for flag in flags) == [5, 6, 7, 8]
+    assert all("from anything that this image shows" in flag["reason"] for flag in flags)
+    assert all(len(flag["joints"]) >= 2 for flag in flags)
+
+
+def move_off(client, sequence, frames):
+    """Whole labels to the corner of the image, where no hand is."""
+    points = client.get(f"{sequence}/annotations/cam0/{frames[0]}/right").json()["points"]
+    left, top = (min(point[axis] for point in points) - 4 for axis in (0, 1))
+    shift(client, sequence, frames, (-left, -top))
+
+
+def test_a_whole_label_without_depth_is_flagged(client, labelled):
+    move_off(client, labelled, range(8, 11))
+    flags = find(client, labelled, kind="background")["items"]
+    assert sorted(flag["frame"] for flag in flags) == [8, 9, 10]
+    assert "though it is marked as visible" in flags[0]["reason"]
+
+
+def test_a_whole_recording_on_the_background_is_flagged(studio, client, rendered, tmp_path):
+    """That all labels are alike does not excuse them: no hand that looks as large as these is so far away."""
+    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    folder = change_background(rendered, tmp_path / "wall", depth=1500)
+    wall = f"/api/v1/sequences/{import_recording(desk, folder, {}, LOCAL_ACCOUNT_ID)}"
+    assert find(client, wall, kind="background")["items"] == []
+    move_off(client, wall, range(45))
+    flags = find(client, wall, kind="background")["items"]
+    assert sorted(flag["frame"] for flag in flags) == list(range(45))
+    assert "is it on the background?" in flags[0]["reason"] and "1.50 m" in flags[0]["reason"]
+
+
+def test_an_all_clear_says_what_was_checked(client, labelled, tracked):
+    page = find(client, labelled)
+    assert (page["checked"]["labels"], page["checked"]["frames"], page["checked"]["track"]) == (45, 45, None)
+    told = by_kind(page)
+    assert (told["residual"]["labels"], told["residual"]["missing"]) == (0, "there is no track")
+    assert (told["reprojection"]["labels"], told["reprojection"]["missing"]) == (0, "this recording has one camera")
+    assert told["outside"] == {"kind": "outside", "labels": 45, "missing": ""}
+    assert told["finger_order"]["labels"] == told["depth"]["labels"] == told["jump"]["labels"] == 45
+    assert find(client, f"/api/v1/sequences/{tracked.sequence_id}")["checked"]["track"] == "Track 1"
 
 
 def test_a_flag_is_put_away_for_the_revision_looked_at(client, labelled):

@@ -12,11 +12,12 @@ describe("the address of an evaluation", () => {
       camera: "cam 1",
       hand: "left",
       visibility: "occluded",
+      sources: ["hand", "import"],
       withoutStart: true,
       within: 7.5,
     };
     expect(readChoice(new URLSearchParams(writeChoice(choice).toString()))).toEqual(choice);
-    expect(queryOf(choice)).toBe("track=a&track=b&sequence=r&snapshot=s&project=p&reference=b&camera=cam+1&hand=left&visibility=occluded&without_start=true&within=7.5");
+    expect(queryOf(choice)).toBe("track=a&track=b&sequence=r&snapshot=s&project=p&reference=b&camera=cam+1&hand=left&visibility=occluded&source=hand&source=import&without_start=true&within=7.5");
   });
 
   it("is empty for nothing, and nonsense counts as nothing", () => {

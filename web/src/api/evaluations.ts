@@ -1,5 +1,6 @@
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { API, request } from "./client";
+import { INDEPENDENT } from "../model/source";
 import { fetchAll } from "./recordings";
 import type { components } from "./schema";
 
@@ -21,11 +22,16 @@ export interface EvaluationChoice {
   camera: string;
   hand: string;
   visibility: string;
+  /** Of `independent`, `all` and the kinds of sources. */
+  sources: readonly string[];
   withoutStart: boolean;
   within: number;
 }
 
 export const USUAL_WITHIN_PX = 10;
+
+const USUAL_SOURCES: readonly string[] = [INDEPENDENT];
+const isUsual = (sources: readonly string[]): boolean => sources.join() === USUAL_SOURCES.join();
 
 const list = (text: string | null): string[] => (text ?? "").split(",").filter(Boolean);
 
@@ -40,6 +46,7 @@ export function readChoice(address: URLSearchParams): EvaluationChoice {
     camera: address.get("camera") ?? "",
     hand: address.get("hand") ?? "",
     visibility: address.get("visibility") ?? "",
+    sources: address.get("sources") ? list(address.get("sources")) : USUAL_SOURCES,
     withoutStart: address.get("without_start") === "1",
     within: within > 0 && within <= 1000 ? within : USUAL_WITHIN_PX,
   };
@@ -57,6 +64,7 @@ export function writeChoice(choice: EvaluationChoice): URLSearchParams {
   put("camera", choice.camera);
   put("hand", choice.hand);
   put("visibility", choice.visibility);
+  put("sources", isUsual(choice.sources) ? null : choice.sources.join(","));
   put("without_start", choice.withoutStart ? "1" : null);
   put("within", choice.within === USUAL_WITHIN_PX ? null : String(choice.within));
   return address;
@@ -75,6 +83,7 @@ export function queryOf(choice: EvaluationChoice): string {
   if (choice.camera) query.set("camera", choice.camera);
   if (choice.hand) query.set("hand", choice.hand);
   if (choice.visibility) query.set("visibility", choice.visibility);
+  if (!isUsual(choice.sources)) for (const source of choice.sources) query.append("source", source);
   if (choice.withoutStart) query.set("without_start", "true");
   query.set("within", String(choice.within));
   return query.toString();

@@ -82,12 +82,13 @@ export const snapshotFileUrl = (id: string): string => `${API}/snapshots/${id}/l
 
 export interface ExportChoice {
   format: string;
+  source: readonly string[];
   snapshot_id?: string | undefined;
   track_id?: string | undefined;
 }
 
 export function exportUrl(recording: string, choice: ExportChoice): string {
-  const known = Object.entries(choice).filter((entry): entry is [string, string] => Boolean(entry[1]));
+  const known = Object.entries(choice).flatMap(([name, value]: [string, string | readonly string[] | undefined]) => (value ? [value].flat().map((one) => [name, one]) : []));
   return `${API}/sequences/${recording}/labels/export?${new URLSearchParams(known)}`;
 }
 

@@ -1,6 +1,6 @@
 /** Projects, who marks which frames, what reviewers say, and how well people agree. */
 
-import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { keepPreviousData, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { API, request } from "./client";
 import { fetchAll } from "./recordings";
 import type { components } from "./schema";
@@ -35,9 +35,16 @@ export const useReplicaSets = (project: string) =>
   useQuery({ queryKey: key("replicas", project), queryFn: () => fetchAll<ReplicaSet>(`/projects/${project}/replica-sets`) });
 export const useReplicaSet = (id: string | null | undefined) =>
   useQuery({ queryKey: key("replica", id), queryFn: () => request<ReplicaSet>("GET", `/replica-sets/${id}`), enabled: Boolean(id) });
-export const useAgreement = (id: string | undefined) =>
-  useQuery({ queryKey: key("agreement", id), queryFn: () => request<AgreementReport>("GET", `/replica-sets/${id}/agreement`), enabled: Boolean(id), retry: false });
-export const agreementFile = (id: string, kind: "csv" | "html" | ""): string => `${API}/replica-sets/${id}/agreement${kind && `.${kind}`}`;
+const sourceQuery = (sources: readonly string[]): string => new URLSearchParams(sources.map((source) => ["source", source])).toString();
+export const useAgreement = (id: string | undefined, sources: readonly string[]) =>
+  useQuery({
+    queryKey: [...key("agreement", id), ...sources],
+    queryFn: () => request<AgreementReport>("GET", `/replica-sets/${id}/agreement?${sourceQuery(sources)}`),
+    enabled: Boolean(id),
+    placeholderData: keepPreviousData,
+    retry: false,
+  });
+export const agreementFile = (id: string, kind: "csv" | "html" | "", sources: readonly string[]): string => `${API}/replica-sets/${id}/agreement${kind && `.${kind}`}?${sourceQuery(sources)}`;
 
 export const useAssignments = (query: { mine?: "true"; project?: string; sequence?: string }) =>
   useQuery({ queryKey: key("assignments", JSON.stringify(query)), queryFn: () => fetchAll<Assignment>("/assignments", query), refetchInterval: 30_000 });

@@ -152,6 +152,8 @@ export interface Evaluation {
   items: EvaluatedItem[];
   annotated: number;
   evaluated: number;
+  /** Joints that do not count: a track had a part in them. */
+  left_out_joints: number;
 }
 
 export interface Statistics {

@@ -7,6 +7,7 @@ export const KIND_NAMES: Record<Flag["kind"], string> = {
   finger_order: "Finger order",
   bone_length: "Bone length",
   depth: "Depth",
+  background: "On the background",
   handedness: "Left or right",
   jump: "Jump",
   reprojection: "Other cameras",

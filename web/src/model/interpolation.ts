@@ -1,6 +1,7 @@
 /** What lies between two key frames, as a proposal: each joint that both have, on a straight line in time. */
 
 import { isEmpty, isPlaced, keyText, parseKey, type Pose, type PoseKey } from "./pose";
+import { ofIndependent } from "./source";
 import type { SuggestedJoint, Suggestion } from "./suggestion";
 
 /** Key frames of one hand in one camera that have an annotation, in order. */
@@ -24,7 +25,7 @@ export function interpolate(from: Pose, to: Pose, share: number): (SuggestedJoin
     const b = to[joint];
     if (!isPlaced(a) || !isPlaced(b)) return null;
     const near = share < 0.5 ? a : b;
-    return { px: [a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share], guess: near.v === 1 ? "occluded" : "visible" };
+    return { px: [a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share], guess: near.v === 1 ? "occluded" : "visible", ...ofIndependent(a, b) };
   });
 }
 

@@ -20,6 +20,8 @@ export interface SuggestedJoint {
   /** px, (0, 0) is the centre of the top-left pixel */
   readonly px: readonly [number, number];
   readonly guess: "occluded" | "visible";
+  /** Of a joint made of others: no track and no model fit had a part in any of them. */
+  readonly is_independent?: true;
 }
 
 export interface Suggestion {
@@ -53,14 +55,20 @@ export function openJoints(suggestions: SuggestionsOfHand | undefined, pose: Pos
     if (statusOf(pose?.[joint]) !== "unset") return null;
     for (const suggestion of shown) {
       const found = suggestion.joints[joint];
-      if (found) return { ...found, source: suggestion.source, from: sourceOf(suggestion) };
+      if (found) return { ...found, source: suggestion.source, from: sourceOf(suggestion, found) };
     }
     return null;
   });
 }
 
 /** What is kept beside a label that a person made of it. */
-export const sourceOf = ({ source, label, trackId, model }: Suggestion): JointSource => ({ kind: source, label, ...(trackId ? { track_id: trackId } : {}), ...(model ? { model } : {}) });
+export const sourceOf = ({ source, label, trackId, model }: Suggestion, joint: SuggestedJoint): JointSource => ({
+  kind: source,
+  label,
+  ...(trackId ? { track_id: trackId } : {}),
+  ...(model ? { model } : {}),
+  ...(joint.is_independent ? { is_independent: true } : {}),
+});
 
 /** The one place where a proposal becomes a label: a person asked for it. */
 const accept = ({ px: [x, y], guess, from }: Proposed): JointPoint => ({ x, y, v: guess === "occluded" ? 1 : 2, from });

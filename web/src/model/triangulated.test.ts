@@ -39,7 +39,7 @@ test("the other views are filled with suggestions, inside the image and where no
     ],
   };
   const marks = [[1, 1, 2], [1, 1, 2], [1, 1, 2]] as [number, number, 0 | 1 | 2][];
-  const [only, ...others] = suggestViews(found, [{ camera: "cam0", points: marks }, { camera: "cam1", points: marks }], 7, "left");
+  const [only, ...others] = suggestViews(found, [{ camera: "cam0", points: marks }, { camera: "cam1", points: marks }], { frame: 7, hand: "left" }, {});
   expect(others).toEqual([]);
   expect(only?.place).toEqual({ camera: "cam2", frame: 7, hand: "left" });
   expect(only?.label).toBe("cam0, cam1");

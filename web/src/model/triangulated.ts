@@ -3,8 +3,9 @@
 import type { MarkedView, TriangulatedJoint, TriangulatedView, Triangulation } from "../api/triangulation";
 import type { Side } from "../api/types";
 import { JOINT_COUNT } from "./joints";
-import { isPlaced, keyText, toWire, type Pose } from "./pose";
-import type { Suggestion } from "./suggestion";
+import { isPlaced, keyText, toWire, type JointPoint, type Pose, type PoseKey } from "./pose";
+import { ofIndependent } from "./source";
+import type { SuggestedJoint, Suggestion } from "./suggestion";
 
 /** As many views as the server takes. */
 const MAX_VIEWS = 16;
@@ -26,15 +27,16 @@ export const canTriangulate = (views: readonly MarkedView[]): boolean =>
   Array.from({ length: JOINT_COUNT }, (_, joint) => views.filter(({ points }) => (points[joint]?.[2] ?? 0) > 0).length).some((count) => count >= 2);
 
 /** The joints as the other views should see them; what lies outside an image is not suggested there. */
-export function suggestViews(found: Triangulation, views: readonly MarkedView[], frame: number, hand: Side): Suggestion[] {
+export function suggestViews(found: Triangulation, views: readonly MarkedView[], { frame, hand }: Omit<PoseKey, "camera">, poses: Poses): Suggestion[] {
   const cameras = found.joints[0]?.views.map((view) => view.camera) ?? [];
   const from = views.map((view) => view.camera);
+  const marksOf = (joint: number): JointPoint[] => from.flatMap((camera) => poses[keyText({ camera, frame, hand })]?.[joint] ?? []).filter(isPlaced);
   return cameras.flatMap((camera): Suggestion[] => {
     const own = views.find((view) => view.camera === camera);
-    const joints = found.joints.map(({ views: all }, joint) => {
+    const joints = found.joints.map(({ views: all }, joint): SuggestedJoint | null => {
       const view = all.find((one) => one.camera === camera);
       const isMarked = (own?.points[joint]?.[2] ?? 0) > 0;
-      return view && view.is_seen && !isMarked && view.x !== null && view.y !== null ? { px: [view.x, view.y] as const, guess: "visible" as const } : null;
+      return view && view.is_seen && !isMarked && view.x !== null && view.y !== null ? { px: [view.x, view.y], guess: "visible", ...ofIndependent(...marksOf(joint)) } : null;
     });
     if (joints.every((joint) => joint === null)) return [];
     return [{ source: "triangulation", label: from.filter((one) => one !== camera).join(", "), place: { camera, frame, hand }, joints }];

@@ -7,8 +7,7 @@ import type { Action } from "../../state/annotator";
 export const acceptBetween: Action<readonly [number, number]> = (state, span) => {
   const accepted = between(state.poses, { camera: state.camera, hand: state.hand }, span).flatMap((suggestion) => {
     const key = keyText(suggestion.place);
-    const from = sourceOf(suggestion);
-    const pose = withAccepted(state.poses[key], suggestion.joints.map((joint) => joint && { ...joint, from }));
+    const pose = withAccepted(state.poses[key], suggestion.joints.map((joint) => joint && { ...joint, from: sourceOf(suggestion, joint) }));
     return state.poses[key]?.every((point, joint) => point === pose[joint]) ? [] : [[key, pose] as const];
   });
   return accepted.length > 0 ? { ...state, poses: { ...state.poses, ...Object.fromEntries(accepted) } } : state;

@@ -120,7 +120,7 @@ test("B brings the last annotated pose of the same hand, flags and all", () => {
   const before = cycleVisibility(placed(21), 3);
   const later = bringPose(goToFrame(before, 4));
   expect(toWire(activePose(later))).toEqual(toWire(activePose(before)));
-  expect(activePose(later)[3]?.from).toEqual({ kind: "copy", label: "frame 0" });
+  expect(activePose(later)[3]?.from).toEqual({ kind: "copy", label: "frame 0", is_independent: true });
   expect(activePose(nudgeJoint(selectJoint(later, 3), { x: 1, y: 0 }))[3]?.from, "moved by hand").toBeUndefined();
   expect(bringPose(switchHand(goToFrame(before, 4))).poses).toBe(before.poses);
 });

@@ -1,4 +1,5 @@
 import { isEmpty, parseKey, statusOf, type Pose } from "../../model/pose";
+import { ofIndependent } from "../../model/source";
 import { withActivePose, type Action, type AnnotatorState } from "../../state/annotator";
 
 /** Frames of this camera with an annotation of the given hand (or any), in order. */
@@ -11,7 +12,7 @@ export function annotatedFrames(state: AnnotatorState, hand?: string): number[] 
 }
 
 /** The pose as another frame gets it: its joints say that nobody placed them there. */
-export const copyOf = (pose: Pose, frame: number): Pose => pose.map((point) => (statusOf(point) === "unset" ? point : { ...point, from: { kind: "copy", label: `frame ${frame}` } }));
+export const copyOf = (pose: Pose, frame: number): Pose => pose.map((point) => (statusOf(point) === "unset" ? point : { ...point, from: { kind: "copy", label: `frame ${frame}`, ...ofIndependent(point) } }));
 
 /** The pose of the last annotated frame before this one, flags and all. One step for undo. */
 export const bringPose: Action = (state) => {

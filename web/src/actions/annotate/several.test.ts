@@ -90,7 +90,7 @@ test("between key frames positions are proposed, follow their ends, and acceptin
   expect(here(3)[0]?.px).toEqual([4, 0]);
   annotator.set(acceptBetween(annotator.get(), [2, 6]), "person");
   expect([3, 4, 5].map((frame) => annotator.get().poses[key(frame)]?.[0]?.x)).toEqual([4, 99, 12]);
-  expect(annotator.get().poses[key(4)]?.[1]).toEqual({ x: 9, y: 2, v: 2, from: { kind: "interpolation", label: "key frames 2 and 6" } });
+  expect(annotator.get().poses[key(4)]?.[1]).toEqual({ x: 9, y: 2, v: 2, from: { kind: "interpolation", label: "key frames 2 and 6", is_independent: true } });
   expect(here(4).every((joint) => joint === null)).toBe(true);
   undo.undo();
   expect(Object.keys(annotator.get().poses).sort()).toEqual([key(2), key(4), key(6)].sort());

@@ -34,7 +34,7 @@ export function CamerasProvider({ children }: { children: ReactNode }) {
         notifications.show({ message: `No joint of the ${state.hand} hand is marked in two cameras yet. Mark the ${jointLabel(state.joint)} in another camera, then press T again.` });
         return;
       }
-      const suggestions = suggestViews(answer.found, answer.views, state.frame, state.hand);
+      const suggestions = suggestViews(answer.found, answer.views, state, state.poses);
       suggest(session.suggestions, suggestions);
       const refusals = answer.found.joints.flatMap(({ refusal }, joint) => (refusal && !refusal.startsWith("Marked in") ? [`${jointLabel(joint)}: ${refusal}`] : []));
       if (refusals.length > 0) notifications.show({ color: "yellow", message: refusals[0] + (refusals.length > 1 ? ` (and ${refusals.length - 1} more)` : "") });

@@ -2,10 +2,11 @@ import { Button, Group, Menu, Modal, Skeleton, Stack, Text, Title } from "@manti
 import { useDisclosure } from "@mantine/hooks";
 import { IconDownload, IconListCheck } from "@tabler/icons-react";
 import { useSearchParams } from "react-router";
-import { isChosen, readChoice, REPORTS, reportUrl, useComparison, writeChoice, type Comparison, type EvaluationChoice } from "../../api/evaluations";
+import { isChosen, readChoice, REPORTS, reportUrl, useComparison, writeChoice, type Comparison, type EvaluationChoice, type JudgedTrack } from "../../api/evaluations";
 import { formatCount } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
+import { LeftOut } from "../parts/LeftOut";
 import { useTitle } from "../parts/useTitle";
 import { ErrorCurves } from "./ErrorCurves";
 import { Filters } from "./Filters";
@@ -15,6 +16,13 @@ import { Lineage, ParameterTable } from "./Provenance";
 import { SummaryTable } from "./SummaryTable";
 import { TrackChooser } from "./TrackChooser";
 import { WorstFrames } from "./WorstFrames";
+
+/** Tracks of one recording are judged by the same labels; the one that holds most of them speaks for all. */
+function recordingsOf({ tracks }: Comparison): [string, string, JudgedTrack["sources"]][] {
+  const ordered = [...tracks].sort((a, b) => b.left_out_joints - a.left_out_joints);
+  const first = (track: JudgedTrack): boolean => ordered.find((other) => other.recording_key === track.recording_key) === track;
+  return ordered.filter(first).map((track) => [track.recording_key, track.recording, track.sources]);
+}
 
 function Tables({ comparison, choice, onChange }: { comparison: Comparison; choice: EvaluationChoice; onChange: (part: Partial<EvaluationChoice>) => void }) {
   const recordings = new Set(comparison.tracks.map((track) => track.recording_key)).size;
@@ -27,6 +35,9 @@ function Tables({ comparison, choice, onChange }: { comparison: Comparison; choi
           Distance in the image between marked and tracked joints, px. Lost frames count like any other.
           {comparison.tracks.length > 1 && " Differences are over the joints and frames that both tracks have; below zero is better."}
         </Text>
+        {recordingsOf(comparison).map(([recording, name, sources]) => (
+          <LeftOut key={recording} {...(recordings > 1 ? { name } : {})} sources={sources} onSources={(chosen) => onChange({ sources: chosen })} />
+        ))}
       </section>
       {recordings > 1 && (
         <section aria-label="Recordings">

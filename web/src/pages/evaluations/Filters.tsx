@@ -1,5 +1,6 @@
 import { Checkbox, Group, NumberInput, SegmentedControl, Select, Tooltip } from "@mantine/core";
 import type { Comparison, EvaluationChoice } from "../../api/evaluations";
+import { SourceFilter } from "../parts/SourceFilter";
 import { LabelsPicker } from "./LabelsPicker";
 import classes from "./Evaluations.module.css";
 
@@ -36,6 +37,7 @@ export function Filters({ choice, comparison, onChange }: FiltersProps) {
         value={choice.hand}
         onChange={(hand) => onChange({ hand })}
       />
+      <SourceFilter chosen={choice.sources} onChange={(sources) => onChange({ sources })} />
       {cameras.length > 1 && (
         <Select
           size="xs"

@@ -1,10 +1,12 @@
-import { Button, Select, Skeleton, Stack, Text, Title } from "@mantine/core";
+import { Button, Input, Select, Skeleton, Stack, Text, Title } from "@mantine/core";
 import { IconDownload } from "@tabler/icons-react";
 import { useState } from "react";
 import { exportUrl, useExportNotes, useLabelFormats, type Snapshot } from "../../api/labels";
 import { useTracks } from "../../api/tracks";
 import type { Recording } from "../../api/types";
 import { formatBytes, formatCount } from "../../model/format";
+import { ALL_SOURCES } from "../../model/source";
+import { SourceFilter } from "../parts/SourceFilter";
 import classes from "./LabelsPage.module.css";
 
 /** Labels for other programs, with what each format loses said before. */
@@ -14,10 +16,12 @@ export function ExportCard({ recording, snapshots }: { recording: Recording; sna
   const [name, setName] = useState("coco_keypoints");
   const [snapshot, setSnapshot] = useState("now");
   const [track, setTrack] = useState("");
+  const [sources, setSources] = useState<readonly string[]>([ALL_SOURCES]);
   const format = formats.find((item) => item.name === name);
   const choice = {
     format: name,
     snapshot_id: snapshot === "now" ? undefined : snapshot,
+    source: sources,
     track_id: format?.needs_3d && track ? track : undefined,
   };
   const { data: notes, error, isFetching } = useExportNotes(recording.id, choice);
@@ -33,6 +37,11 @@ export function ExportCard({ recording, snapshots }: { recording: Recording; sna
           onChange={(value) => value && setSnapshot(value)}
           allowDeselect={false}
         />
+        <Input.Wrapper label="Joints" labelElement="div">
+          <div>
+            <SourceFilter chosen={sources} onChange={setSources} />
+          </div>
+        </Input.Wrapper>
         {format?.needs_3d && (
           <Select
             label="Joints in space"

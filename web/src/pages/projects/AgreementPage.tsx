@@ -1,12 +1,15 @@
 import { Button, Group, SimpleGrid, Text, Title } from "@mantine/core";
 import { IconDownload } from "@tabler/icons-react";
 import type { ReactNode } from "react";
-import { Link, useParams } from "react-router";
+import { Link, useParams, useSearchParams } from "react-router";
 import { agreementFile, useAgreement, type AgreementReport, type Spread } from "../../api/teams";
 import { formatNumber } from "../../model/format";
+import { INDEPENDENT } from "../../model/source";
 import { Fact } from "../parts/Fact";
 import { Failure } from "../parts/Failure";
+import { LeftOut } from "../parts/LeftOut";
 import { PageSkeleton } from "../parts/PageSkeleton";
+import { SourceFilter } from "../parts/SourceFilter";
 import { useTitle } from "../parts/useTitle";
 import classes from "./projects.module.css";
 
@@ -17,7 +20,10 @@ const signed = (value: number | null): string => (value === null ? "–" : `${va
 /** How well people agree who marked the same frames without seeing each other. */
 export default function AgreementPage() {
   const { projectId, setId } = useParams();
-  const { data: report, error, refetch } = useAgreement(setId);
+  const [address, setAddress] = useSearchParams();
+  const sources = address.get("sources")?.split(",") ?? [INDEPENDENT];
+  const choose = (chosen: readonly string[]): void => setAddress(chosen.join() === INDEPENDENT ? {} : { sources: chosen.join(",") }, { replace: true });
+  const { data: report, error, refetch } = useAgreement(setId, sources);
   useTitle(report ? `Agreement: ${report.name}` : "Agreement");
   if (error) {
     return (
@@ -45,8 +51,9 @@ export default function AgreementPage() {
           </Text>
         </div>
         <Group gap="sm" wrap="nowrap">
+          <SourceFilter chosen={sources} onChange={choose} />
           {(["html", "csv", ""] as const).map((kind) => (
-            <Button key={kind} size="xs" variant="default" component="a" href={agreementFile(setId, kind)} download={`agreement.${kind || "json"}`} leftSection={<IconDownload size={14} aria-hidden />}>
+            <Button key={kind} size="xs" variant="default" component="a" href={agreementFile(setId, kind, sources)} download={`agreement.${kind || "json"}`} leftSection={<IconDownload size={14} aria-hidden />}>
               {kind ? kind.toUpperCase() : "JSON"}
             </Button>
           ))}
@@ -58,6 +65,7 @@ export default function AgreementPage() {
         <Fact label="Object keypoint similarity">{formatNumber(report.oks, 3)}</Fact>
         <Fact label="Four annotators of [T16]">{report.t16_std_px} px</Fact>
       </SimpleGrid>
+      <LeftOut sources={report.sources} onSources={choose} />
       {report.annotators.length < 2 && (
         <Text mb="lg" className="quiet">
           At least two annotators must submit before there is anything to compare.

@@ -8,6 +8,7 @@ import { formatCount } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { useTitle } from "../parts/useTitle";
+import { CheckedList } from "./CheckedList";
 import { FlagItem } from "./FlagItem";
 import classes from "./LabelCheck.module.css";
 
@@ -89,7 +90,7 @@ export default function LabelCheckPage() {
       {first && shot && flags.length === 0 && (
         <EmptyState
           icon={<IconChecks size={48} stroke={1.25} />}
-          title={isDismissed ? "Nothing was put away" : "No label looks wrong"}
+          title={isDismissed ? "Nothing was put away" : first.checked.labels === 0 ? "Nothing is labelled yet" : "No label looks wrong to what could be checked"}
           action={
             <Button variant="default" component={Link} to={`/recordings/${recordingId}/annotate`}>
               Annotate
@@ -98,7 +99,7 @@ export default function LabelCheckPage() {
         >
           {isDismissed
             ? "Flags that somebody looked at and found right are kept here, and can be brought back."
-            : "Every label is checked whenever it changes: bone lengths, depth, jumps, order of the fingers, left and right, other cameras and the best track. What looks wrong appears here, the worst first."}
+            : "Every label is checked whenever it changes. What looks wrong appears here, the worst first; below is what each check could look at, and what it lacks."}
         </EmptyState>
       )}
       {shot && flags.length > 0 && (
@@ -122,6 +123,7 @@ export default function LabelCheckPage() {
           </Button>
         </Group>
       )}
+      {first && !isDismissed && first.checked.labels > 0 && <CheckedList checked={first.checked} />}
     </div>
   );
 }

@@ -51,6 +51,7 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
     [frames],
   );
 
+  const leftOut = evaluation && evaluation.left_out_joints > 0 ? `, ${evaluation.left_out_joints} joints that a track had a part in left out` : "";
   const hasEnergy = Object.keys(frames.costs).length > 0;
   const stages = Object.entries(track.summary.stages_ms ?? {});
   return (
@@ -66,8 +67,10 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
           {tab === "timing"
             ? `median ${formatNumber(track.summary.median_ms)} ms, 95 % below ${formatNumber(track.summary.p95_ms)} ms`
             : evaluation && evaluation.evaluated > 0
-              ? `${formatNumber(evaluation.joint_error_px.mean)} px mean error in ${evaluation.evaluated} annotated`
-              : "annotate frames for an error in px"}
+              ? `${formatNumber(evaluation.joint_error_px.mean)} px mean error in ${evaluation.evaluated} annotated${leftOut}`
+              : leftOut
+                ? `nothing judges${leftOut}`
+                : "annotate frames for an error in px"}
         </Text>
       </Tabs.List>
       <Tabs.Panel value="error" className={classes.plot}>

@@ -26,7 +26,7 @@ from server.live.schemas import LabelChange
 from server.sequences.models import SequenceRow
 from server.teams.models import AssignmentRow, CommentRow, ProjectRow
 
-LOOK_SECONDS = 0.4
+LOOK_SECONDS = 0.2
 """At most so often the database is asked about one recording, however many listen."""
 
 KEPT_CHANGES = 5000

@@ -163,7 +163,14 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     points = lead.send("GET", f"/sequences/{recording['id']}/annotations/cam0/1/right")["points"]
     assert sum(v > 0 for _, _, v in points) == 1, "a click into locked work does nothing"
 
-    page.goto(f"/recordings/{recording['id']}/annotate?frame=1")
+    page.goto("/projects")
+    waiting = page.get_by_role("region", name="My work").get_by_test_id("work").filter(has_text="in review").last
+    expect(waiting).to_contain_text(recording["name"])
+    screenshots.take(page, "team-to-review")
+    waiting.get_by_role("link", name="Review it").click()
+    picture_of(page).wait()
+    page.keyboard.press("f")
+    expect(page.get_by_label("Frame", exact=True)).to_have_value("1")
     picture_of(page).wait()
     review = page.get_by_role("group", name="Assignment")
     expect(review.get_by_role("button", name="Accept")).to_be_visible()

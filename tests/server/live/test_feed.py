@@ -39,9 +39,7 @@ def listen(studio: Any, project: Any) -> Listen:
         account = Account(id=uuid.UUID(person.id), name=person.name, role=role)
         state = studio.app.state
         listener = Listener(account, replica, PLACE_GUARDS, visit)
-        return RecordingFeed.after(
-            last_id, since, state.watches.of(uuid.UUID(project.sequence)), state.visits, listener
-        )
+        return RecordingFeed.after(last_id, state.watches.of(uuid.UUID(project.sequence)), state.visits, listener)
 
     return made
 

@@ -46,8 +46,8 @@ export const useAgreement = (id: string | undefined, sources: readonly string[])
   });
 export const agreementFile = (id: string, kind: "csv" | "html" | "", sources: readonly string[]): string => `${API}/replica-sets/${id}/agreement${kind && `.${kind}`}?${sourceQuery(sources)}`;
 
-export const useAssignments = (query: { mine?: "true"; project?: string; sequence?: string }) =>
-  useQuery({ queryKey: key("assignments", JSON.stringify(query)), queryFn: () => fetchAll<Assignment>("/assignments", query), refetchInterval: 30_000 });
+export const useAssignments = (query: { mine?: "true"; project?: string; sequence?: string; state?: AssignmentState }, isWanted = true) =>
+  useQuery({ queryKey: key("assignments", JSON.stringify(query)), queryFn: () => fetchAll<Assignment>("/assignments", query), refetchInterval: 30_000, enabled: isWanted });
 export const useAssignment = (id: string | null) =>
   useQuery({ queryKey: key("assignment", id), queryFn: () => request<Assignment>("GET", `/assignments/${id}`), enabled: Boolean(id) });
 export const useComments = (assignment: string | undefined, isShown = true) =>

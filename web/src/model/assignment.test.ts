@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import type { Assignment, Me, ReplicaSet } from "../api/teams";
-import { assignmentAt, describeUnfinished, lockReason, progressOf } from "./assignment";
+import { assignmentAt, describeUnfinished, lockReason, progressOf, toReview } from "./assignment";
 import { emptyPose, keyText, type Pose } from "./pose";
 
 const given = (change: Partial<Assignment>): Assignment =>
@@ -38,4 +38,14 @@ test("a frame is done when every joint asked for is decided, and one that was on
   expect(progressOf(given({}), replicas, poses, ["right"])).toEqual({ done: 0, total: 2, next: 2, partial: [2, 5] });
   expect(progressOf(given({}), replicas, { ...poses, [at(5, "left")]: whole }, ["right"])).toEqual({ done: 1, total: 2, next: 2, partial: [2] });
   expect(describeUnfinished({ done: 1, total: 4, next: 2, partial: [2, 3] })).toBe("1 frame is not begun. 2 frames have undecided joints, the first is 2.");
+});
+
+test("a reviewer is to review what others submitted, but no set that they mark blindly themselves", () => {
+  const submitted = [given({ id: "1", state: "submitted" }), given({ id: "2", state: "submitted", account_id: "rob" }), given({ id: "3", state: "submitted", replica_set_id: "set" })];
+  const mine = [given({ id: "4", account_id: "rob", replica_set_id: "set" })];
+  const ids = (who: Me, own: Assignment[] = []) => toReview(submitted, own, who).map((one) => one.id);
+  expect(ids(me("ann"))).toEqual([]);
+  expect(ids(me("rob", "reviewer"))).toEqual(["1", "3"]);
+  expect(ids(me("rob", "reviewer"), mine)).toEqual(["1"]);
+  expect(ids(me("rob", "lead"), mine)).toEqual(["1", "2"]);
 });

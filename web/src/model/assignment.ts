@@ -71,6 +71,13 @@ export function describeUnfinished({ done, total, partial }: AssignmentProgress)
   return parts.filter(Boolean).join(" ");
 }
 
+/** Of submitted work what this person may review: not their own (but a lead may), and no set that they mark blindly themselves. */
+export function toReview(submitted: readonly Assignment[], mine: readonly Assignment[], me: Me | undefined): readonly Assignment[] {
+  if (!hasRole(me, "reviewer")) return [];
+  const blind = new Set(mine.filter((one) => one.replica_set_id !== null && one.state !== "accepted").map((one) => one.replica_set_id));
+  return submitted.filter((one) => one.state === "submitted" && (one.account_id !== me?.id || hasRole(me, "lead")) && !blind.has(one.replica_set_id));
+}
+
 /** Why nothing may be changed at this frame, in words, or null. The server refuses the same. */
 export function lockReason(assignment: Assignment | undefined, me: Me | undefined, replicas: ReplicaSet | undefined, hand: string): string | null {
   if (!assignment || !me) return null;

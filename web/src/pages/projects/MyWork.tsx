@@ -1,34 +1,54 @@
 import { Button, Skeleton, Stack, Text, Title } from "@mantine/core";
 import { Link } from "react-router";
-import { assignmentAddress, useAssignments, useComments, type Assignment, type AssignmentState } from "../../api/teams";
+import { assignmentAddress, useAssignments, useComments, useMe, type Assignment, type AssignmentState } from "../../api/teams";
+import { hasRole, toReview } from "../../model/assignment";
 import { formatCount } from "../../model/format";
 import classes from "./projects.module.css";
 import { StateBadge } from "./StateBadge";
 import { WorkProgress, workText } from "../parts/WorkProgress";
 
-/** What came back goes first: somebody waits for it. */
-const ORDER: readonly AssignmentState[] = ["returned", "open", "submitted"];
+/** Somebody waits for what came back and for what is to be reviewed. */
+const ORDER: readonly AssignmentState[] = ["returned", "submitted", "open"];
 
-/** What is assigned to me, what was returned and why, and the next frame to do. */
+interface Item {
+  readonly assignment: Assignment;
+  readonly isReview: boolean;
+}
+
+/** What is mine to do: to mark, to change because it was returned, to review; with its state and the way straight there. */
 export function MyWork() {
-  const { data } = useAssignments({ mine: "true" });
-  const mine = data?.filter((one) => one.state !== "accepted").sort((a, b) => ORDER.indexOf(a.state) - ORDER.indexOf(b.state));
+  const me = useMe().data;
+  const isReviewer = hasRole(me, "reviewer");
+  const { data: mine } = useAssignments({ mine: "true" });
+  const { data: submitted } = useAssignments({ state: "submitted" }, isReviewer);
+  const isLoading = !mine || !me || (isReviewer && !submitted);
+  const reviews = toReview(submitted ?? [], mine ?? [], me);
+  const own = (mine ?? []).filter((one) => one.state !== "accepted" && !reviews.some((review) => review.id === one.id));
+  const isMyTurn = ({ assignment, isReview }: Item): boolean => isReview || assignment.state !== "submitted";
+  const items: Item[] = [...reviews.map((assignment) => ({ assignment, isReview: true })), ...own.map((assignment) => ({ assignment, isReview: false }))].sort(
+    (a, b) => Number(isMyTurn(b)) - Number(isMyTurn(a)) || ORDER.indexOf(a.assignment.state) - ORDER.indexOf(b.assignment.state),
+  );
   return (
     <Stack component="section" gap="sm" mb="xl" aria-label="My work">
       <Title order={2}>My work</Title>
-      {!mine && <Skeleton height={64} radius="lg" />}
-      {mine?.length === 0 && <Text className="quiet">Nothing is assigned to you. What a lead gives you to mark appears here, with the next frame to do.</Text>}
-      {mine?.map((assignment) => (
-        <Work key={assignment.id} assignment={assignment} />
-      ))}
+      {isLoading && <Skeleton height={64} radius="lg" />}
+      {!isLoading && items.length === 0 && (
+        <Text className="quiet">
+          {isReviewer
+            ? "Nothing waits for your review, and nothing is assigned to you. Work that somebody submits appears here."
+            : "Nothing is assigned to you. What a lead gives you to mark appears here, with the next frame to do."}
+        </Text>
+      )}
+      {!isLoading && items.map((item) => <Work key={item.assignment.id} {...item} />)}
     </Stack>
   );
 }
 
-function Work({ assignment }: { assignment: Assignment }) {
+function Work({ assignment, isReview }: Item) {
   const isReturned = assignment.state === "returned";
   const why = useComments(assignment.id, isReturned).data?.filter((comment) => comment.resolved_at === null).at(-1);
-  const isToDo = assignment.state !== "submitted";
+  const isToDo = isReview || assignment.state !== "submitted";
+  const label = isReview ? "Review it" : !isToDo ? "Look at it" : assignment.next_frame === null ? "Look through and submit" : `Go on at frame ${assignment.next_frame}`;
   return (
     <div className={`card ${classes.work}`} data-testid="work">
       <StateBadge state={assignment.state} />
@@ -37,6 +57,7 @@ function Work({ assignment }: { assignment: Assignment }) {
           {assignment.recording}, {assignment.replica_set ? `${assignment.replica_set} (blind)` : `frames ${assignment.frame_first}–${assignment.frame_last}`}
         </Text>
         <Text size="xs" className="quiet one-line">
+          {isReview && `${assignment.account} · `}
           {assignment.project}
           {assignment.note && ` · ${assignment.note}`}
         </Text>
@@ -53,8 +74,8 @@ function Work({ assignment }: { assignment: Assignment }) {
           {workText(assignment.frames_done, assignment.frames_partial, assignment.frames)}
         </Text>
       </div>
-      <Button size="xs" miw={136} variant={isToDo ? "filled" : "default"} component={Link} to={assignmentAddress(assignment, why?.frame ?? assignment.next_frame)}>
-        {isToDo ? (assignment.next_frame === null ? "Look through and submit" : `Go on at frame ${assignment.next_frame}`) : "Look at it"}
+      <Button size="xs" miw={136} variant={isToDo ? "filled" : "default"} component={Link} to={assignmentAddress(assignment, isReview ? assignment.frame_first : (why?.frame ?? assignment.next_frame))}>
+        {label}
       </Button>
     </div>
   );

@@ -36,7 +36,10 @@ class Sample:
 
 
 SAMPLE = Sample("Sample: open and close", "open-close", 60)
-SCANS = ("--subjects", "1,2", "--poses", "flat_spread,tip_pinch,fist", "--sides", "right", "--points", "20000")
+SCAN_POSES = "flat_together,flat_spread,index_bent,half_curl,prismatic_3_finger,tripod,quadpod,point"
+SCANS = ("--subjects", "1,2,3,4", "--poses", SCAN_POSES, "--sides", "right", "--points", "6000", "--forearm", "no")
+"""Eight of each of four people: enough to train a model from three of them and to judge it on the fourth."""
+
 SCANS_NAME = "Sample scans"
 CAMERAS_SAMPLE = Sample("Sample: a pinch in three cameras", "pinch", 20, 3)
 
@@ -48,8 +51,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "demo",
         help="run the studio with a sample project",
         description="Run the studio with samples: a rendered recording, annotated here and there, with its track, "
-        "a recording of three cameras, and a few scans to register and judge. They are made once; what you do with "
-        "them stays.",
+        "a recording of three cameras, and scans of four people: enough to register, judge and train a hand model from. "
+        "They are made once; what you do with them stays.",
     )
     add_serve_arguments(parser)
     parser.set_defaults(run=run_guarded(run))

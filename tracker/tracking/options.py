@@ -114,7 +114,7 @@ class TrackOptions:
             if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
                 raise TrackingError(f"{option.name} is {value!r}; needed a number from {low} to {high}.")
         if 0 <= self.last_frame < self.first_frame:
-            raise TrackingError(f"last_frame {self.last_frame} comes before first_frame {self.first_frame}.")
+            raise TrackingError(f"The last frame, {self.last_frame}, comes before the first, {self.first_frame}.")
 
     @property
     def term_letters(self) -> str:

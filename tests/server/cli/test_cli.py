@@ -239,7 +239,7 @@ def test_the_demo_makes_its_samples_once_and_tracks_one(tmp_path: Path) -> None:
             assert len(recordings) == len(found) == 2
             assert len(found["Sample: a pinch in three cameras"]["cameras"]) == 3
             assert found["Sample: open and close"]["annotated_frames"] == 4
-            assert len(httpx.get(f"{address}/{API}/scans").json()["items"]) == 6
+            assert len(httpx.get(f"{address}/{API}/scans").json()["items"]) == 32
             jobs = {job["kind"]: job for job in httpx.get(f"{address}/{API}/jobs").json()["items"]}
             assert sorted(jobs) == ["register", "track"]
             job = wait_for_job(address, jobs["track"]["id"])

@@ -51,7 +51,7 @@ def test_a_recording_that_cannot_be_tracked_is_not_queued(client: TestClient, ad
         (flat, {}, "None of its cameras has depth images"),
         (deep, {"camera": "cam7"}, "Camera cam7 has no depth images. Choose cam0."),
         (deep, {"last_frame": 999}, f"the recording has 0 to {deep['frame_count'] - 1}"),
-        (deep, {"first_frame": 5, "last_frame": 3}, "last_frame 3 comes before first_frame 5"),
+        (deep, {"first_frame": 5, "last_frame": 3}, "The last frame, 3, comes before the first, 5."),
         (deep, {"iterations": 0}, "needed a number from 1 to 200"),
         (deep, {"hand_model_id": str(uuid.uuid4())}, "There is no hand model"),
         ({"id": str(uuid.uuid4())}, {}, "does not exist"),

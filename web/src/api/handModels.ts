@@ -34,7 +34,9 @@ export type Evaluate = Schemas["TrainCreate"]["evaluate"];
 export type TrainingWish = Partial<Schemas["TrainingParams"]>;
 
 export interface TrainWish {
-  training_set_id: string;
+  /** Registrations to learn from, or else the rule that chooses them now. */
+  training_set_id?: string;
+  rule?: TrainingRule;
   name: string;
   model_id?: string;
   options?: TrainingWish;
@@ -143,14 +145,6 @@ function useStart<Body>(path: string) {
 export const useStartRegistering = () => useStart<RegisterWish>("/jobs/register");
 export const useStartTraining = () => useStart<TrainWish>("/jobs/train");
 export const useStartLoop = () => useStart<LoopWish>("/jobs/loop");
-
-export function useMakeTrainingSet() {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: (body: { name: string; rule: TrainingRule }) => request<TrainingSet>("POST", "/training-sets", { body }),
-    onSuccess: () => client.invalidateQueries({ queryKey: modelKeys.sets }),
-  });
-}
 
 export function useHideModel() {
   const client = useQueryClient();

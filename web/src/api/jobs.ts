@@ -13,6 +13,7 @@ export const jobKeys = {
   active: ["jobs", "active"] as const,
   ofRecording: (id: string) => ["jobs", "recording", id] as const,
   batches: ["jobs", "batches"] as const,
+  checks: ["jobs", "checks"] as const,
 };
 
 export const isActive = (job: Job): boolean => job.state === "queued" || job.state === "running";

@@ -55,7 +55,12 @@ export const useEvaluation = (id: string) =>
         throw failure;
       }
     },
+    enabled: id !== "",
   });
+
+/** Mean error of a track in px; null when it was compared with nothing. Every page that shows it asks here. */
+export const errorOf = (evaluation: Evaluation | null | undefined): number | null =>
+  evaluation && evaluation.evaluated > 0 ? (evaluation.joint_error_px.mean ?? null) : null;
 
 export const overlayUrl = (track: string, camera: string, frame: number): string =>
   `${API}/tracks/${track}/cameras/${encodeURIComponent(camera)}/frames/${frame}/overlay.png`;

@@ -41,3 +41,6 @@ export function formatBytes(bytes: number): string {
 
 /** "depth_residual_mm" or "depth-residual" as words. */
 export const formatName = (name: string): string => name.replaceAll(/[_-]+/g, " ").replace(/^./, (letter) => letter.toUpperCase());
+
+/** "one, two and three". */
+export const joinWords = (words: readonly string[]): string => words.length < 2 ? words.join("") : `${words.slice(0, -1).join(", ")} and ${words.at(-1)}`;

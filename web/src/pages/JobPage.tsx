@@ -1,12 +1,14 @@
 import { Code, Group, Progress, ScrollArea, SimpleGrid, Stack, Text, Title } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { Link, useParams } from "react-router";
+import { useRestartCheck } from "../api/jobChecks";
 import { isActive, useJob, useJobLog } from "../api/jobs";
 import { useRecording } from "../api/recordings";
 import { describeParams } from "../model/compareJobs";
 import { formatAgo, formatDuration, formatName } from "../model/format";
 import { CompareWith } from "./jobs/CompareWith";
 import { JobResult } from "./jobs/JobResult";
+import { Restart } from "./jobs/Restart";
 import { Failure } from "./parts/Failure";
 import { JobActions, JobBadge, jobProgress } from "./parts/JobRow";
 import { PageSkeleton } from "./parts/PageSkeleton";
@@ -37,6 +39,7 @@ export function JobPage() {
   const { jobId = "" } = useParams();
   const { data: job, error, refetch } = useJob(jobId);
   const recording = useRecording(job?.sequence_id ?? undefined).data;
+  const restart = useRestartCheck(job).data;
   useTitle(job ? `${formatName(job.kind)} ${job.title}` : "Job");
   if (error && !job) return <Failure what="The job could not be loaded" error={error} safe="If it runs, it goes on by itself." onRetry={() => void refetch()} />;
   if (!job) return <PageSkeleton />;
@@ -69,7 +72,7 @@ export function JobPage() {
         </div>
         <Group gap="sm" wrap="nowrap">
           <CompareWith job={job} />
-          <JobActions job={job} />
+          <JobActions job={job} restart={restart} />
         </Group>
       </Group>
       {isActive(job) && (
@@ -87,13 +90,9 @@ export function JobPage() {
             The job failed
           </Text>
           <Text style={{ overflowWrap: "anywhere" }}>{job.error}</Text>
-          <Text size="sm" className="quiet">
-            {job.unit === "scans"
-              ? "What was done so far is kept: resume goes on there, try again begins anew with the same parameters."
-              : "The recording and its annotations are untouched. Try again with the same parameters, or start from the recording with other ones."}
-          </Text>
         </Stack>
       )}
+      {(job.state === "failed" || job.state === "cancelled") && <Restart job={job} check={restart} />}
       <SimpleGrid cols={{ base: 2, sm: 6 }} spacing="md" mb="lg">
         <Fact label="Made">{formatAgo(job.created_at)}</Fact>
         <Fact label="Started">{job.started_at ? formatAgo(job.started_at) : "–"}</Fact>

@@ -24,6 +24,7 @@ import { JobRow } from "./parts/JobRow";
 import { PageSkeleton } from "./parts/PageSkeleton";
 import { Sentences } from "./parts/Sentences";
 import { StartTracking } from "./parts/StartTracking";
+import { TrackButton, useTrackObstacles } from "./parts/TrackButton";
 import { TrackTable } from "./parts/TrackTable";
 import { useTitle } from "./parts/useTitle";
 import { For } from "./parts/For";
@@ -70,6 +71,7 @@ export function RecordingPage() {
   const restore = useRestoreRecording();
   const navigate = useNavigate();
   const [isTracking, tracking] = useDisclosure(false);
+  const obstacles = useTrackObstacles(recording);
   const [isReportShown, report] = useDisclosure(false);
   useTitle(recording?.name);
 
@@ -142,11 +144,7 @@ export function RecordingPage() {
           <Button variant="default" component={Link} to={`/recordings/${recording.id}/annotate`} leftSection={<IconPencil size={16} aria-hidden />}>
             Annotate
           </Button>
-          <For role="reviewer">
-            <Button onClick={tracking.open} leftSection={<IconPlayerPlay size={16} aria-hidden />}>
-              Track …
-            </Button>
-          </For>
+          <TrackButton recording={recording} onClick={tracking.open} leftSection={<IconPlayerPlay size={16} aria-hidden />} />
           <Menu position="bottom-end">
             <Menu.Target>
               <Tooltip label="More">
@@ -209,12 +207,12 @@ export function RecordingPage() {
             <TrackTable tracks={tracks.data} />
           ) : (
             <Group className="card" p="md" justify="space-between">
-              <Text className="quiet">Not tracked yet. The tracker starts from the annotation of its first frame, or from the depth alone.</Text>
-              <For role="reviewer">
-                <Button variant="default" onClick={tracking.open}>
-                  Track …
-                </Button>
-              </For>
+              <Text className="quiet" style={{ flex: 1 }}>
+                {obstacles.length > 0
+                  ? `It cannot be tracked. ${obstacles.join(" ")}`
+                  : "Not tracked yet. The tracker starts from the annotation of its first frame, or from the depth alone."}
+              </Text>
+              <TrackButton recording={recording} variant="default" onClick={tracking.open} />
             </Group>
           )}
         </section>

@@ -2,8 +2,8 @@ import { Button, Group, Table, Text, Title } from "@mantine/core";
 import { IconArrowsDiff } from "@tabler/icons-react";
 import { Link, useSearchParams } from "react-router";
 import { useJob, useJobForm } from "../../api/jobs";
-import { useTrack } from "../../api/tracks";
-import type { Job, Track } from "../../api/types";
+import { errorOf, useEvaluation, useTrack } from "../../api/tracks";
+import type { Evaluation, Job, Track } from "../../api/types";
 import { compareParams } from "../../model/compareJobs";
 import { formatAgo, formatCount, formatDuration, formatNumber } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
@@ -15,7 +15,7 @@ import classes from "./ComparePage.module.css";
 
 interface Result {
   label: string;
-  of: (job: Job, track: Track | undefined) => number | null;
+  of: (job: Job, track: Track | undefined, evaluation: Evaluation | null | undefined) => number | null;
   digits: number;
   unit: string;
 }
@@ -23,7 +23,7 @@ interface Result {
 const RESULTS: Result[] = [
   { label: "Frames", of: (job) => job.frames_done, digits: 0, unit: "" },
   { label: "Lost frames", of: (_, track) => track?.summary.lost ?? null, digits: 0, unit: "" },
-  { label: "Error against annotations", of: (_, track) => track?.error_px ?? null, digits: 2, unit: "px" },
+  { label: "Error against annotations", of: (_, __, evaluation) => errorOf(evaluation), digits: 2, unit: "px" },
   { label: "Depth residual", of: (_, track) => track?.summary.depth_residual_mm ?? null, digits: 2, unit: "mm" },
   { label: "Silhouette IoU", of: (_, track) => track?.summary.silhouette_iou ?? null, digits: 3, unit: "" },
   { label: "Median of a frame", of: (_, track) => track?.summary.median_ms ?? null, digits: 1, unit: "ms" },
@@ -54,6 +54,7 @@ function RunHead({ job, letter }: { job: Job; letter: string }) {
 function Comparison({ first, second }: { first: Job; second: Job }) {
   const form = useJobForm(true).data;
   const tracks = [useTrack(first.track_id ?? "").data, useTrack(second.track_id ?? "").data] as const;
+  const evaluations = [useEvaluation(first.track_id ?? "").data, useEvaluation(second.track_id ?? "").data] as const;
   const rows = compareParams(first, second, form);
   const different = rows.filter((row) => row.isDifferent).length;
   const took = [tookOf(first), tookOf(second)].map((seconds) => (seconds === null ? "–" : formatDuration(seconds)));
@@ -76,7 +77,7 @@ function Comparison({ first, second }: { first: Job; second: Job }) {
           {head("Results")}
           <Table.Tbody>
             {RESULTS.map(({ label, of, digits, unit }) => {
-              const [a, b] = [of(first, tracks[0]), of(second, tracks[1])];
+              const [a, b] = [of(first, tracks[0], evaluations[0]), of(second, tracks[1], evaluations[1])];
               const show = (value: number | null): string => `${formatNumber(value, digits)}${value === null || !unit ? "" : ` ${unit}`}`;
               const difference = a === null || b === null ? null : b - a;
               return (

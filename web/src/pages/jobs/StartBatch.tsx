@@ -3,6 +3,7 @@ import { IconSearch } from "@tabler/icons-react";
 import { useQuery } from "@tanstack/react-query";
 import { useState } from "react";
 import { ApiError } from "../../api/client";
+import { useBatchCheck } from "../../api/jobChecks";
 import { useStartBatch } from "../../api/jobs";
 import { fetchAll, useRecordings } from "../../api/recordings";
 import type { components } from "../../api/schema";
@@ -21,8 +22,6 @@ interface Refusal {
 
 const refusalsOf = (error: unknown): Refusal[] => (error instanceof ApiError ? ((error.body["refused"] as Refusal[] | undefined) ?? []) : []);
 
-const isTrackable = (recording: Recording): boolean => recording.cameras.some((camera) => camera.has_depth);
-
 interface StartBatchProps {
   isOpen: boolean;
   onClose: () => void;
@@ -35,6 +34,9 @@ export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
   const projects = useQuery({ queryKey: ["jobs", "projects"], queryFn: () => fetchAll<Project>("/projects"), enabled: isOpen }).data ?? [];
   const options = useTrackingOptions(isOpen);
   const start = useStartBatch();
+  const ids = recordings?.map((recording) => recording.id) ?? [];
+  const obstacles = useBatchCheck(ids, options.changed, isOpen).data;
+  const isTrackable = (recording: Recording): boolean => obstacles !== undefined && !obstacles.has(recording.id);
   const [search, setSearch] = useState("");
   const [chosen, setChosen] = useState<ReadonlySet<string>>(new Set());
 
@@ -114,7 +116,7 @@ export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
                   key={recording.id}
                   py={4}
                   label={recording.name}
-                  description={isTrackable(recording) ? formatCount(recording.frame_count, "frame") : "cannot be tracked: none of its cameras has depth"}
+                  description={obstacles?.get(recording.id) ?? formatCount(recording.frame_count, "frame")}
                   disabled={!isTrackable(recording)}
                   checked={chosen.has(recording.id)}
                   onChange={(event) => choose([recording.id], event.currentTarget.checked)}

@@ -1,10 +1,13 @@
 import { Button, Group, Modal, NumberInput, Radio, Select, Stack, TagsInput, Text, TextInput, Title } from "@mantine/core";
 import { useState } from "react";
 import { useNavigate } from "react-router";
-import { useStartLoop, type Evaluate, type HandModel } from "../../api/handModels";
+import { useStartLoop, type Evaluate, type HandModel, type LoopWish } from "../../api/handModels";
+import { mayStart, useJobCheck } from "../../api/jobChecks";
 import { useScanCollections } from "../../api/scans";
+import { FormFooter } from "../parts/Obstacles";
 import { EvaluateChoice } from "./EvaluateChoice";
 import { LOCAL_SHAPES, LocalShapesChoice } from "./LocalShapesChoice";
+import { ToCurate } from "./ToCurate";
 
 const EVERY = "";
 
@@ -20,20 +23,18 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
   const [leaveOut, setLeaveOut] = useState<string[]>([]);
   const [evaluate, setEvaluate] = useState<Evaluate>("quick");
   const [hasLocalShapes, setHasLocalShapes] = useState(false);
-  const submit = (): void =>
-    start.mutate(
-      {
-        name: name.trim() || "Hand model",
-        by,
-        rounds: by === "decisions" ? 1 : rounds,
-        leave_out_subjects: leaveOut,
-        evaluate: leaveOut.length > 0 ? evaluate : "no",
-        ...(hasLocalShapes ? { options: { num_local_shapes: LOCAL_SHAPES } } : {}),
-        ...(collection ? { collection } : {}),
-        ...(model ? { model_id: model.id } : {}),
-      },
-      { onSuccess: (job) => void navigate(`/jobs/${job.id}`) },
-    );
+  const wish: LoopWish = {
+    name: name.trim() || "Hand model",
+    by,
+    rounds: by === "decisions" ? 1 : rounds,
+    leave_out_subjects: leaveOut,
+    evaluate: leaveOut.length > 0 ? evaluate : "no",
+    ...(hasLocalShapes ? { options: { num_local_shapes: LOCAL_SHAPES } } : {}),
+    ...(collection ? { collection } : {}),
+    ...(model ? { model_id: model.id } : {}),
+  };
+  const check = useJobCheck("/jobs/loop", wish, isOpen);
+  const submit = (): void => start.mutate(wish, { onSuccess: (job) => void navigate(`/jobs/${job.id}`) });
   return (
     <Modal opened={isOpen} onClose={onClose} size={600} title={<Title order={2}>Register, train, register again</Title>}>
       <form
@@ -60,19 +61,14 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
           <TagsInput label="Subjects to leave out" description="Kept for testing" placeholder={leaveOut.length === 0 ? "None" : ""} value={leaveOut} onChange={setLeaveOut} />
           <LocalShapesChoice value={hasLocalShapes} onChange={setHasLocalShapes} />
           <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
-          {start.error && (
-            <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
-              {start.error.message} No job was started.
-            </Text>
-          )}
-          <Group justify="flex-end" gap="sm">
+          <FormFooter check={check.data} failure={start.error} help={by === "decisions" ? <ToCurate collection={collection} /> : undefined}>
             <Button variant="default" onClick={onClose}>
               Cancel
             </Button>
-            <Button type="submit" loading={start.isPending}>
+            <Button type="submit" loading={start.isPending} disabled={!mayStart(check)}>
               Start
             </Button>
-          </Group>
+          </FormFooter>
         </Stack>
       </form>
     </Modal>

@@ -2,11 +2,14 @@ import { Button, Checkbox, Group, Modal, Radio, Select, Stack, TagsInput, Text, 
 import { useDebouncedValue } from "@mantine/hooks";
 import { useState } from "react";
 import { useNavigate } from "react-router";
-import { useHandModels, useMakeTrainingSet, useStartTraining, useTrainingPreview, type Evaluate, type TrainingRule } from "../../api/handModels";
+import { useHandModels, useStartTraining, useTrainingPreview, type Evaluate, type TrainingRule, type TrainWish } from "../../api/handModels";
+import { mayStart, useJobCheck } from "../../api/jobChecks";
 import { useScanCollections } from "../../api/scans";
 import { formatCount } from "../../model/format";
+import { FormFooter } from "../parts/Obstacles";
 import { EvaluateChoice } from "./EvaluateChoice";
 import { LOCAL_SHAPES, LocalShapesChoice } from "./LocalShapesChoice";
+import { ToCurate } from "./ToCurate";
 
 const EVERY = "";
 
@@ -21,7 +24,6 @@ interface TrainDialogProps {
 export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
   const collections = useScanCollections().data ?? [];
   const models = useHandModels().data ?? [];
-  const makeSet = useMakeTrainingSet();
   const train = useStartTraining();
   const navigate = useNavigate();
   const [name, setName] = useState("");
@@ -42,29 +44,21 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
   const [settled] = useDebouncedValue(rule, 200);
   const preview = useTrainingPreview(settled, isOpen);
   const model = models.find((one) => one.id === modelId);
-  const failure = makeSet.error ?? train.error;
-  const submit = async (): Promise<void> => {
-    try {
-      const title = name.trim() || "Hand model";
-      const set = await makeSet.mutateAsync({ name: title, rule });
-      const job = await train.mutateAsync({
-        training_set_id: set.id,
-        name: title,
-        ...(hasLocalShapes ? { options: { num_local_shapes: LOCAL_SHAPES } } : {}),
-        ...(leaveOut.length > 0 ? { evaluate, test_subjects: leaveOut } : {}),
-        ...(modelId ? { model_id: modelId } : {}),
-      });
-      void navigate(`/jobs/${job.id}`);
-    } catch {
-      // Both say what failed below.
-    }
+  const wish: TrainWish = {
+    rule,
+    name: name.trim() || "Hand model",
+    ...(hasLocalShapes ? { options: { num_local_shapes: LOCAL_SHAPES } } : {}),
+    ...(leaveOut.length > 0 ? { evaluate, test_subjects: leaveOut } : {}),
+    ...(modelId ? { model_id: modelId } : {}),
   };
+  const check = useJobCheck("/jobs/train", wish, isOpen);
+  const submit = (): void => train.mutate(wish, { onSuccess: (job) => void navigate(`/jobs/${job.id}`) });
   return (
     <Modal opened={isOpen} onClose={onClose} size={600} title={<Title order={2}>Train a hand model</Title>}>
       <form
         onSubmit={(event) => {
           event.preventDefault();
-          void submit();
+          submit();
         }}
       >
         <Stack gap="md">
@@ -100,19 +94,14 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
                 ? preview.error.message
                 : "Counting …"}
           </Text>
-          {failure && (
-            <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
-              {failure.message} No job was started.
-            </Text>
-          )}
-          <Group justify="flex-end" gap="sm">
+          <FormFooter check={check.data} failure={train.error} help={by === "decisions" ? <ToCurate collection={collection} /> : undefined}>
             <Button variant="default" onClick={onClose}>
               Cancel
             </Button>
-            <Button type="submit" loading={makeSet.isPending || train.isPending} disabled={!preview.data || preview.data.registrations === 0}>
+            <Button type="submit" loading={train.isPending} disabled={!mayStart(check)}>
               Train
             </Button>
-          </Group>
+          </FormFooter>
         </Stack>
       </form>
     </Modal>

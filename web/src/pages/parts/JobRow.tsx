@@ -1,6 +1,8 @@
 import { Badge, Button, Group, Progress, Text } from "@mantine/core";
+import { notifications } from "@mantine/notifications";
 import { IconBan, IconCheck, IconClock, IconPlayerPlay, IconX } from "@tabler/icons-react";
 import { Link } from "react-router";
+import type { RestartCheck } from "../../api/jobChecks";
 import { isActive, useJobAction } from "../../api/jobs";
 import type { Job, JobState } from "../../api/types";
 import { formatAgo, formatDuration, formatName } from "../../model/format";
@@ -40,7 +42,10 @@ export function jobProgress(job: Job): string {
 const tookOf = (job: Job): string =>
   job.started_at && job.ended_at ? ` in ${formatDuration((Date.parse(job.ended_at) - Date.parse(job.started_at)) / 1000)}` : "";
 
-export function JobActions({ job }: { job: Job }) {
+const sayWhy = (failure: Error): void => void notifications.show({ color: "red", title: "Not done", message: failure.message });
+
+/** What can be done with a job; `restart` says of one that ended whether it can go on or be tried again. */
+export function JobActions({ job, restart }: { job: Job; restart?: RestartCheck | undefined }) {
   const cancel = useJobAction("cancel");
   const retry = useJobAction("retry");
   const resume = useJobAction("resume");
@@ -63,17 +68,17 @@ export function JobActions({ job }: { job: Job }) {
       )}
       <For role="reviewer">
         {isActive(job) && (
-          <Button size="xs" variant="default" loading={cancel.isPending} onClick={() => cancel.mutate(job.id)}>
+          <Button size="xs" variant="default" loading={cancel.isPending} onClick={() => cancel.mutate(job.id, { onError: sayWhy })}>
             Cancel
           </Button>
         )}
-        {(job.state === "failed" || job.state === "cancelled") && (job.frames_done > 0 || (job.unit === "scans" && job.started_at)) && (
-          <Button size="xs" variant="default" loading={resume.isPending} onClick={() => resume.mutate(job.id)}>
+        {(job.state === "failed" || job.state === "cancelled") && job.started_at && (
+          <Button size="xs" variant="default" loading={resume.isPending} disabled={restart?.resume.can_start === false} onClick={() => resume.mutate(job.id, { onError: sayWhy })}>
             Resume
           </Button>
         )}
         {(job.state === "failed" || job.state === "cancelled") && (
-          <Button size="xs" variant="default" loading={retry.isPending} onClick={() => retry.mutate(job.id)}>
+          <Button size="xs" variant="default" loading={retry.isPending} disabled={restart?.retry.can_start === false} onClick={() => retry.mutate(job.id, { onError: sayWhy })}>
             Try again
           </Button>
         )}

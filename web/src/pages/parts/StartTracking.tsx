@@ -1,7 +1,9 @@
-import { Button, Group, Modal, Stack, Text, Title } from "@mantine/core";
+import { Button, Modal, Stack, Text, Title } from "@mantine/core";
 import { useNavigate } from "react-router";
 import { useStartTracking } from "../../api/jobs";
+import { mayStart, useJobCheck } from "../../api/jobChecks";
 import type { Recording } from "../../api/types";
+import { FormFooter } from "./Obstacles";
 import { TrackingForm, useTrackingOptions } from "./TrackingForm";
 
 interface StartTrackingProps {
@@ -15,6 +17,7 @@ export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps
   const options = useTrackingOptions(isOpen);
   const start = useStartTracking();
   const navigate = useNavigate();
+  const check = useJobCheck("/jobs", { sequence_id: recording.id, params: options.changed }, isOpen);
 
   const submit = (): void =>
     start.mutate(
@@ -41,19 +44,14 @@ export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps
             working meanwhile, and close the browser.
           </Text>
           <TrackingForm options={options} recording={recording} />
-          {start.error && (
-            <Text size="sm" c="var(--bad-text)" role="alert">
-              {start.error.message} No job was started.
-            </Text>
-          )}
-          <Group justify="flex-end" gap="sm">
+          <FormFooter check={check.data} failure={start.error}>
             <Button variant="default" onClick={onClose}>
               Cancel
             </Button>
-            <Button type="submit" loading={start.isPending} data-autofocus>
+            <Button type="submit" loading={start.isPending} disabled={!mayStart(check)} data-autofocus>
               Start tracking
             </Button>
-          </Group>
+          </FormFooter>
         </Stack>
       </form>
     </Modal>

@@ -1,8 +1,10 @@
-import { Button, Group, Modal, Radio, Select, Stack, Text, Title } from "@mantine/core";
+import { Button, Modal, Radio, Select, Stack, Text, Title } from "@mantine/core";
 import { useState } from "react";
 import { useNavigate } from "react-router";
 import { useHandModels, useStartRegistering } from "../../api/handModels";
+import { mayStart, useJobCheck } from "../../api/jobChecks";
 import { formatCount } from "../../model/format";
+import { FormFooter } from "../parts/Obstacles";
 
 interface RegisterDialogProps {
   isOpen: boolean;
@@ -29,15 +31,13 @@ export function RegisterDialog({ isOpen, onClose, scanIds, collection, modelId }
   const [only, setOnly] = useState<string>("new");
   const newest = models.filter((one) => one.kind === "trained").sort((a, b) => (b.created_at ?? "").localeCompare(a.created_at ?? ""))[0];
   const chosen = model ?? modelId ?? newest?.id ?? models[0]?.id ?? "";
-  const submit = (): void =>
-    start.mutate(
-      {
-        ...(scanIds.length > 0 ? { scan_ids: [...scanIds], only: "all" as const } : { only: only as "new" }),
-        ...(scanIds.length === 0 && collection ? { collection } : {}),
-        ...(chosen ? { model_id: chosen } : {}),
-      },
-      { onSuccess: (job) => void navigate(`/jobs/${job.id}`) },
-    );
+  const wish = {
+    ...(scanIds.length > 0 ? { scan_ids: [...scanIds], only: "all" as const } : { only: only as "new" }),
+    ...(scanIds.length === 0 && collection ? { collection } : {}),
+    ...(chosen ? { model_id: chosen } : {}),
+  };
+  const check = useJobCheck("/jobs/register", wish, isOpen && chosen !== "");
+  const submit = (): void => start.mutate(wish, { onSuccess: (job) => void navigate(`/jobs/${job.id}`) });
   return (
     <Modal opened={isOpen} onClose={onClose} size={560} title={<Title order={2}>Register scans</Title>}>
       <form
@@ -68,19 +68,14 @@ export function RegisterDialog({ isOpen, onClose, scanIds, collection, modelId }
               </Stack>
             </Radio.Group>
           )}
-          {start.error && (
-            <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
-              {start.error.message} No job was started.
-            </Text>
-          )}
-          <Group justify="flex-end" gap="sm">
+          <FormFooter check={check.data} failure={start.error}>
             <Button variant="default" onClick={onClose}>
               Cancel
             </Button>
-            <Button type="submit" loading={start.isPending}>
+            <Button type="submit" loading={start.isPending} disabled={!mayStart(check)}>
               Register
             </Button>
-          </Group>
+          </FormFooter>
         </Stack>
       </form>
     </Modal>

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import time
+import uuid
 import zipfile
 
 import pytest
@@ -167,6 +168,27 @@ def test_a_track_is_looked_at_by_fingers(studio, track, open_page, picture_of, s
     page.get_by_text("3D view", exact=True).click()
     expect(page.get_by_role("group", name="Layers of the 3D view")).to_be_visible()
     expect(picture.element).to_be_hidden()
+def test_a_job_tells_the_error_that_the_page_of_its_track_tells(studio, track, synthesized, open_page):
+    """The labels have changed since the track was made, and nobody has opened it."""
+    from playwright.sync_api import expect
+
+    page = open_page()
+    shift = 0.0
+    for frame in (4, 8):
+        shift += 30.0
+        studio.send(
+            "PUT",
+            f"/sequences/{track['sequence_id']}/annotations/cam0/{frame}/right",
+            json={"points": [[x + shift, y, 2] for x, y in synthesized.joints], "operation_id": str(uuid.uuid4())},
+            headers={"If-None-Match": "*"},
+        ).raise_for_status()
+        page.goto(f"/jobs/{track['job_id']}")
+        result = page.get_by_role("region", name="Result")
+        expect(result.get_by_text("Error, px")).to_be_visible()
+        page.wait_for_load_state("networkidle")
+        shown = result.inner_text()
+        mean = studio.get(f"/tracks/{track['id']}/evaluation")["joint_error_px"]["mean"]
+        assert f"{mean:.2f}" in shown, shown
 
 
 def test_files_that_cannot_be_imported_get_a_report_that_says_what_to_do(studio, open_page, screenshots, tmp_path):

@@ -247,10 +247,11 @@ def test_what_is_known_to_be_wrong_is_named_without_the_folders_of_the_machine(b
     (bench.storage.folder("sequences", bench.sequence_id) / "sequence.json").write_text("{}")
     bench.start_worker()
     job = wait_for_failure(bench, job_id)
-    assert "sequence.json" in job.error and job.error in bench.log(job_id)
+    assert job.error is not None and "sequence.json" in job.error and job.error in bench.log(job_id)
     assert str(bench.settings.data_dir) not in job.error and "nobody foresaw" not in job.error
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_progress_never_goes_back_and_a_fitted_shape_is_not_lost_with_a_cancelled_job(bench: Bench) -> None:
     """One job is cancelled, resumed, killed; then one with the same parameters takes its start over."""

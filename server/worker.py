@@ -76,10 +76,12 @@ def run_worker(settings: Settings) -> None:
 
 def _evaluate(database: Database, judge: Judge, track_id: UUID) -> None:
     """Find the error of a new track against the labels, so that every list shows it."""
+    from tracker import JUDGING
+
     try:
         with database.reading() as session:
             row = get_track(session, track_id)
-        evaluate(database, judge, row)
+        evaluate(database, judge, row, JUDGING)
     except Exception:  # the track is stored; whoever opens it is told what is wrong with its evaluation
         log.exception("track %s could not be evaluated", track_id)
 

@@ -107,16 +107,24 @@ if TYPE_CHECKING:
     from tracker.tracking.quick_fit import MIN_FIT_JOINTS, QuickFit, fit_marked, view_track_hands
     from tracker.tracking.setup import TrackSetup
     from tracker.tracking.start import start_tracking
+    from tracker.tracking.start_plan import plan_start
     from tracker.tracking.state import TrackState
     from tracker.tracking.track import Track, join_chunks, load_track
+    from tracker.tracking.tracking_faults import find_tracking_faults
     from tracker.tracking.view_aids import ViewAids
     from tracker.tracking.warm_up import warm_up
     from tracker.training.checkpoints import Checkpoints, pack_arrays, unpack_arrays
     from tracker.training.options import TrainingOptions
     from tracker.training.train import Training, train_model
+    from tracker.training.training_faults import TrainingHand, find_bend_fault, find_training_faults
     from tracker.training.training_set import TrainingSet, load_training_set, make_training_set
 
 _HOMES = {
+    "plan_start": "tracker.tracking.start_plan",
+    "find_tracking_faults": "tracker.tracking.tracking_faults",
+    "find_training_faults": "tracker.training.training_faults",
+    "find_bend_fault": "tracker.training.training_faults",
+    "TrainingHand": "tracker.training.training_faults",
     "write_model_html": "tracker.evaluation.model_report_html",
     "study_held_out": "tracker.evaluation.held_out_study",
     "STUDY_LEVELS": "tracker.evaluation.held_out_study",
@@ -329,6 +337,7 @@ __all__ = [
     "TrackingError",
     "Training",
     "TrainingError",
+    "TrainingHand",
     "TrainingOptions",
     "TrainingSet",
     "Triangulation",
@@ -349,12 +358,15 @@ __all__ = [
     "export_labels",
     "export_track",
     "extract_archive",
+    "find_bend_fault",
     "find_counted",
     "find_hand_points",
     "find_origin",
     "find_path_fault",
     "find_possible_units",
     "find_size_fault",
+    "find_tracking_faults",
+    "find_training_faults",
     "find_unit",
     "fit_marked",
     "generalize_shapes",
@@ -380,6 +392,7 @@ __all__ = [
     "mirror_blend",
     "pack_arrays",
     "pack_files",
+    "plan_start",
     "read_import_picture",
     "read_label_files",
     "read_scan",

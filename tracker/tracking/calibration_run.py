@@ -53,6 +53,10 @@ class Pass:
     frames: int
     options: CalibrationOptions
 
+    def count_frames(self, there: int, fps: float) -> int:
+        """Of `there` frames, so many are followed."""
+        return max(1, min(there, round(self.seconds * fps)))
+
 
 PASSES = (
     Pass(1.0, 8, CalibrationOptions(rounds=4, coarse_rounds=4)),
@@ -61,13 +65,17 @@ PASSES = (
 """The first makes the second follow better."""
 
 
+def name_pass(what: str, number: int) -> str:
+    """Name of a stage of a pass, counted from 1, for people."""
+    return f"{what} ({number} of {len(PASSES)})"
+
+
 def calibrate_hands(
     sequence: Sequence,
     setup: TrackSetup,
     frames: range,
     pose: Array,
     tell: Progress,
-    passes: tuple[Pass, ...] = PASSES,
 ) -> tuple[TrackSetup, Array]:
     """The setup with the hands that have a shape basis fitted, and the pose (D,) in the first frame.
 
@@ -77,20 +85,17 @@ def calibrate_hands(
         frames: Of the run.
         pose: (D,) in the first of them.
         tell: Told the stage and its share done.
-        passes: What to do.
     """
-    for number, each in enumerate(passes, 1):
-        last = max(1, min(len(frames), round(each.seconds * sequence.fps)))
-        stage = f"({number} of {len(passes)})"
-        poses = _follow(sequence, setup, frames[:last], pose, lambda share, s=stage: tell(f"following {s}", share))
+    for number, each in enumerate(PASSES, 1):
+        last = each.count_frames(len(frames), sequence.fps)
+        following, fitting = name_pass("following", number), name_pass("fitting the shape", number)
+        poses = _follow(sequence, setup, frames[:last], pose, lambda share, stage=following: tell(stage, share))
         chosen = _choose(setup, poses, each.frames)
         seen = [_look(sequence, setup, frames, place, poses[place]) for place in chosen]
         known = [frame for frame in seen if frame is not None]
         if not known or seen[0] is None:
             break
-        found = calibrate_shapes(
-            setup.scene, known, each.options, lambda share, s=stage: tell(f"fitting the shape {s}", share)
-        )
+        found = calibrate_shapes(setup.scene, known, each.options, lambda share, stage=fitting: tell(stage, share))
         setup = replace(setup, models=found.models)
         pose = found.poses[0]
         for name, values in zip(setup.names, found.values, strict=True):

@@ -20,6 +20,7 @@ from tracker.model.npz_files import load_npz_model, save_npz_model
 from tracker.model.scene import Scene
 from tracker.observation import Preprocessing, undistort
 from tracker.tracking.options import TrackOptions
+from tracker.tracking.tracking_faults import find_tracking_faults
 
 
 @dataclass(frozen=True)
@@ -103,11 +104,10 @@ def choose_camera(sequence: Sequence, options: TrackOptions) -> str:
     """The depth camera that a run tracks in.
 
     Raises:
-        TrackingError: There is none, or the one asked for has no depth.
+        TrackingError: The recording cannot be tracked so.
     """
     with_depth = [camera.id for camera in sequence.cameras if camera.has_depth]
-    if not with_depth:
-        raise TrackingError(f"{sequence.name}: has no depth; the tracker needs a camera with depth images.")
-    if options.camera and options.camera not in with_depth:
-        raise TrackingError(f"{sequence.name}: camera {options.camera!r} has no depth; {', '.join(with_depth)} have.")
+    faults = find_tracking_faults(sequence.frame_count, sequence.hands, with_depth, options)
+    if faults:
+        raise TrackingError(f"{sequence.name}: {' '.join(faults)}")
     return options.camera or with_depth[0]

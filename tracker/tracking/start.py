@@ -12,7 +12,6 @@ from tracker.capture.annotations import Annotations
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
-from tracker.errors import TrackingError
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.default_hand import default_hand
 from tracker.model.files import load_model
@@ -32,6 +31,7 @@ from tracker.tracking.setup import TrackSetup, choose_camera
 from tracker.tracking.start_annotated import start_hand, undistort_points, with_marks
 from tracker.tracking.start_automatic import find_hand
 from tracker.tracking.start_object import start_object
+from tracker.tracking.start_plan import plan_start
 from tracker.tracking.state import TrackState
 
 Array = npt.NDArray[np.float64]
@@ -58,22 +58,21 @@ def start_tracking(
         options: What the user chose.
         models: Hands, `right` and `left`, to use in place of the default ones, and objects in place of the recording's.
         annotations: Only those of the first frame are looked at.
-        progress: Told the stage and the share of it that is done.
+        progress: Told the stage and the share of all that is done, 0 to 1; may raise to cancel.
 
     Raises:
-        TrackingError: No depth camera, or a frame range that does not exist.
+        TrackingError: `find_tracking_faults` finds some, or an object is not found.
     """
-    tell = progress or (lambda stage, share: None)
-    frames = options.frame_range(sequence.frame_count)
     camera_id = choose_camera(sequence, options)
+    frames = options.frame_range(sequence.frame_count)
     names = tuple(sequence.hands)
-    if not names:
-        raise TrackingError(f"{sequence.name}: names no hands; set `hands` to right, left or both.")
     given = models or {}
     hands = {name: given.get(name) or default_hand(name) for name in names}
     marks = _find_marks(sequence, annotations, frames[0], camera_id)
     placed: dict[str, tuple[ArticulatedModel, Array]] = {}
-    for name in sorted(names, key=lambda hand: hand not in marks):  # those that somebody marked come first
+    first = sorted(names, key=lambda hand: hand not in marks)  # those that somebody marked come first
+    tell = plan_start(sequence, options, first).share(progress or (lambda stage, share: None))
+    for name in first:
         tell(f"placing the {name} hand", 0.0)
         own = {name: marks[name]} if name in marks else {}
         setup = TrackSetup((name,), (hands[name],), camera_id, options, own)

@@ -21,14 +21,11 @@ from tracker.training.pose_fit import fit_poses
 from tracker.training.report import describe_training
 from tracker.training.spaces import compute_rotation_vectors, find_shape_space, find_space
 from tracker.training.stages import Stage, find_last, list_stages, pack_stage, unpack_stage
+from tracker.training.training_faults import FEWEST_OF_A_HAND, TrainingHand, find_bend_fault, find_training_faults
 from tracker.training.training_set import TrainingSet
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
-
-FEWEST_PEOPLE, FEWEST_OF_A_PERSON, FEWEST = 2, 3, 20
-LEAST_BEND = np.radians(15.0)
-"""Standard deviation of the angle that the most active joint must have over all registrations."""
 
 
 @dataclass(frozen=True)
@@ -166,38 +163,28 @@ def _choose(
 
     A person's left hand is not the mirror image of the right: each hand has its own template.
     """
-    if initial.side != "right":
-        raise TrainingError(f"{initial.name}: is a {initial.side} hand; training starts from a right one.")
-    if len(training_set) and training_set.vertices.shape[1] != len(initial.template):
-        raise TrainingError(
-            f"Registrations have {training_set.vertices.shape[1]} vertices, the model {initial.name} has "
-            f"{len(initial.template)}; start from the model they were registered with, or one trained from it."
-        )
+    mirrored = [bool(one) for one in training_set.mirrored]
+    vertices = [training_set.vertices.shape[1]] * len(training_set)
+    hands = [
+        TrainingHand(str(who), *each) for who, *each in zip(training_set.subjects, mirrored, vertices, strict=True)
+    ]
+    faults = find_training_faults(hands, initial.name, initial.side, len(initial.template), options.with_mirrored)
+    if faults:
+        raise TrainingError(" ".join(faults))
     usable = np.ones(len(training_set), dtype=bool) if options.with_mirrored else ~training_set.mirrored
     hands = training_set.hands
     names, counts = np.unique(hands[usable], return_counts=True)
-    kept = names[counts >= FEWEST_OF_A_PERSON]
+    kept = names[counts >= FEWEST_OF_A_HAND]
     chosen = np.flatnonzero(usable & np.isin(hands, kept))
-    people = np.unique(training_set.subjects[chosen])
-    if len(people) < FEWEST_PEOPLE or len(chosen) < FEWEST:
-        raise TrainingError(
-            f"{len(training_set)} registrations, of which {len(chosen)} of {len(people)} people count (hands with at "
-            f"least {FEWEST_OF_A_PERSON} registrations{'' if options.with_mirrored else ', right hands only'}); a "
-            f"model needs at least {FEWEST} of at least {FEWEST_PEOPLE} people. Register and accept more scans."
-        )
-    left_out = {str(n): int(c) for n, c in zip(names, counts, strict=True) if c < FEWEST_OF_A_PERSON}
+    left_out = {str(n): int(c) for n, c in zip(names, counts, strict=True) if c < FEWEST_OF_A_HAND}
     return chosen, np.searchsorted(kept, hands[chosen]), left_out
 
 
 def _check_poses(learnt: Learnt) -> None:
     B = learnt.poses.rotations.shape[1]
     turns = compute_rotation_vectors(learnt.poses.rotations[:, 1:].reshape(-1, 3, 3)).reshape(-1, B - 1, 3)
-    spread = np.sqrt(((turns - turns.mean(0)) ** 2).sum(2).mean(0))
-    if spread.max() < LEAST_BEND:
-        raise TrainingError(
-            f"The hands hardly move: no joint's angle varies by more than {np.degrees(spread.max()):.0f} degrees over "
-            f"the registrations; poses in which fingers bend are needed to learn how they bend."
-        )
+    if fault := find_bend_fault(turns):
+        raise TrainingError(fault)
 
 
 def _assemble(learnt: Learnt, initial: BlendModel, training_set: TrainingSet, options: TrainingOptions):

@@ -74,7 +74,7 @@ def refusal(capsys) -> str:
 def test_a_recording_without_depth_is_refused_with_what_is_needed(recording, capsys):
     change(recording, lambda document: document["cameras"][0].pop("depth"))
     assert track(recording) == BAD_INPUT
-    assert "has no depth; the tracker needs a camera with depth images" in refusal(capsys)
+    assert "None of its cameras has depth images" in refusal(capsys)
 
 
 def test_a_missing_depth_image_is_named(recording, capsys):

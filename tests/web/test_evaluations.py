@@ -109,6 +109,38 @@ def test_two_tracks_are_chosen_compared_and_the_address_holds_it_all(studio, jud
     expect(page).not_to_have_url(re.compile("snapshots="))
 
 
+def test_what_was_accepted_from_a_track_does_not_judge_it_and_the_page_says_so(studio, judged, open_page, screenshots):
+    from playwright.sync_api import expect
+
+    recording, tracks = judged
+    joints = studio.get(f"/tracks/{tracks[0]['id']}/joints?camera=cam0")["points"][1][:21]
+    address = f"/sequences/{recording['id']}/annotations/cam0/1/right"
+    accepted = {"kind": "track", "label": tracks[0]["name"], "track_id": tracks[0]["id"]}
+    points = [[x, y, 2] for x, y in joints]
+    body = {"points": points, "sources": [accepted] * 21, "operation_id": str(uuid.uuid4())}
+    studio.send("PUT", address, json=body, headers={"If-None-Match": "*"}).raise_for_status()
+    try:
+        page = open_page()
+        page.goto(f"/evaluations?tracks={tracks[0]['id']}")
+        row = page.get_by_role("table", name="Error of each track").get_by_role("row").nth(1)
+        expect(row).to_contain_text(f"{(5 * 5 + 9) / 6:.2f}")
+        told = page.get_by_role("note", name="Joints left out")
+        expect(told).to_contain_text(f"21 joints are left out: 21 accepted from {tracks[0]['name']}.")
+        page.wait_for_load_state("networkidle")
+        screenshots.take(page, "35-evaluations-left-out")
+        told.get_by_role("button", name="Count them too").click()
+        expect(page).to_have_url(re.compile("sources=all"))
+        expect(row).to_contain_text(f"{(5 * 5 + 9) / 7:.2f}")
+        expect(told).to_have_count(0)
+        page.get_by_role("button", name="Sources: All sources").click()
+        page.get_by_role("radio", name="Some kinds").check()
+        expect(page).to_have_url(re.compile("sources=hand"))
+        screenshots.take(page, "36-evaluations-sources")
+        expect(row).to_contain_text(f"{(5 * 5 + 9) / 6:.2f}")
+    finally:
+        studio.send("DELETE", address, headers={"If-Match": '"1"'}).raise_for_status()
+
+
 def test_a_worst_frame_is_one_click_from_the_annotator_and_from_the_3d_view(studio, judged, open_page, screenshots):
     from playwright.sync_api import expect
 

@@ -34,7 +34,16 @@ class ImportRefusedError(TrackerError):
 
 
 class AnnotationError(TrackerError):
-    """An annotation file or item is not usable."""
+    """An annotation file or item is not usable.
+
+    Args:
+        message: What came, what is needed, what to do.
+        details: What else was found, for those who want to know.
+    """
+
+    def __init__(self, message: str, details: tuple[str, ...] = ()) -> None:
+        super().__init__(message)
+        self.details = details
 
 
 class ModelFileError(TrackerError):

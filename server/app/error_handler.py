@@ -36,7 +36,10 @@ def answer_error(request: Request, error: Exception) -> Response:
     if isinstance(error, TrackerError):
         # its messages name files in full; where the studio keeps them is nobody's business
         detail = str(error).replace(f"{request.app.state.settings.data_dir}/", "")
-        return _answer(422, type(error).__name__, detail)
+        body: dict[str, Any] = {"error": type(error).__name__, "detail": detail}
+        if details := getattr(error, "details", ()):
+            body["details"] = list(details)
+        return JSONResponse(body, 422)
     if isinstance(error, RequestValidationError):
         return _answer(422, "InvalidError", describe_faults(error.errors()))
     if isinstance(error, HTTPException) and error.status_code == 400:  # FastAPI's word for a body that is no text

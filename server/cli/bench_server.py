@@ -22,7 +22,11 @@ import httpx
 from server.cli.guarded import FAILED, CommandError, add_json, answer, run_guarded
 from server.cli.simulated_annotators import JOINTS, annotate_together, find_faults
 
+CAMERA = "cam0"
 WIDTH, HEIGHT = 64, 48
+BITS, STRIPE = 14, 4
+"""A frame's number stands in its picture: so many bits, the lowest first, each so many px wide and twice as tall."""
+
 START_SECONDS = 120.0
 
 
@@ -91,13 +95,18 @@ def bench(folder: Path, args: argparse.Namespace) -> dict[str, Any]:
 
 async def _annotate(studio: ServedStudio, sequence: str, args: argparse.Namespace) -> Any:
     work = asyncio.create_task(
-        annotate_together(studio.url, sequence, args.frames, args.annotators, args.seconds, args.pause)
+        annotate_together(studio.url, annotations_of(sequence), args.frames, args.annotators, args.seconds, args.pause)
     )
     until = time.monotonic() + args.seconds
     while args.kill_every and time.monotonic() + args.kill_every < until and not work.done():
         await asyncio.sleep(args.kill_every)
         await asyncio.to_thread(studio.kill_and_restart)
     return await work
+
+
+def annotations_of(sequence_id: str) -> str:
+    """Where the annotations of the benchmark's recording are, up to the frame."""
+    return f"/sequences/{sequence_id}/annotations/{CAMERA}"
 
 
 def _percentile(times: list[float], part: float) -> float | None:
@@ -120,16 +129,18 @@ def show(result: dict[str, Any]) -> str:
 
 
 def write_recording(folder: Path, frames: int, joints: int) -> Path:
-    """A recording of tiny pictures, with the right hand annotated in its first frames."""
+    """A recording of tiny pictures that carry their number, with the hands annotated in its first frames."""
     import cv2
     import numpy as np
 
-    encoded = cv2.imencode(".png", np.full((HEIGHT, WIDTH, 3), 96, np.uint8))[1].tobytes()
     (folder / "color").mkdir(parents=True)
     for frame in range(frames):
-        (folder / "color" / f"{frame:06d}.png").write_bytes(encoded)
+        image = np.full((HEIGHT, WIDTH, 3), 96, np.uint8)
+        for bit in range(BITS):
+            image[: 2 * STRIPE, bit * STRIPE : (bit + 1) * STRIPE] = 255 * (frame >> bit & 1)
+        cv2.imwrite(str(folder / "color" / f"{frame:06d}.png"), image)
     camera = {
-        "id": "cam0",
+        "id": CAMERA,
         "width": WIDTH,
         "height": HEIGHT,
         "K": [[60, 0, 32], [0, 60, 24], [0, 0, 1]],
@@ -149,7 +160,7 @@ def write_recording(folder: Path, frames: int, joints: int) -> Path:
     }
     points = [[float(10 + n), float(8 + n), 2] for n in range(JOINTS)]
     items = [
-        {"frame": frame, "camera": "cam0", "hand": hand, "points": points}
+        {"frame": frame, "camera": CAMERA, "hand": hand, "points": points}
         for frame, hand in ((n // 2, ("right", "left")[n % 2]) for n in range(min(joints // JOINTS, 2 * frames)))
     ]
     from tracker import HAND_JOINTS

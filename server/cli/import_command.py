@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from server.cli.export_command import LABELS, find_recording
 from server.cli.guarded import CommandError, add_json, answer, run_guarded
 from server.cli.open_studio import open_studio
+from tracker import ImportRefusedError, say_count
 
 if TYPE_CHECKING:
     from server.cli.open_studio import OpenStudio
@@ -79,8 +80,6 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tracker import ImportRefusedError, say_count
-
     path: Path = args.path.expanduser().absolute()
     if not path.exists():
         raise CommandError(f"{args.path}: does not exist; needed a recording's folder or a video.")
@@ -169,14 +168,16 @@ def _import_scans(args: argparse.Namespace, path: Path) -> int:
     for note in done.notes:
         sys.stderr.write(f"handloom: {note}\n")
     if not done.added and not done.known:
-        raise CommandError(f"{args.path}: none of {len(done.refused)} scans could be imported.")
+        raise CommandError(f"{args.path}: none of {say_count(len(done.refused), 'scan')} could be imported.")
     result = {
         "collection": options.collection,
         "added": [{"id": str(row.id), "name": row.name} for row in done.added],
         "known": [{"id": str(row.id), "name": row.name} for row in done.known],
         "refused": [refusal.model_dump() for refusal in done.refused],
     }
-    told = f"{len(done.added)} scans imported into {options.collection}, {len(done.known)} were there already"
+    told = (
+        f"{say_count(len(done.added), 'scan')} imported into {options.collection}, {len(done.known)} were there already"
+    )
     return answer(args, result, told)
 
 
@@ -203,8 +204,9 @@ def _import_labels(args: argparse.Namespace, path: Path) -> int:
                 raise CommandError(f"{args.path}: nothing was imported. {' '.join(problems)}")
             conflicts = [f"frame {c.frame} of {c.camera}, {c.hand}" for p in plans for c in p.conflicts.values()]
             if conflicts and args.policy is None:
+                hands = say_count(len(conflicts), "hand is", "hands are")
                 raise CommandError(
-                    f"{args.path}: {len(conflicts)} hands are labelled otherwise already ({'; '.join(conflicts[:5])}); "
+                    f"{args.path}: {hands} labelled otherwise already ({'; '.join(conflicts[:5])}); "
                     "nothing was imported. Say --policy keep to leave those as they are, or --policy replace."
                 )
             done = apply_import(
@@ -223,8 +225,8 @@ def _import_labels(args: argparse.Namespace, path: Path) -> int:
         for item in done
     ]
     told = "; ".join(
-        f"{item['name']}: {item['added']} hands added, {item['replaced']} replaced, {item['kept']} kept as they were"
-        + (f", {item['locked']} locked" if item["locked"] else "")
+        f"{item['name']}: {say_count(item['added'], 'hand')} added, {item['replaced']} replaced, "
+        f"{item['kept']} kept as they were" + (f", {item['locked']} locked" if item["locked"] else "")
         for item in recordings
     )
     result = {"format": labels.format, "warnings": list(labels.found.warnings), "recordings": recordings}

@@ -141,14 +141,12 @@ class SimulatedAnnotator:
 
 
 async def annotate_together(
-    url: str, sequence_id: str, frame_count: int, annotators: int, seconds: float, pause: float, seed: int = 0
+    url: str, base: str, frame_count: int, annotators: int, seconds: float, pause: float, seed: int = 0
 ) -> Ledger:
-    """Have this many people annotate the first camera of a recording for some time; gives what they know then."""
+    """Have this many people annotate a camera, whose annotations are at `base`; gives what they know then."""
     ledger = Ledger()
     limits = httpx.Limits(max_connections=annotators * 2, max_keepalive_connections=annotators * 2)
     async with httpx.AsyncClient(base_url=f"{url}/api/v1", timeout=REQUEST_SECONDS, limits=limits) as client:
-        recording = (await client.get(f"/sequences/{sequence_id}")).json()
-        base = f"/sequences/{sequence_id}/annotations/{recording['cameras'][0]['id']}"
         shared = range(min(SHARED_FRAMES, frame_count))
         each = max(1, (frame_count - len(shared)) // annotators)
         people = [

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from server.evaluations.schemas import Comparison, EvaluationQuery
 from server.storage import Storage
+from tracker import say_count
 
 if TYPE_CHECKING:
     from tracker import JudgedTrack
@@ -46,7 +47,7 @@ def _find_title(comparison: Comparison) -> str:
     recordings = list(dict.fromkeys(track.recording for track in comparison.tracks))
     if len(comparison.tracks) == 1:
         return f"{comparison.tracks[0].name} of {recordings[0]}"
-    what = recordings[0] if len(recordings) == 1 else f"{len(recordings)} recordings"
+    what = recordings[0] if len(recordings) == 1 else say_count(len(recordings), "recording")
     return f"{len(comparison.tracks)} tracks of {what}"
 
 

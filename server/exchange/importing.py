@@ -27,7 +27,7 @@ from server.exchange.models import SnapshotRow
 from server.exchange.snapshots import create_snapshot, hold_sequences
 from server.sequences.models import SequenceRow
 from server.storage import Storage
-from tracker import Annotation, ImportedLabels, ImportHints, import_labels, read_label_files
+from tracker import Annotation, ImportedLabels, ImportHints, import_labels, read_label_files, say_count
 
 Policy = Literal["keep", "replace"]
 MAX_TOLD = 20
@@ -182,7 +182,7 @@ def find_problems(labels: ReadLabels, plans: Sequence[ImportPlan]) -> list[str]:
     for plan in plans:
         problems += plan.problems[:MAX_TOLD]
         if len(plan.problems) > MAX_TOLD:
-            problems.append(f"{len(plan.problems) - MAX_TOLD} further hands cannot be stored.")
+            problems.append(f"{say_count(len(plan.problems) - MAX_TOLD, 'further hand')} cannot be stored.")
     return problems
 
 

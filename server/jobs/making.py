@@ -19,6 +19,7 @@ from server.jobs.training_obstacles import find_loop_obstacles, find_train_obsta
 from server.storage import Storage
 from server.training_sets.schemas import TrainingRule
 from server.training_sets.service import create_training_set, get_training_set
+from tracker import say_count
 
 
 def make_register_job(session: Session, storage: Storage, asked: RegisterCreate, account_id: uuid.UUID) -> JobRow:
@@ -26,7 +27,7 @@ def make_register_job(session: Session, storage: Storage, asked: RegisterCreate,
     refuse_at(find_register_obstacles(session, storage, asked))
     model = resolve_model(session, storage, asked.model_id)
     scans = choose_scans(session, asked, model.id)
-    what = "1 scan" if len(scans) == 1 else f"{len(scans)} scans"
+    what = say_count(len(scans), "scan")
     where = f" of {asked.collection}" if asked.collection else ""
     params = {"model_id": str(model.id), "model": model.name, "only": asked.only}
     return _make(session, "register", f"{what}{where} with {model.name}", params, account_id, scans)
@@ -62,8 +63,10 @@ def make_loop_job(session: Session, storage: Storage, asked: LoopCreate, account
     refuse_at(find_loop_obstacles(session, storage, asked, scans))
     model = resolve_model(session, storage, asked.model_id)
     params = {**asked.model_dump(mode="json"), "model_id": str(model.id), "model": model.name}
-    rounds = "1 round" if asked.rounds == 1 else f"{asked.rounds} rounds"
-    return _make(session, "loop", f"{asked.name}: {rounds} over {len(scans)} scans", params, account_id, scans)
+    rounds = say_count(asked.rounds, "round")
+    return _make(
+        session, "loop", f"{asked.name}: {rounds} over {say_count(len(scans), 'scan')}", params, account_id, scans
+    )
 
 
 def copy_job_scans(session: Session, source_id: uuid.UUID, job_id: uuid.UUID) -> None:

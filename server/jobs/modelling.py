@@ -35,6 +35,7 @@ from server.scans.models import ScanRow
 from server.scans.schemas import ScanCrop
 from server.storage.digest import compute_digest
 from server.training_sets import service as training_sets
+from tracker import say_count
 
 if TYPE_CHECKING:
     from tracker import BlendModel, Registration, RegistrationStart, Scan, Training, TrainingSet
@@ -241,7 +242,7 @@ class ScanRun(JobRun):
         told = ", ".join(f"{counts[kind]} {kind}" for kind in ("good", "doubtful", "bad", FAILED) if counts[kind])
         with self.context.database.writing() as session:
             if told:
-                service.append_log(session, self.job_id, "info", f"{len(outcomes)} scans: {told}")
+                service.append_log(session, self.job_id, "info", f"{say_count(len(outcomes), 'scan')}: {told}")
             values = {"frames_done": len(outcomes), "frames_total": len(outcomes)} if outcomes else {}
             self.end(session, attempt, "succeeded", progress=1.0, hand_model_id=model_id, **values)
 

@@ -18,6 +18,7 @@ from server.registrations.models import RegistrationRow
 from server.registrations.service import is_hidden_from
 from server.scans.models import ScanRow
 from server.training_sets.models import TrainingMemberRow, TrainingSetRow
+from tracker import say_count
 
 Ids = set[uuid.UUID]
 MOST_ITEMS = 50
@@ -172,7 +173,10 @@ class _Names:
             name = f"{row.decision} by {self._people.get(row.account_id, '')}"
             detail = f"of a registration by {self._models[row.model_id]}"
         elif isinstance(row, TrainingSetRow):
-            name, detail = row.name, f"{row.registration_count} registrations, {row.subject_count} subjects"
+            name, detail = (
+                row.name,
+                f"{say_count(row.registration_count, 'registration')}, {say_count(row.subject_count, 'subject')}",
+            )
         else:
             assert isinstance(row, HandModelRow)
             name, detail = row.name, f"{row.kind}, round {row.round}"

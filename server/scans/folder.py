@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from server.database.texts import Label, Name
 from server.errors import InvalidError
 from server.scans.schemas import Side, UnitScale
+from tracker import say_count
 
 SUFFIXES = (".ply", ".obj", ".stl")
 LIST_NAME = "scans.json"
@@ -52,9 +53,12 @@ class FoundScans:
         missing = [name for name in self.listed if name not in self.scans]
         notes = []
         if missing:
-            notes.append(f"{LIST_NAME} names {len(missing)} files that are not there, such as {missing[0][:200]!r}.")
+            notes.append(
+                f"{LIST_NAME} names {say_count(len(missing), 'file that is', 'files that are')} not there, such as "
+                f"{missing[0][:200]!r}."
+            )
         if self.others:
-            notes.append(f"{self.others} other files were left aside.")
+            notes.append(f"{say_count(self.others, 'other file was', 'other files were')} left aside.")
         return notes
 
     def hide_root(self, text: str) -> str:

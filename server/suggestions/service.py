@@ -18,6 +18,7 @@ from server.suggestions.shelf import Shelf
 from server.tracks.facts import find_best_tracks
 from server.tracks.models import TrackRow
 from server.tracks.service import get_track
+from tracker import say_count
 
 if TYPE_CHECKING:
     from tracker import ArticulatedModel, QuickFit
@@ -89,14 +90,16 @@ def suggest_by_fit(
 
     placed = sum(1 for _, _, v in points if v)
     if placed < MIN_FIT_JOINTS:
-        raise InvalidError(f"{placed} joints are placed; a model fit needs {MIN_FIT_JOINTS} or more. Place some more.")
+        raise InvalidError(
+            f"{say_count(placed, 'joint is', 'joints are')} placed; a model fit needs {MIN_FIT_JOINTS} or more. Place some more."
+        )
     camera = shelf.recording(recorded.id, recorded.content_key).camera(place.camera)
     frame = shelf.frame(recorded.id, recorded.content_key, place.camera, place.frame) if camera.has_depth else None
     model = _find_model(shelf, chosen, place.hand)
     fit = fit_marked(model, np.array(points, dtype=np.float64), camera, frame)
     return Suggestion(
         source="fit",
-        label=f"model fit of {placed} joints",
+        label=f"model fit of {say_count(placed, 'joint')}",
         camera=place.camera,
         frame=place.frame,
         hand="right" if place.hand == "right" else "left",

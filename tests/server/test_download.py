@@ -69,6 +69,24 @@ def test_labels_and_snapshots_carry_the_name_of_their_recording(studio: Studio, 
     assert notes["file"] == "Anna's_2nd_take-deeplabcut.zip", "the page says the name that the file will have"
 
 
+def test_a_refused_format_gives_one_sentence_with_the_rest_aside(studio: Studio, make_recording) -> None:
+    folder = make_recording("waving")
+    parts = [
+        ("files", (path.relative_to(folder).as_posix(), path.read_bytes()))
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    ]
+    made = studio.client.post("/api/v1/imports", files=parts).json()
+    recording = studio.client.post(f"/api/v1/imports/{made['id']}/confirm", json={}).json()
+    base = f"/api/v1/sequences/{recording['id']}/labels"
+    labels = [("files", (name, b"[]")) for name in ("training_K.json", "training_xyz.json")]
+    refused = studio.client.post(f"{base}/check", files=labels)
+    assert refused.status_code == 422, refused.text
+    body = refused.json()
+    assert body["detail"].count(". ") == 0 and "add the file handloom_samples.json" in body["detail"]
+    assert len(body["details"]) == 2
+
+
 def test_every_attachment_is_named_by_the_one_helper() -> None:
     from pathlib import Path
 

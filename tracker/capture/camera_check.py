@@ -11,7 +11,7 @@ from tracker.capture.calibration import check_distortion, check_image_size, chec
 from tracker.capture.import_plan import DepthSample, PlannedCamera, StreamProbe
 from tracker.capture.import_question import ImportQuestion, make_question
 from tracker.capture.import_report import CalibrationReport, CameraReport, DepthReport, TimestampReport
-from tracker.errors import TrackerError
+from tracker.errors import TrackerError, say_count
 
 Array = npt.NDArray[np.float64]
 
@@ -192,5 +192,7 @@ def _report_times(camera: str, times: Array, problems: list[str], warnings: list
     dropped = int(lost.sum())
     if dropped:
         first = int(np.flatnonzero(intervals > 1.5 * median)[0])
-        warnings.append(f"{camera}: {dropped} frames seem to have been dropped, first after frame {first}.")
+        warnings.append(
+            f"{camera}: {say_count(dropped, 'frame seems', 'frames seem')} to have been dropped, first after frame {first}."
+        )
     return TimestampReport(True, median, jitter, dropped)

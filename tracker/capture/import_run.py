@@ -21,7 +21,7 @@ from tracker.capture.import_report import ImportReport
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.capture.sequence import Sequence, save_sequence_json
 from tracker.capture.workplace import make_workplace
-from tracker.errors import ImportRefusedError, TrackerError
+from tracker.errors import ImportRefusedError, TrackerError, say_count
 
 SOURCES_FILE = "sources.json"
 REPORT_FILE = "import_report.json"
@@ -117,7 +117,8 @@ def _fill(folder: Path, checked: CheckedImport, progress: Progress) -> None:
                 done += 1
                 progress(f"{camera.id} {kind}", done / total)
             if len(stored) != report.frame_count:
-                text = f"{camera.id} {kind}: {len(stored)} frames where the check had found {report.frame_count}"
+                found = say_count(len(stored), "frame")
+                text = f"{camera.id} {kind}: {found} where the check had found {report.frame_count}"
                 raise ImportRefusedError(f"{text}; has the source changed?")
             patterns[kind] = pattern
             sources.setdefault(camera.id, {})[kind] = stored

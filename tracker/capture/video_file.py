@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from tracker.capture.calibration import MAX_PIXELS
 from tracker.capture.import_plan import SourceImage, StreamProbe
-from tracker.errors import FrameError
+from tracker.errors import FrameError, say_count
 
 VIDEO_SUFFIXES = (".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm")
 MAX_VIDEO_FRAMES = 1_000_000
@@ -63,7 +63,9 @@ class VideoFile:
                 f"{self.name}: no frame can be decoded; is it cut off, or in a codec that is not known here?"
             )
         elif promised and len(times) < promised:
-            problems.append(f"{self.name}: promises {promised} frames, {len(times)} can be decoded; copy it again.")
+            problems.append(
+                f"{self.name}: promises {say_count(promised, 'frame')}, {len(times)} can be decoded; copy it again."
+            )
         if len(sizes) > 1:
             problems.append(f"{self.name}: the size of its frames changes ({', '.join(f'{w}x{h}' for w, h in sizes)}).")
         size = sizes.most_common(1)[0][0] if sizes else None

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from tracker.cli.command import add_json, run_guarded
 from tracker.cli.progress import ProgressLine
-from tracker.errors import RegistrationError, ScanError, TrackerError
+from tracker.errors import RegistrationError, ScanError, TrackerError, say_count
 
 if TYPE_CHECKING:
     from tracker.registration.options import RegistrationOptions
@@ -70,7 +70,7 @@ def register(args: argparse.Namespace) -> list[dict[str, Any]]:
     for path, name in name_scans(paths):
         begin = None if args.start is None else args.start / name
         jobs.append((path, args.out / name, args.model, begin, options, args.metres_per_unit))
-    line = ProgressLine(f"registering {len(jobs)} scans")
+    line = ProgressLine(f"registering {say_count(len(jobs), 'scan')}")
     results: list[dict[str, Any]] = []
     for result in run_jobs(jobs, args.processes, args.again):
         results.append(result)

@@ -10,7 +10,7 @@ from typing import Any
 from tracker.cli.command import TRAINED, add_json, choose_frames, parse_hand, parse_range, run_guarded
 from tracker.cli.hands import load_hands
 from tracker.cli.progress import ProgressLine
-from tracker.errors import TrackerError
+from tracker.errors import TrackerError, say_count
 
 MOTION_FRAMES = 90
 
@@ -84,7 +84,7 @@ def synthesize(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def show(result: dict[str, Any]) -> str:
-    return f"{result['name']}: {result['frames']} frames in {result['out']} ({result['seconds']:.1f} s)"
+    return f"{result['name']}: {say_count(result['frames'], 'frame')} in {result['out']} ({result['seconds']:.1f} s)"
 
 
 def _load_twin(args: argparse.Namespace):

@@ -10,7 +10,7 @@ from typing import Any
 
 from tracker.cli.command import add_json, run_guarded
 from tracker.cli.progress import ProgressLine
-from tracker.errors import TrackerError
+from tracker.errors import TrackerError, say_count
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
@@ -84,7 +84,7 @@ def synthesize_scans(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def show(result: dict[str, Any]) -> str:
-    return f"{result['scans']} scans in {result['out']} ({result['seconds']:.1f} s)"
+    return f"{say_count(result['scans'], 'scan')} in {result['out']} ({result['seconds']:.1f} s)"
 
 
 def parse_subjects(text: str) -> tuple[int, ...]:

@@ -10,7 +10,7 @@ from typing import Any
 from tracker.cli.command import add_json, choose_frames, parse_hand, parse_named_file, parse_range, run_guarded
 from tracker.cli.hands import load_hands, load_objects
 from tracker.cli.progress import ProgressLine
-from tracker.errors import TrackerError
+from tracker.errors import TrackerError, say_count
 from tracker.tracking.presets import PRESETS, find_preset
 
 
@@ -126,7 +126,7 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def show(result: dict[str, Any]) -> str:
-    counts = f"{result['frames']} frames, {result['lost']} lost"
+    counts = f"{say_count(result['frames'], 'frame')}, {result['lost']} lost"
     for name, found in result["objects"].items():
         counts += f", {name} lost in {found['lost']}"
     return f"{counts}, median {result['median_ms']:.1f} ms a frame: {result['out']}"

@@ -14,7 +14,7 @@ import numpy as np
 from tracker.capture.annotations import Annotation
 from tracker.capture.camera import Camera
 from tracker.capture.document import Node, parse_json
-from tracker.errors import AnnotationError
+from tracker.errors import AnnotationError, say_count
 from tracker.label_formats.joints_3d import find_hands_3d, project_hand
 from tracker.label_formats.label_set import (
     ExportedLabels,
@@ -63,10 +63,10 @@ def write_freihand(sets: list[LabelSet]) -> ExportedLabels:
                 count=int(bool(camera.distortion.any())),
             )
     if not xyz:
-        found = " ".join(losses.sentences())
         raise AnnotationError(
             "FreiHAND holds 3D joints only, and no right hand of these labels has all 21 joints in 3D: mark them in "
-            f"two calibrated cameras, where there is depth, or give a track. {found}"
+            "two calibrated cameras or where there is depth, or give a track.",
+            losses.sentences(),
         )
     files = {
         "training_xyz.json": write_json(xyz),
@@ -109,10 +109,16 @@ def _read_places(
     if name is None:
         camera = hints.camera or (cameras[0] if len(cameras) == 1 else None)
         if camera not in cameras or count != labels.sequence.frame_count:
+            frames = say_count(labels.sequence.frame_count, "frame")
             raise AnnotationError(
-                f"FreiHAND does not say which image a sample is: {count} samples, {labels.sequence.frame_count} frames "
-                f"of {len(cameras)} cameras. Put a {SAMPLES_FILE} beside it ([{{'camera', 'frame', 'file_name'}}]), "
-                "or give as many samples as frames and the option camera."
+                f"FreiHAND does not say which image a sample is, and {say_count(count, 'sample')} cannot be matched "
+                f"with {frames} of {say_count(len(cameras), 'camera')}: add the file {SAMPLES_FILE}, "
+                "or choose the camera.",
+                (
+                    f"{SAMPLES_FILE} is a list with 'camera', 'frame' and 'file_name' for each sample, in their order; "
+                    "an export from here has it.",
+                    "Without it there must be one sample for each frame, and the option camera says whose frames.",
+                ),
             )
         return [(camera, frame) for frame in range(count)]
     samples = list(parse_json(files[name], name, AnnotationError).items(MAX_SAMPLES))

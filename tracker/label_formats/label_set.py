@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from tracker.capture.annotations import Annotation, Annotations
 from tracker.capture.sequence import Sequence
+from tracker.errors import say_count
 from tracker.label_formats.image_names import ImageNames
 
 Array = npt.NDArray[np.float64]
@@ -110,7 +111,7 @@ class Notes:
             more = f" ({', '.join(examples)}{', ...' if count > len(examples) else ''})" if examples else ""
             told.append(f"{kind.replace('{n}', str(count))}{more}.")
         if len(self._counts) > MAX_NOTES:
-            told.append(f"{len(self._counts) - MAX_NOTES} further kinds of notes.")
+            told.append(f"{say_count(len(self._counts) - MAX_NOTES, 'further kind', 'further kinds')} of notes.")
         return tuple(told)
 
 

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
-from tracker.errors import TrackingError
+from tracker.errors import TrackingError, say_count
 from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import PosedScene, Scene
@@ -67,7 +67,8 @@ def fit_marked(model: ArticulatedModel, points: Array, camera: Camera, frame: Fr
     marked = int(np.count_nonzero(points[:, 2]))
     if marked < MIN_FIT_JOINTS:
         raise TrackingError(
-            f"{marked} joints are marked; a model is fitted to {MIN_FIT_JOINTS} or more. Mark some more."
+            f"{say_count(marked, 'joint is', 'joints are')} marked; "
+            f"a model is fitted to {MIN_FIT_JOINTS} or more. Mark some more."
         )
     marks = undistort_points(points, camera)
     ideal = replace(camera, distortion=np.zeros(0))

@@ -192,7 +192,7 @@ def test_freihand_samples_are_seen_by_the_camera_of_their_image() -> None:
     np.testing.assert_allclose(back.annotations["key"].items[0].points[:, :2], uv[:, :2] / uv[:, 2:], atol=1e-9)
     files["training_xyz.json"] = json.dumps(xyz[:5]).encode()
     files["training_K.json"] = json.dumps([sequence.cameras[0].K.tolist()] * 5).encode()
-    with pytest.raises(AnnotationError, match="5 samples, 6 frames of 1 cameras"):
+    with pytest.raises(AnnotationError, match="5 samples cannot be matched with 6 frames of 1 camera"):
         import_labels(None, files, [labels])
 
 

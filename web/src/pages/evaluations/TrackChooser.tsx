@@ -5,7 +5,7 @@ import { Link } from "react-router";
 import { useEvaluableProjects } from "../../api/evaluations";
 import { useRecordings } from "../../api/recordings";
 import { useTracks } from "../../api/tracks";
-import { formatAgo, formatNumber } from "../../model/format";
+import { formatCount, formatAgo, formatNumber } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import classes from "./Evaluations.module.css";
@@ -114,7 +114,7 @@ export function TrackChooser({ initial, onChoose, onProject }: TrackChooserProps
                       <>
                         {track.name}{" "}
                         <span className="quiet">
-                          · {track.frame_count} frames, {track.summary.lost} lost{track.error_px === null ? "" : `, ${formatNumber(track.error_px, 2)} px`} · {formatAgo(track.created_at)}
+                          · {formatCount(track.frame_count, "frame")}, {track.summary.lost} lost{track.error_px === null ? "" : `, ${formatNumber(track.error_px, 2)} px`} · {formatAgo(track.created_at)}
                         </span>
                       </>
                     }

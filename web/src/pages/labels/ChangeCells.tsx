@@ -1,6 +1,6 @@
 import { Table } from "@mantine/core";
 import type { HandChange } from "../../api/labels";
-import { formatNumber } from "../../model/format";
+import { formatCount, formatNumber } from "../../model/format";
 import { HandBadge } from "../parts/HandBadge";
 
 export const CHANGE_HEADS = (
@@ -14,8 +14,8 @@ export const CHANGE_HEADS = (
 );
 
 export function describeChange(change: HandChange): string {
-  if (change.kind === "added") return `${change.joints_added.length} joints added`;
-  if (change.kind === "removed") return `${change.joints_removed.length} joints removed`;
+  if (change.kind === "added") return `${formatCount(change.joints_added.length, "joint")} added`;
+  if (change.kind === "removed") return `${formatCount(change.joints_removed.length, "joint")} removed`;
   const parts = [
     [Object.keys(change.joints_moved).length, "moved"],
     [change.joints_added.length, "added"],

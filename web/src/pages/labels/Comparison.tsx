@@ -3,7 +3,7 @@ import { IconX } from "@tabler/icons-react";
 import { Link } from "react-router";
 import { useComparison, type Snapshot } from "../../api/labels";
 import type { Recording } from "../../api/types";
-import { formatNumber } from "../../model/format";
+import { formatCount, formatNumber } from "../../model/format";
 import { Fact } from "../parts/Fact";
 import { Failure } from "../parts/Failure";
 import { ChangeCells, CHANGE_HEADS } from "./ChangeCells";
@@ -82,7 +82,7 @@ export function Comparison({ recording, snapshots, snapshot, other, onChoose }: 
           )}
           {data.is_cut && (
             <Text size="sm" className="quiet" mt="sm">
-              The first {data.items.length} hands are listed; the numbers above count all.
+              The first {formatCount(data.items.length, "hand is", "hands are")} listed; the numbers above count all.
             </Text>
           )}
         </div>

@@ -6,6 +6,7 @@ import { useTracks } from "../../api/tracks";
 import type { Recording } from "../../api/types";
 import { formatBytes, formatCount } from "../../model/format";
 import { ALL_SOURCES } from "../../model/source";
+import { Refusal } from "../parts/Refusal";
 import { SourceFilter } from "../parts/SourceFilter";
 import classes from "./LabelsPage.module.css";
 
@@ -73,11 +74,7 @@ export function ExportCard({ recording, snapshots }: { recording: Recording; sna
           </div>
         )}
         {isFetching && !notes && <Skeleton h={48} />}
-        {error && (
-          <Text size="sm" c="var(--bad-text)" role="alert">
-            {error.message}
-          </Text>
-        )}
+        {error && <Refusal error={error} />}
         {notes && !error && (
           <div data-testid="export-notes">
             <Text size="sm" fw={600}>

@@ -9,6 +9,7 @@ import type { Recording } from "../../api/types";
 import { formatCount } from "../../model/format";
 import classes from "./LabelsPage.module.css";
 import { LabelReport } from "./LabelReport";
+import { Refusal } from "../parts/Refusal";
 
 const ANY = "";
 
@@ -107,9 +108,7 @@ export function ImportCard({ recording }: { recording: Recording }) {
           </Text>
         )}
         {check.error && (
-          <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
-            {check.error.message} Nothing was stored.
-          </Text>
+          <Refusal error={check.error} after="Nothing was stored." />
         )}
         {check.data && !check.isPending && <LabelReport recording={recording} report={check.data} upload={{ files, options }} onDone={forget} onStale={() => look(files, options)} />}
       </Stack>

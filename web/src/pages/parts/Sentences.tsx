@@ -1,6 +1,10 @@
 import { Group, List, Text } from "@mantine/core";
 import { IconAlertTriangle, IconCircleX } from "@tabler/icons-react";
+import { Details } from "./Refusal";
 import classes from "./Sentences.module.css";
+
+/** More than this are folded. */
+const SHOWN = 4;
 
 interface SentencesProps {
   title: string;
@@ -19,12 +23,13 @@ export function Sentences({ title, sentences, isProblem }: SentencesProps) {
         <Text fw={600}>{title}</Text>
       </Group>
       <List size="sm" spacing={4} withPadding>
-        {sentences.map((sentence) => (
+        {sentences.slice(0, SHOWN).map((sentence) => (
           <List.Item key={sentence} style={{ overflowWrap: "anywhere" }}>
             {sentence}
           </List.Item>
         ))}
       </List>
+      {sentences.length > SHOWN && <Details sentences={sentences.slice(SHOWN)} />}
     </section>
   );
 }

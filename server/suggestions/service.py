@@ -91,7 +91,8 @@ def suggest_by_fit(
     placed = sum(1 for _, _, v in points if v)
     if placed < MIN_FIT_JOINTS:
         raise InvalidError(
-            f"{say_count(placed, 'joint is', 'joints are')} placed; a model fit needs {MIN_FIT_JOINTS} or more. Place some more."
+            f"{say_count(placed, 'joint is', 'joints are')} placed; a model fit needs {MIN_FIT_JOINTS} or more. "
+            "Place some more."
         )
     camera = shelf.recording(recorded.id, recorded.content_key).camera(place.camera)
     frame = shelf.frame(recorded.id, recorded.content_key, place.camera, place.frame) if camera.has_depth else None

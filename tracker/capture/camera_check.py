@@ -193,6 +193,7 @@ def _report_times(camera: str, times: Array, problems: list[str], warnings: list
     if dropped:
         first = int(np.flatnonzero(intervals > 1.5 * median)[0])
         warnings.append(
-            f"{camera}: {say_count(dropped, 'frame seems', 'frames seem')} to have been dropped, first after frame {first}."
+            f"{camera}: {say_count(dropped, 'frame seems', 'frames seem')} to have been dropped, "
+            f"first after frame {first}."
         )
     return TimestampReport(True, median, jitter, dropped)

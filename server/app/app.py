@@ -20,6 +20,7 @@ from server.app.error_handler import install_error_handler
 from server.app.guard import Guard
 from server.app.methods import Methods
 from server.app.parts import (
+    BIN_KINDS,
     LIFESPANS,
     PAGE_ROUTERS,
     PLACE_GUARDS,
@@ -62,6 +63,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.place_guards = PLACE_GUARDS
     app.state.sight_guards = SIGHT_GUARDS
     app.state.sequence_facts = SEQUENCE_FACTS
+    app.state.bin_kinds = BIN_KINDS
     app.state.scan_facts = SCAN_FACTS
     app.state.scan_resized = SCAN_RESIZED
     install_error_handler(app)

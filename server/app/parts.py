@@ -13,11 +13,14 @@ from server.annotations import routes as annotations
 from server.annotations.guards import PlaceGuard
 from server.annotations.service import find_annotated_frames
 from server.app import health
+from server.bin import routes as bin_routes
+from server.bin.kinds import BinKind
 from server.decisions import routes as decisions
 from server.evaluations import routes as evaluations
 from server.exchange import routes as exchange
 from server.exchange import snapshot_routes
 from server.hand_models import routes as hand_models
+from server.hand_models.bin import HAND_MODELS
 from server.imports import routes as imports
 from server.imports.lifespan import clean_imports
 from server.jobs import routes as jobs
@@ -28,16 +31,20 @@ from server.registrations import model_routes
 from server.registrations import routes as registrations
 from server.registrations.service import find_newest, settle_current
 from server.scans import routes as scans
+from server.scans.bin import SCANS
 from server.scans.facts import FactFinder as ScanFactFinder
 from server.scans.facts import Resized
 from server.sequences import frame_routes
 from server.sequences import routes as sequences
+from server.sequences.bin import RECORDINGS
 from server.sequences.facts import FactFinder
 from server.suggestions import routes as suggestions
 from server.suggestions import triangulation_routes
 from server.teams import routes as teams
+from server.teams.bin import PROJECTS, REPLICA_SETS
 from server.teams.guard import ASSIGNMENTS, check_sees_tracks
 from server.tracks import routes as tracks
+from server.tracks.bin import TRACKS
 from server.tracks.facts import find_best_tracks
 from server.tracks.guard import SightGuard
 from server.training_sets import routes as training_sets
@@ -73,6 +80,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     decisions.router,
     training_sets.router,
     lineage.router,
+    bin_routes.router,
 )
 """All under `/api/v1`."""
 
@@ -90,6 +98,9 @@ SCAN_FACTS: tuple[ScanFactFinder, ...] = (find_newest,)
 
 SCAN_RESIZED: tuple[Resized, ...] = (settle_current,)
 """What rooms above the scans do when the size of one was corrected."""
+
+BIN_KINDS: tuple[BinKind, ...] = (RECORDINGS, TRACKS, SCANS, HAND_MODELS, PROJECTS, REPLICA_SETS)
+"""What is put into the bin instead of being destroyed."""
 
 PLACE_GUARDS: tuple[PlaceGuard, ...] = (ASSIGNMENTS,)
 """What rooms above the annotations forbid at a place."""

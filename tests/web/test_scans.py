@@ -158,6 +158,17 @@ def test_a_unit_is_said_beside_a_hand_before_anything_is_stored_and_corrected_af
     assert (now["metres_per_unit"], now["revision"]) == (0.027, 2)
     assert now["size_m"][0] == pytest.approx(added["size_m"][0] * 27 / 28.5)
 
+    page.goto("/scans?collection=units")
+    page.get_by_label("Choose own_unit").check()
+    page.get_by_role("button", name="Move to the bin").click()
+    page.get_by_text("1 scan moved to the bin.").wait_for()
+    page.goto("/bin?kind=scan")
+    page.get_by_role("button", name="Restore own_unit").wait_for()
+    screenshots.take(page, "bin")
+    page.get_by_role("button", name="Restore own_unit").click()
+    page.get_by_text("own_unit is back.").wait_for()
+    assert studio.get(f"/scans/{added['id']}")["name"] == "own_unit"
+
 
 def test_the_list_is_narrowed_and_the_address_holds_how(scans, open_page):
     from playwright.sync_api import expect

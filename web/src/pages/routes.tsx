@@ -25,6 +25,7 @@ const EvaluationsPage = lazy(() => import("./evaluations/EvaluationsPage"));
 const AccountPage = lazy(() => import("./account/AccountPage"));
 const PeoplePage = lazy(() => import("./account/PeoplePage"));
 const AuditPage = lazy(() => import("./account/AuditPage"));
+const BinPage = lazy(() => import("./account/BinPage"));
 const AgreementPage = lazy(() => import("./projects/AgreementPage"));
 const ProjectPage = lazy(() => import("./projects/ProjectPage"));
 const ProjectsPage = lazy(() => import("./projects/ProjectsPage"));
@@ -67,6 +68,7 @@ export const router = createBrowserRouter([
           { path: "account", element: <AccountPage /> },
           { path: "people", element: <PeoplePage /> },
           { path: "audit", element: <AuditPage /> },
+          { path: "bin", element: <BinPage /> },
           { path: "login", element: <Navigate to="/recordings" replace /> },
           { path: "*", element: <MissingPage /> },
         ],

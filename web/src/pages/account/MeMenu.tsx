@@ -1,5 +1,5 @@
 import { Menu, Text, UnstyledButton } from "@mantine/core";
-import { IconHistory, IconLogout, IconUserCircle, IconUsers } from "@tabler/icons-react";
+import { IconHistory, IconLogout, IconUserCircle, IconTrash, IconUsers } from "@tabler/icons-react";
 import { Link } from "react-router";
 import { logOut } from "../../api/account";
 import { hasRole, useMe } from "../../state/me";
@@ -36,6 +36,9 @@ export function MeMenu() {
             </Menu.Item>
             <Menu.Item component={Link} to="/audit" leftSection={<IconHistory size={16} />}>
               Audit trail
+            </Menu.Item>
+            <Menu.Item component={Link} to="/bin" leftSection={<IconTrash size={16} />}>
+              Bin
             </Menu.Item>
           </>
         )}

@@ -53,7 +53,7 @@ export default function ModelPage() {
       {
         onSuccess: () => {
           void navigate("/models");
-          offerUndo(`${model.name} was deleted.`, () => hide.mutateAsync({ id: model.id, isBack: true }));
+          offerUndo(`${model.name} was moved to the bin.`, () => hide.mutateAsync({ id: model.id, isBack: true }));
         },
         onError: tellFailure,
       },

@@ -1,0 +1,40 @@
+"""`/bin`."""
+
+from __future__ import annotations
+
+import uuid
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from server.accounts.service import LeadAccount
+from server.bin import service
+from server.bin.kinds import BinKindsDep
+from server.bin.schemas import BinItem
+from server.database import SessionDep
+from server.database.paging import Cursor, Limit, Page
+from server.errors import error_responses
+from server.storage import StorageDep
+
+router = APIRouter(prefix="/bin", tags=["bin"], responses=error_responses(404))
+
+
+@router.get("")
+def list_bin(
+    session: SessionDep,
+    storage: StorageDep,
+    kinds: BinKindsDep,
+    lead: LeadAccount,
+    kind: Annotated[str | None, Query(max_length=40, description="Such as `scan`.")] = None,
+    cursor: Cursor = None,
+    limit: Limit = 50,
+) -> Page[BinItem]:
+    """What was deleted, the last first. Nothing leaves the bin by itself."""
+    items, next_cursor = service.list_bin(session, storage, kinds, kind, cursor, limit)
+    return Page(items=items, next_cursor=next_cursor)
+
+
+@router.post("/{kind}/{item_id}/restore", status_code=204, responses=error_responses(409))
+def restore_from_bin(kind: str, item_id: uuid.UUID, session: SessionDep, kinds: BinKindsDep, lead: LeadAccount) -> None:
+    """Bring a deleted thing back. 409 when what it belongs to is in the bin too, which is restored first."""
+    service.restore(session, kinds, lead, kind, item_id)

@@ -1,0 +1,104 @@
+"""What lies in the bin, of every kind together, and the way back."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Sequence
+
+from sqlalchemy import literal, select, tuple_, union_all
+from sqlalchemy.orm import Session
+
+from server.accounts.models import Account, AuditRow
+from server.accounts.service import find_names
+from server.bin.kinds import BinKind
+from server.bin.schemas import BinItem
+from server.database.paging import read_moment_cursor, write_cursor
+from server.errors import ConflictError, NotFoundError
+from server.storage import Storage
+
+ACTS = ("delete", "archive", "withdraw")
+
+
+def list_bin(
+    session: Session, storage: Storage, kinds: Sequence[BinKind], only: str | None, cursor: str | None, limit: int
+) -> tuple[list[BinItem], str | None]:
+    """What was deleted, the last first; with `only`, of one kind."""
+    by_name = {kind.kind: kind for kind in kinds}
+    chosen = kinds if only is None else [_find_kind(kinds, only)]
+    together = union_all(
+        *(
+            select(
+                literal(kind.kind).label("kind"),
+                kind.id.label("id"),
+                kind.name.label("name"),
+                kind.deleted_at.label("deleted_at"),
+            ).where(kind.deleted_at.is_not(None))
+            for kind in chosen
+        )
+    ).subquery()
+    query = select(together).order_by(together.c.deleted_at.desc(), together.c.id.desc()).limit(limit + 1)
+    if cursor is not None:
+        query = query.where(tuple_(together.c.deleted_at, together.c.id) < read_moment_cursor(cursor))
+    rows = session.execute(query).all()
+    people = _find_deleters(session, [row.id for row in rows])
+    items = [
+        BinItem(
+            kind=row.kind,
+            word=by_name[row.kind].word,
+            id=row.id,
+            name=row.name,
+            deleted_at=row.deleted_at,
+            deleted_by_name=people.get(row.id),
+            byte_count=_measure(storage, by_name[row.kind], row.id),
+        )
+        for row in rows[:limit]
+    ]
+    if len(rows) <= limit:
+        return items, None
+    return items, write_cursor(items[-1].deleted_at.isoformat(), str(items[-1].id))
+
+
+def restore(session: Session, kinds: Sequence[BinKind], account: Account, name: str, id_: uuid.UUID) -> None:
+    """Bring a thing back. What it is part of must be there: that is brought back first."""
+    kind = _find_kind(kinds, name)
+    if not _is_deleted(session, kind, id_):
+        raise NotFoundError(f"The bin holds no {kind.word} {id_}. Somebody may have brought it back.")
+    if kind.parent is not None:
+        parent = _find_kind(kinds, kind.parent[0])
+        parent_id = session.scalar(select(kind.parent[1]).where(kind.id == id_))
+        if parent_id is not None and _is_deleted(session, parent, parent_id):
+            called = session.scalar(select(parent.name).where(parent.id == parent_id))
+            raise ConflictError(
+                f"The {parent.word} “{called}” that it belongs to is in the bin too. Restore that one first."
+            )
+    kind.restore(session, account, id_)
+
+
+def _find_kind(kinds: Sequence[BinKind], name: str) -> BinKind:
+    for kind in kinds:
+        if kind.kind == name:
+            return kind
+    raise NotFoundError(f"The bin knows no {name[:40]!r}; it has {', '.join(kind.kind for kind in kinds)}.")
+
+
+def _is_deleted(session: Session, kind: BinKind, id_: uuid.UUID) -> bool:
+    return session.scalar(select(kind.deleted_at).where(kind.id == id_)) is not None
+
+
+def _find_deleters(session: Session, ids: Sequence[uuid.UUID]) -> dict[uuid.UUID, str]:
+    """Who deleted things last, by their ids, as the audit trail says."""
+    query = select(AuditRow.subject_id, AuditRow.account_id, AuditRow.act).where(AuditRow.subject_id.in_(ids))
+    who: dict[uuid.UUID, uuid.UUID | None] = {}
+    for row in session.execute(query.order_by(AuditRow.time)):
+        if row.act.rpartition(".")[2] in ACTS:
+            who[row.subject_id] = row.account_id
+    names = find_names(session, who.values())
+    return {id_: names[account] for id_, account in who.items() if account in names}
+
+
+def _measure(storage: Storage, kind: BinKind, id_: uuid.UUID) -> int | None:
+    """Bytes of the files of a thing on this machine."""
+    if kind.area is None:
+        return None
+    folder = storage.root / kind.area / str(id_)
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())

@@ -1,0 +1,97 @@
+import { Button, Group, Select, Skeleton, Table, Text, Title } from "@mantine/core";
+import { notifications } from "@mantine/notifications";
+import { IconTrash } from "@tabler/icons-react";
+import { useSearchParams } from "react-router";
+import { useBin, useRestore } from "../../api/bin";
+import { formatAgo, formatBytes } from "../../model/format";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { useTitle } from "../parts/useTitle";
+import { tellFailure } from "../projects/offerUndo";
+import classes from "./account.module.css";
+
+const KINDS = [
+  { value: "recording", label: "Recordings" },
+  { value: "track", label: "Tracks" },
+  { value: "scan", label: "Scans" },
+  { value: "hand_model", label: "Hand models" },
+  { value: "project", label: "Projects" },
+  { value: "replica_set", label: "Blind replicas" },
+];
+
+/** What was deleted, of every kind, and the way back. */
+export default function BinPage() {
+  useTitle("Bin");
+  const [address, setAddress] = useSearchParams();
+  const kind = address.get("kind");
+  const list = useBin(kind);
+  const restore = useRestore();
+  const items = list.data?.pages.flatMap((page) => page.items);
+  if (list.error && !items) return <Failure what="The bin could not be loaded" error={list.error} safe="Nothing in it is lost." onRetry={() => void list.refetch()} />;
+  return (
+    <div className="page">
+      <Title order={1} mb="lg">
+        Bin
+      </Title>
+      <section className={classes.card}>
+        <Group gap="md" mb="md" align="end" justify="space-between">
+          <Select w={208} label="What" placeholder="everything" clearable data={KINDS} value={kind} onChange={(value) => setAddress(value ? { kind: value } : {}, { replace: true })} />
+          <Text size="sm" className="quiet">
+            Nothing leaves the bin by itself. What is restored is as it was.
+          </Text>
+        </Group>
+        {items?.length === 0 && (
+          <EmptyState icon={<IconTrash size={48} stroke={1.25} />} title="The bin is empty">
+            Recordings, tracks, scans, models and projects that somebody deletes are kept here, and can be brought back.
+          </EmptyState>
+        )}
+        {!items && <Skeleton height={240} />}
+        {items && items.length > 0 && (
+          <Table verticalSpacing="xs" highlightOnHover>
+            <Table.Thead>
+              <Table.Tr>
+                <Table.Th w={144}>What</Table.Th>
+                <Table.Th>Name</Table.Th>
+                <Table.Th w={160}>Deleted</Table.Th>
+                <Table.Th w={160}>By</Table.Th>
+                <Table.Th w={104} ta="right">
+                  Size
+                </Table.Th>
+                <Table.Th w={128} />
+              </Table.Tr>
+            </Table.Thead>
+            <Table.Tbody>
+              {items.map((item) => (
+                <Table.Tr key={item.id}>
+                  <Table.Td>{item.word.replace(/^./, (letter) => letter.toUpperCase())}</Table.Td>
+                  <Table.Td style={{ overflowWrap: "anywhere" }}>{item.name}</Table.Td>
+                  <Table.Td title={item.deleted_at}>{formatAgo(item.deleted_at)}</Table.Td>
+                  <Table.Td>{item.deleted_by_name ?? <span className="quiet">–</span>}</Table.Td>
+                  <Table.Td ta="right">{item.byte_count === null ? <span className="quiet">–</span> : formatBytes(item.byte_count)}</Table.Td>
+                  <Table.Td ta="right">
+                    <Button
+                      size="compact-xs"
+                      variant="default"
+                      aria-label={`Restore ${item.name}`}
+                      loading={restore.isPending && restore.variables?.id === item.id}
+                      onClick={() => restore.mutate(item, { onSuccess: () => notifications.show({ message: `${item.name} is back.` }), onError: tellFailure })}
+                    >
+                      Restore
+                    </Button>
+                  </Table.Td>
+                </Table.Tr>
+              ))}
+            </Table.Tbody>
+          </Table>
+        )}
+        {list.hasNextPage && (
+          <Group justify="center" mt="md">
+            <Button variant="default" loading={list.isFetchingNextPage} onClick={() => void list.fetchNextPage()}>
+              Show more
+            </Button>
+          </Group>
+        )}
+      </section>
+    </div>
+  );
+}

@@ -11,6 +11,8 @@ interface HandForScaleProps {
 }
 
 const HEIGHT_PX = 208;
+/** Share of the picture that is empty below the scan (server/scans/thumbnails.py). */
+const EMPTY = 0.06;
 
 /** An adult's hand, 100 mm by 190 mm. */
 function Hand({ height }: { height: number }) {
@@ -37,7 +39,7 @@ export function HandForScale({ picture, pictureSide, length }: HandForScaleProps
           <Hand height={Math.max(2, pixels * HAND_LENGTH)} />
         </div>
         <div className={classes.one}>
-          <img src={picture} alt="" width={Math.max(2, pixels * pictureSide)} height={Math.max(2, pixels * pictureSide)} className={classes.picture} />
+          <img src={picture} alt="" width={Math.max(2, pixels * pictureSide)} height={Math.max(2, pixels * pictureSide)} className={classes.picture} style={{ marginBottom: -EMPTY * pixels * pictureSide }} />
         </div>
       </div>
       <div className={classes.captions}>

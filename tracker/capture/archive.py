@@ -7,7 +7,6 @@ import stat
 import struct
 import unicodedata
 import zipfile
-import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +14,7 @@ from typing import BinaryIO, cast
 
 from tracker.capture.relative_path import find_path_fault
 from tracker.capture.workplace import make_workplace
-from tracker.errors import ImportRefusedError
+from tracker.errors import ImportRefusedError, reading
 
 _CHUNK = 1024 * 1024
 _GIB = 1024**3
@@ -58,26 +57,17 @@ def extract_archive(archive: Path | str, folder: Path | str, limits: ArchiveLimi
     limits = limits or ArchiveLimits()
     if folder.is_symlink() or (folder.exists() and (not folder.is_dir() or any(folder.iterdir()))):
         raise ImportRefusedError(f"{folder}: something is there already.")
-    try:
-        _check_directory_size(archive, limits)
-        with zipfile.ZipFile(archive) as file:
-            entries = _check_entries(file, archive, limits)
-            with make_workplace(folder) as workplace:
-                _check_space(workplace, entries, archive)
-                for entry in entries:
-                    _extract(file, entry, workplace)
-    except (
-        zipfile.BadZipFile,
-        zlib.error,
-        EOFError,
-        struct.error,
-        NotImplementedError,
-        RuntimeError,
-        ValueError,
-    ) as cause:
-        raise ImportRefusedError(f"{archive.name}: is no sound zip archive ({cause}). Pack it again.") from None
-    except OSError as cause:
-        raise ImportRefusedError(f"{archive.name}: cannot be unpacked ({cause.strerror or cause}).") from cause
+    with reading(ImportRefusedError, archive.name, "a sound zip archive; pack it again"):
+        try:
+            _check_directory_size(archive, limits)
+            with zipfile.ZipFile(archive) as file:
+                entries = _check_entries(file, archive, limits)
+                with make_workplace(folder) as workplace:
+                    _check_space(workplace, entries, archive)
+                    for entry in entries:
+                        _extract(file, entry, workplace)
+        except OSError as cause:  # the disk's fault, not the archive's
+            raise ImportRefusedError(f"{archive.name}: cannot be unpacked ({cause.strerror or cause}).") from cause
     return [entry.filename for entry in entries if not entry.is_dir()]
 
 

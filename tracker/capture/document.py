@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 import numpy as np
 import numpy.typing as npt
 
-from tracker.errors import TrackerError
+from tracker.errors import TrackerError, reading
 
 Array = npt.NDArray[np.float64]
 
@@ -130,14 +130,8 @@ def parse_json(data: bytes, file: str, error: type[TrackerError]) -> Node:
     def refuse(constant: str) -> NoReturn:
         raise ValueError(f"it holds {constant}, which is no number")
 
-    try:
+    with reading(error, file, "valid JSON in UTF-8"):
         return Node(json.loads(data.decode("utf-8-sig"), parse_constant=refuse), file, "", error)
-    except UnicodeDecodeError:
-        raise error(f"{file}: is not UTF-8 text.") from None
-    except RecursionError:
-        raise error(f"{file}: is nested too deeply.") from None
-    except ValueError as cause:
-        raise error(f"{file}: is not valid JSON: {cause}.") from None
 
 
 def load_json(path: Path, max_bytes: int, error: type[TrackerError]) -> Node:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import wraps
+from typing import Any, TypeVar
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.calibration import MAX_PIXELS, MAX_SIDE
-from tracker.errors import FrameError
+from tracker.errors import FrameError, reading
 
 MAX_IMAGE_BYTES = 256 * 1024 * 1024
 COLOR_SUFFIXES = (".png", ".jpg", ".jpeg")
@@ -46,6 +49,19 @@ class ImageHeader:
         return f"{self.width}x{self.height} {self.bits}-bit {names[self.channels]} {self.kind.upper()}"
 
 
+Read = TypeVar("Read")
+
+
+def _reads_image(reader: Callable[..., Read]) -> Callable[..., Read]:
+    @wraps(reader)
+    def guarded(data: bytes, what: str, **options: Any) -> Read:
+        with reading(FrameError, what, "a whole PNG or JPEG image"):
+            return reader(data, what, **options)
+
+    return guarded
+
+
+@_reads_image
 def read_header(data: bytes, what: str) -> ImageHeader:
     """Header of an image from its first bytes."""
     if data.startswith(_PNG_SIGNATURE):
@@ -62,6 +78,7 @@ def read_header(data: bytes, what: str) -> ImageHeader:
     return header
 
 
+@_reads_image
 def check_whole(data: bytes, what: str, *, inflate: bool = False) -> ImageHeader:
     """The file is there to its last byte: every PNG chunk's checksum, or a JPEG's end mark.
 
@@ -77,19 +94,17 @@ def check_whole(data: bytes, what: str, *, inflate: bool = False) -> ImageHeader
     if inflate and data[28] == 0:  # Interlaced ones are left to the decoder.
         row = (header.width * header.bits * header.channels + 7) // 8 + 1
         needed = row * header.height
-        try:
-            unpacked = len(zlib.decompressobj().decompress(b"".join(packed), needed + 1))
-        except zlib.error:
-            raise FrameError(f"{what}: its pixels cannot be unpacked; the file is damaged.") from None
+        unpacked = len(zlib.decompressobj().decompress(b"".join(packed), needed + 1))
         if unpacked != needed:
             raise FrameError(f"{what}: holds {unpacked} bytes of pixels where its header promises {needed}.")
     return header
 
 
+@_reads_image
 def decode_color(data: bytes, what: str, *, inflate: bool = False) -> npt.NDArray[np.uint8]:
     """Pixels (H, W, 3) uint8 RGB of a PNG or JPEG; grey becomes RGB, alpha is left out, EXIF rotation is ignored."""
     header = check_whole(data, what, inflate=inflate)
-    image = _decode(data, cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION)
+    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION)
     if image is None or image.shape != (header.height, header.width, 3) or image.dtype != np.uint8:
         raise FrameError(f"{what}: cannot be decoded ({header}).")
     return cv2.cvtColor(image, cv2.COLOR_BGR2RGB)  # pyright: ignore[reportReturnType]
@@ -106,21 +121,15 @@ def check_depth_header(header: ImageHeader, what: str) -> None:
         raise FrameError(f"{what}: is a {header}; needed a 16-bit grey PNG for depth.{hint}")
 
 
+@_reads_image
 def decode_depth(data: bytes, what: str, *, inflate: bool = False) -> npt.NDArray[np.uint16]:
     """Raw values (H, W) uint16 of a 16-bit grey PNG."""
     check_depth_header(read_header(data, what), what)
     header = check_whole(data, what, inflate=inflate)
-    image = _decode(data, cv2.IMREAD_UNCHANGED)
+    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     if image is None or image.shape != (header.height, header.width) or image.dtype != np.uint16:
         raise FrameError(f"{what}: cannot be decoded ({header}).")
-    return image
-
-
-def _decode(data: bytes, flags: int) -> np.ndarray | None:
-    try:
-        return cv2.imdecode(np.frombuffer(data, np.uint8), flags)
-    except cv2.error:
-        return None
+    return image  # pyright: ignore[reportReturnType]
 
 
 def _read_png_header(data: bytes, what: str) -> ImageHeader:

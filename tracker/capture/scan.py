@@ -24,7 +24,7 @@ from tracker.capture.scan_size import (
 )
 from tracker.capture.scan_stl import read_stl_scan
 from tracker.capture.scan_values import MAX_FILE_BYTES, RawScan
-from tracker.errors import ScanError
+from tracker.errors import ScanError, reads
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -99,19 +99,17 @@ def load_scan(path: Path | str, metres_per_unit: float | None = None) -> Scan:
     return scan.scaled(find_unit(path, scan, metres_per_unit))
 
 
+@reads(ScanError, "a whole scan: PLY, OBJ, STL or npz")
 def read_scan(path: Path | str) -> Scan:
     """The same with `points` in the file's own unit, whatever that is."""
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise ScanError(path, f"a file of the kind {path.suffix or 'without a name'}", f"one of {', '.join(READERS)}")
-    try:
-        size = path.stat().st_size
-        if size > MAX_FILE_BYTES:
-            raise ScanError(path, f"{size} bytes", f"at most {MAX_FILE_BYTES} bytes")
-        raw = reader(path, path.read_bytes())
-    except OSError as error:
-        raise ScanError(path, f"a file that cannot be read ({error.strerror})", "a readable file") from error
+    size = path.stat().st_size
+    if size > MAX_FILE_BYTES:
+        raise ScanError(path, f"{size} bytes", f"at most {MAX_FILE_BYTES} bytes")
+    raw = reader(path, path.read_bytes())
     return _clean(path, raw)
 
 

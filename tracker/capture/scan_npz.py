@@ -10,22 +10,20 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.scan_values import MAX_FILE_BYTES, MAX_FILE_FACES, MAX_FILE_POINTS, RawScan, to_bytes_of_color
-from tracker.errors import ScanError
+from tracker.errors import ScanError, reading
 
 NEEDED = "an npz with points (N, 3), and perhaps normals (N, 3), faces (F, 3), colors (N, 3)"
 
 
 def read_npz_scan(path: Path, data: bytes) -> RawScan:
     """Read the arrays; no pickles, and nothing that unpacks to more than MAX_FILE_BYTES."""
-    try:
+    with reading(ScanError, path, NEEDED):
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             unpacked = sum(entry.file_size for entry in archive.infolist())
         if unpacked > MAX_FILE_BYTES:
             raise ScanError(path, f"{unpacked} bytes when unpacked", f"at most {MAX_FILE_BYTES}")
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
             found = {name: arrays[name] for name in ("points", "normals", "faces", "colors") if name in arrays}
-    except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, RuntimeError) as error:
-        raise ScanError(path, f"no readable npz ({type(error).__name__}: {str(error)[:80]})", NEEDED) from error
     if "points" not in found:
         raise ScanError(path, "an npz without points", NEEDED)
     for name, array in found.items():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import zipfile
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.atomic_file import write_atomically
-from tracker.errors import SequenceError
+from tracker.errors import SequenceError, reading
 
 Array = npt.NDArray[np.float64]
 
@@ -59,14 +58,12 @@ class Truth:
 def load_truth(path: Path) -> Truth:
     """Read a `truth.npz`."""
     needed = [field.name for field in fields(Truth)]
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            missing = [name for name in needed if name not in archive]
-            if missing:
-                raise SequenceError(f"{path}: no {', '.join(missing)} in it; a truth file holds {', '.join(needed)}.")
-            values = {name: archive[name] for name in needed}
-    except (OSError, ValueError, zipfile.BadZipFile) as error:
-        raise SequenceError(f"{path}: not a truth file as `handloom synthesize` writes it ({error}).") from error
+    made_by = "a truth file as `handloom synthesize` writes it"
+    with reading(SequenceError, path, made_by), np.load(path, allow_pickle=False) as archive:
+        missing = [name for name in needed if name not in archive]
+        if missing:
+            raise SequenceError(f"{path}: no {', '.join(missing)} in it; a truth file holds {', '.join(needed)}.")
+        values = {name: archive[name] for name in needed}
     for name in ("joint_names", "object_names"):
         values[name] = tuple(str(item) for item in values[name])
     try:

@@ -12,7 +12,7 @@ from tracker.capture.atomic_file import write_atomically
 from tracker.detection.channels import CHANNELS
 from tracker.detection.forest import MODES, Forest
 from tracker.detection.levels import PATCH
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reads
 from tracker.model.npz_arrays import NpzFields, read_npz_arrays
 
 FORMAT = "handloom fingertip detector 1"
@@ -36,6 +36,7 @@ def save_forest(forest: Forest, path: Path) -> None:
     write_atomically(Path(path), data.getvalue())
 
 
+@reads(ModelFileError, "a detector as Handloom writes it")
 def load_forest(path: Path) -> Forest:
     """A detector from a file.
 

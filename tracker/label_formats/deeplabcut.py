@@ -15,7 +15,7 @@ from pathlib import PurePosixPath
 import numpy as np
 
 from tracker.capture.annotations import Annotation
-from tracker.errors import AnnotationError
+from tracker.errors import AnnotationError, reading
 from tracker.label_formats.image_names import Place
 from tracker.label_formats.label_set import (
     ExportedLabels,
@@ -108,7 +108,7 @@ def read_deeplabcut(files: dict[str, bytes], sets: list[LabelSet], hints: Import
 
 
 def _read_table(name: str, data: bytes, labels: LabelSet, hints: ImportHints, collector: ImportCollector) -> None:
-    try:
+    with reading(AnnotationError, name, "a table with DeepLabCut's rows scorer, bodyparts and coords"):
         rows = csv.reader(io.StringIO(data.decode("utf-8-sig"), newline=""), strict=True)
         header = [next(rows)]
         while header[-1][0].strip().lower() != "coords":
@@ -121,12 +121,6 @@ def _read_table(name: str, data: bytes, labels: LabelSet, hints: ImportHints, co
                 raise AnnotationError(f"{name}: has more than {MAX_ROWS} rows.")
             if row:
                 _read_row(f"{name}, line {number}", row, start, columns, labels, hints, collector)
-    except UnicodeDecodeError:
-        raise AnnotationError(f"{name}: is not UTF-8 text.") from None
-    except StopIteration:
-        raise AnnotationError(f"{name}: ends in the header; needed scorer, bodyparts and coords.") from None
-    except (csv.Error, IndexError) as cause:
-        raise AnnotationError(f"{name}: is no sound table ({cause}).") from None
 
 
 def _read_header(

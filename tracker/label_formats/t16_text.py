@@ -13,7 +13,7 @@ import re
 import numpy as np
 
 from tracker.capture.annotations import Annotation
-from tracker.errors import AnnotationError
+from tracker.errors import AnnotationError, reading
 from tracker.label_formats.label_set import (
     ExportedLabels,
     ImportCollector,
@@ -177,7 +177,5 @@ def _read_frame(name: str, data: bytes, slots: Slots) -> dict[str, np.ndarray]:
 
 
 def _decode(name: str, data: bytes) -> str:
-    try:
+    with reading(AnnotationError, name, "text in UTF-8"):
         return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise AnnotationError(f"{name}: is not UTF-8 text.") from None

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from scipy import sparse
 
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reads
 from tracker.model.blend_model import BlendModel
 from tracker.model.npz_arrays import NpzFields, read_npz_arrays
 from tracker.model.npz_files import MAX_ANGLE, MAX_COORDINATE, read_provenance, write_npz_arrays
@@ -44,6 +44,7 @@ def save_blend_model(model: BlendModel, path: Path) -> None:
     )
 
 
+@reads(ModelFileError, "a trained hand model as Handloom writes it")
 def load_blend_model(path: Path) -> BlendModel:
     """Read a model that `save_blend_model` wrote, checking every array of it.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import binascii
 import json
 import struct
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from urllib.parse import unquote
 import numpy as np
 import numpy.typing as npt
 
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reading, reads
 
 MAX_BYTES = 256 * 2**20
 GLB_MAGIC = 0x46546C67
@@ -88,6 +87,7 @@ class Gltf:
         return value
 
 
+@reads(ModelFileError, "a glTF 2.0 file")
 def read_gltf(path: Path) -> Gltf:
     """Read a .glb, or a .gltf with the buffers it names inside its own folder or as data URIs.
 
@@ -95,18 +95,12 @@ def read_gltf(path: Path) -> Gltf:
         ModelFileError: Damaged, too large, or reaching outside its folder.
     """
     path = Path(path)
-    try:
-        size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise ModelFileError(path, f"{size} bytes", f"at most {MAX_BYTES} bytes")
-        data = path.read_bytes()
-    except OSError as error:
-        raise ModelFileError(path, f"a file that cannot be read ({error})", "a readable .glb or .gltf") from error
+    size = path.stat().st_size
+    if size > MAX_BYTES:
+        raise ModelFileError(path, f"{size} bytes", f"at most {MAX_BYTES} bytes")
+    data = path.read_bytes()
     text, binary = _split_glb(path, data) if data[:4] == b"glTF" else (data, None)
-    try:
-        document = json.loads(text.decode("utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise ModelFileError(path, f"no glTF JSON ({str(error)[:80]})", "a glTF 2.0 file") from error
+    document = json.loads(text.decode("utf-8"))
     if not isinstance(document, dict):
         raise ModelFileError(path, "JSON that is no object", "a glTF 2.0 file")
     asset = document.get("asset")
@@ -175,10 +169,8 @@ def _decode_data_uri(path: Path, uri: str) -> bytes:
     head, _, body = uri.partition(",")
     if not head.endswith(";base64"):
         raise ModelFileError(path, f"the data URI {head[:40]!r}", "base64 data")
-    try:
+    with reading(ModelFileError, path, "base64 in its data URIs"):
         return base64.b64decode(body, validate=True)
-    except (binascii.Error, ValueError) as error:
-        raise ModelFileError(path, "a data URI that is not base64", "base64 data") from error
 
 
 def _read_neighbour(path: Path, uri: str) -> bytes:
@@ -187,7 +179,7 @@ def _read_neighbour(path: Path, uri: str) -> bytes:
     if "://" in uri or ":" in name or "\\" in name or "\0" in name or name.startswith("/"):
         raise ModelFileError(path, f"the buffer {uri[:80]!r}", needed)
     folder = path.parent.resolve()
-    try:
+    with reading(ModelFileError, path, needed):
         target = (folder / name).resolve()
         if not target.is_relative_to(folder) or not target.is_file():
             raise ModelFileError(path, f"the buffer {uri[:80]!r}, which is not in its folder", needed)
@@ -196,5 +188,3 @@ def _read_neighbour(path: Path, uri: str) -> bytes:
                 path, f"the buffer {uri[:80]!r} of {target.stat().st_size} bytes", f"at most {MAX_BYTES}"
             )
         return target.read_bytes()
-    except OSError as error:
-        raise ModelFileError(path, f"the buffer {uri[:80]!r}, which cannot be read", needed) from error

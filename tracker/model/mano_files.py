@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reads
 from tracker.model.blend_model import BLEND_JOINTS, BlendModel
 from tracker.model.hand_parts import find_tip
 from tracker.model.joints import FINGERS
@@ -33,6 +33,7 @@ SMPLH_JOINTS = BODY_JOINTS + tuple(f"{side}_{joint}" for side in ("left", "right
 """SMPL-H's 52 joints: the body's 22, then 15 of the left and 15 of the right hand in MANO's order."""
 
 
+@reads(ModelFileError, NEEDED)
 def load_mano(path: Path, side: str | None = None, convention: ManoConvention = CONVENTIONS["smplx"]) -> BlendModel:
     """A model from MANO_RIGHT.pkl, MANO_LEFT.pkl, SMPLH_*.pkl, or an .npz of the same arrays.
 

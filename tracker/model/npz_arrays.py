@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-import struct
 import zipfile
-import zlib
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reading
 
 MAX_BYTES = 256 * 2**20
 MAX_MEMBERS = 64
+NEEDED = "an .npz archive of arrays"
 
 KINDS = {"float": np.dtype("<f8"), "integer": np.dtype("<i8")}
 
@@ -32,9 +31,9 @@ def read_npz_arrays(path: Path) -> dict[str, npt.NDArray]:
 def list_npz_arrays(path: Path) -> set[str]:
     """Names of the arrays of an .npz file; none where it is no archive."""
     try:
-        with zipfile.ZipFile(path) as archive:
+        with reading(ModelFileError, path, NEEDED), zipfile.ZipFile(path) as archive:
             return {member.filename.removesuffix(".npy") for member in archive.infolist()[:MAX_MEMBERS]}
-    except (zipfile.BadZipFile, OSError, EOFError, struct.error, NotImplementedError, ValueError):
+    except ModelFileError:
         return set()
 
 
@@ -48,21 +47,11 @@ def read_foreign_npz(path: Path) -> dict[str, npt.NDArray]:
 
 
 def _read_archive(path: Path, read_member: Callable[[zipfile.ZipFile, zipfile.ZipInfo], npt.NDArray]):
-    needed = "an .npz archive of arrays"
-    try:
-        with zipfile.ZipFile(path) as archive:
-            members = archive.infolist()
-            if len(members) > MAX_MEMBERS or sum(member.file_size for member in members) > MAX_BYTES:
-                raise ModelFileError(
-                    path, "an archive with too many or too large members", f"at most {MAX_BYTES} bytes"
-                )
-            return {member.filename.removesuffix(".npy"): read_member(archive, member) for member in members}
-    except ModelFileError:
-        raise
-    except (zipfile.BadZipFile, zlib.error, OSError, EOFError, struct.error, NotImplementedError) as error:
-        raise ModelFileError(path, f"no readable archive ({str(error)[:120]})", needed) from error
-    except (ValueError, RuntimeError, SyntaxError, KeyError, OverflowError, MemoryError, TypeError) as error:
-        raise ModelFileError(path, f"a damaged member ({str(error)[:120]})", needed) from error
+    with reading(ModelFileError, path, NEEDED), zipfile.ZipFile(path) as archive:
+        members = archive.infolist()
+        if len(members) > MAX_MEMBERS or sum(member.file_size for member in members) > MAX_BYTES:
+            raise ModelFileError(path, "an archive with too many or too large members", f"at most {MAX_BYTES} bytes")
+        return {member.filename.removesuffix(".npy"): read_member(archive, member) for member in members}
 
 
 def _read_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArray:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reading, reads
 from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.model.npz_arrays import NpzFields, read_npz_arrays
@@ -68,6 +68,7 @@ def save_npz_model(model: ArticulatedModel, path: Path) -> None:
     write_npz_arrays(path, arrays)
 
 
+@reads(ModelFileError, "a hand model as Handloom writes it")
 def load_npz_model(path: Path) -> ArticulatedModel:
     """Read a model that `save_npz_model` wrote, checking every array of it.
 
@@ -205,10 +206,8 @@ def _read_blend(fields: NpzFields, num_vertices: int, num_bones: int) -> PoseBle
 
 def read_provenance(fields: NpzFields) -> dict[str, str]:
     """Where a model came from."""
-    try:
+    with reading(ModelFileError, fields.path, "a provenance that is a JSON object of texts"):
         provenance = json.loads(fields.texts("provenance", 1)[0])
-    except (ValueError, RecursionError) as error:
-        raise ModelFileError(fields.path, "a provenance that is not JSON", "a JSON object of texts") from error
     if not isinstance(provenance, dict) or not all(isinstance(value, str) for value in provenance.values()):
         raise ModelFileError(fields.path, "a provenance that is not an object of texts", "a JSON object of texts")
     return provenance

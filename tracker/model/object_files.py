@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import trimesh
 
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reads
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.decimation import decimate_file
 from tracker.model.gltf_container import Gltf, read_gltf
@@ -44,6 +44,7 @@ POSSIBLE_SIZES = (1e-3, 10.0)
 """m; sizes that are believed when the unit is given."""
 
 
+@reads(ModelFileError, NEEDED)
 def load_object(
     path: Path, max_faces: int | None = MAX_OBJECT_FACES, metres_per_unit: float | None = None
 ) -> ArticulatedModel:
@@ -141,18 +142,12 @@ def _read(path: Path) -> tuple[Array, Faces]:
         return read_off(path)
     if suffix in (".glb", ".gltf"):
         return _read_static_gltf(read_gltf(path))
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise ModelFileError(path, f"{path.stat().st_size} bytes", f"at most {MAX_BYTES} bytes")
-        # Read from memory, without a resolver: materials and textures that the file names are not looked for.
-        options: dict[str, Any] = {"skip_materials": True} if suffix == ".obj" else {}
-        mesh = trimesh.load_mesh(io.BytesIO(path.read_bytes()), file_type=suffix[1:], process=False, **options)
-        return np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
-    except ModelFileError:
-        raise
-    except Exception as error:  # whatever the reader trips over, the file is to blame
-        found = f"a {suffix} that cannot be read ({type(error).__name__}: {str(error)[:80]})"
-        raise ModelFileError(path, found, NEEDED) from error
+    if path.stat().st_size > MAX_BYTES:
+        raise ModelFileError(path, f"{path.stat().st_size} bytes", f"at most {MAX_BYTES} bytes")
+    # Read from memory, without a resolver: materials and textures that the file names are not looked for.
+    options: dict[str, Any] = {"skip_materials": True} if suffix == ".obj" else {}
+    mesh = trimesh.load_mesh(io.BytesIO(path.read_bytes()), file_type=suffix[1:], process=False, **options)
+    return np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
 
 
 def _read_static_gltf(gltf: Gltf) -> tuple[Array, Faces]:

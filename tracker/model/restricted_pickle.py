@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reading
 
 MAX_FILE_BYTES = 512 * 2**20
 NEEDED = "a pickled dictionary of NumPy arrays, SciPy sparse matrices and chumpy objects, as MANO's and SMPL-H's files"
@@ -58,23 +58,19 @@ def read_restricted_pickle(path: Path) -> dict[str, Any]:
     size = path.stat().st_size
     if size > MAX_FILE_BYTES:
         raise ModelFileError(path, f"{size} bytes", f"at most {MAX_FILE_BYTES}")
-    try:
-        loaded = _Reader(io.BytesIO(path.read_bytes())).load()
-    except PickleRefusedError as error:
-        raise ModelFileError(path, f"a pickle that asks for {error}, which was not run", NEEDED) from error
-    except Exception as error:  # every fault of a broken pickle, of whatever kind
-        fault = f"no readable pickle ({type(error).__name__}: {str(error)[:120]})"
-        raise ModelFileError(path, fault, NEEDED) from error
+    with reading(ModelFileError, path, NEEDED):
+        try:
+            loaded = _Reader(io.BytesIO(path.read_bytes())).load()
+        except PickleRefusedError as error:
+            raise ModelFileError(path, f"a pickle that asks for {error}, which was not run", NEEDED) from error
     if not isinstance(loaded, dict):
         raise ModelFileError(path, f"a pickled {_kind_of(loaded)}", NEEDED)
     found = {}
     for key, value in loaded.items():
         if isinstance(key, bytes):
             key = key.decode("latin1")
-        try:
+        with reading(ModelFileError, f"{path}: '{str(key)[:60]}'", NEEDED):
             found[str(key)] = _resolve(value)
-        except (ValueError, TypeError, KeyError, AttributeError, OverflowError, IndexError) as error:
-            raise ModelFileError(path, f"'{str(key)[:60]}' damaged ({str(error)[:120]})", NEEDED) from error
     return found
 
 

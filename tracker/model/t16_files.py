@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reads
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.decimation import decimate_file, limit_weights
 from tracker.model.skeleton import Array, Skeleton
@@ -27,6 +27,7 @@ exactly (about 1 degree on average).
 """
 
 
+@reads(ModelFileError, "the files of a T16 model")
 def load_t16_model(off_path: Path, max_faces: int | None = 1500, bind: Array | None = None) -> ArticulatedModel:
     """A hand or an object from its .OFF mesh with .SKEL, .SKIN and .LIMITS (and .VOI for a hand) beside it.
 
@@ -85,6 +86,7 @@ def load_t16_model(off_path: Path, max_faces: int | None = 1500, bind: Array | N
     return model if max_faces is None else decimate_file(off_path, model, max_faces)
 
 
+@reads(ModelFileError, "a MOTION file of a T16 model")
 def load_t16_motion(path: Path) -> tuple[tuple[str, ...], Array, Array]:
     """A motion of T16's authors.
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import gzip
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from tracker.errors import ModelFileError
+from tracker.errors import ModelFileError, reading, reads
 from tracker.model.skeleton import Array
 
 MAX_TEXT_BYTES = 256 * 2**20
@@ -37,20 +36,15 @@ class BoneLimits:
 
 def read_text(path: Path) -> list[str]:
     """Lines of a text file, gzipped or not, stripped of blanks around them."""
-    try:
-        if path.suffix == ".gz":
-            with gzip.open(path, "rb") as file:
-                data = file.read(MAX_TEXT_BYTES + 1)
-        else:
-            with path.open("rb") as file:
-                data = file.read(MAX_TEXT_BYTES + 1)
-    except (OSError, EOFError, zlib.error) as error:
-        raise ModelFileError(path, f"a file that cannot be read ({error})", "a readable file") from error
+    begin = gzip.open if path.suffix == ".gz" else open
+    with reading(ModelFileError, path, "a readable text, gzipped if its name ends so"), begin(path, "rb") as file:
+        data = file.read(MAX_TEXT_BYTES + 1)
     if len(data) > MAX_TEXT_BYTES:
         raise ModelFileError(path, f"more than {MAX_TEXT_BYTES} bytes of text", "a smaller file")
     return [line.strip() for line in data.decode("utf-8", errors="replace").splitlines()]
 
 
+@reads(ModelFileError, "a sound OFF file of a T16 model")
 def read_off(path: Path) -> tuple[Array, npt.NDArray[np.int64]]:
     """Vertices (V, 3), mm, and triangles (F, 3) of an ASCII OFF mesh; larger polygons are fanned."""
     lines = [line.split("#")[0].strip() for line in read_text(path)]
@@ -85,6 +79,7 @@ def read_off(path: Path) -> tuple[Array, npt.NDArray[np.int64]]:
     return vertices, triangles
 
 
+@reads(ModelFileError, "a sound SKEL file of a T16 model")
 def read_skel(path: Path) -> tuple[tuple[str, ...], npt.NDArray[np.int64], Array]:
     """Names (B), parents (B,) with -1 for the root, and lengths (B,), mm, of the bones."""
     lines = [line for line in read_text(path)[1:] if line]
@@ -104,6 +99,7 @@ def read_skel(path: Path) -> tuple[tuple[str, ...], npt.NDArray[np.int64], Array
     return names, parents, lengths
 
 
+@reads(ModelFileError, "a sound SKIN file of a T16 model")
 def read_skin(path: Path, bone_names: tuple[str, ...], num_vertices: int) -> Array:
     """Blend weights (V, B), rows summing to one, columns in the order of `bone_names`."""
     lines = [line for line in read_text(path) if line]
@@ -126,6 +122,7 @@ def read_skin(path: Path, bone_names: tuple[str, ...], num_vertices: int) -> Arr
     return weights / weights.sum(axis=1, keepdims=True)
 
 
+@reads(ModelFileError, "a sound LIMITS file of a T16 model")
 def read_limits(path: Path) -> tuple[BoneLimits, ...]:
     """Degrees of freedom of each bone."""
     lines = [line for line in read_text(path) if line]
@@ -140,6 +137,7 @@ def read_limits(path: Path) -> tuple[BoneLimits, ...]:
     return tuple(bones)
 
 
+@reads(ModelFileError, "a sound VOI file of a T16 model")
 def read_voi(path: Path, num_vertices: int) -> npt.NDArray[np.int64]:
     """Vertices of interest (3, 5): fingertip, nail side, pad; little to thumb."""
     values = [int(value) for line in read_text(path) if line for value in _integers(path, line, "a vertex")]
@@ -148,6 +146,7 @@ def read_voi(path: Path, num_vertices: int) -> npt.NDArray[np.int64]:
     return np.array(values, dtype=np.int64).reshape(3, 5)
 
 
+@reads(ModelFileError, "a sound MOTION file of a T16 model")
 def read_motion(path: Path) -> tuple[tuple[str, ...], Array]:
     """Bone names and their poses (1 + T, B, 4, 4), mm; row 0 is the bind pose."""
     names: list[str] = []

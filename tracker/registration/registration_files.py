@@ -12,7 +12,7 @@ import numpy as np
 
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan_ply import write_ply
-from tracker.errors import RegistrationError
+from tracker.errors import RegistrationError, reading, reads
 from tracker.registration.curved_triangles import refine
 from tracker.registration.registration import VERDICTS, Registration, summarize_distances
 
@@ -81,6 +81,7 @@ def pack_registration(registration: Registration) -> bytes:
     return buffer.getvalue()
 
 
+@reads(RegistrationError, NEEDED)
 def load_registration(path: Path) -> Registration:
     """Read a `registration.npz`, or that of a folder, checking every array.
 
@@ -146,7 +147,7 @@ def summarize_registration(registration: Registration) -> dict[str, Any]:
 def _read(path: Path) -> dict[str, np.ndarray]:
     names = ("vertices", "model_vertices", "faces", "pose", "shape", "translation", "score", "scan_to_mesh", "seconds")
     needed = (*names, "details", *TEXTS)
-    try:
+    with reading(RegistrationError, path, NEEDED):
         if path.stat().st_size > MAX_BYTES:
             raise RegistrationError(path, f"{path.stat().st_size} bytes", f"at most {MAX_BYTES}")
         with zipfile.ZipFile(path) as archive:
@@ -158,8 +159,6 @@ def _read(path: Path) -> dict[str, np.ndarray]:
             if missing:
                 raise RegistrationError(path, f"no {', '.join(missing)}", NEEDED)
             return {name: arrays[name] for name in needed}
-    except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, RuntimeError) as error:
-        raise RegistrationError(path, f"no readable npz ({type(error).__name__}: {str(error)[:80]})", NEEDED) from error
 
 
 def _floats(path: Path, fields: dict[str, np.ndarray], name: str, shape: tuple[int, ...]) -> np.ndarray:
@@ -182,10 +181,8 @@ def _text(path: Path, fields: dict[str, np.ndarray], name: str) -> str:
 
 def _details(path: Path, fields: dict[str, np.ndarray]) -> dict[str, Any]:
     text = fields["details"]
-    try:
+    with reading(RegistrationError, path, "details in JSON"):
         found = json.loads(str(text)) if text.ndim == 0 and text.dtype.kind == "U" else None
-    except json.JSONDecodeError as error:
-        raise RegistrationError(path, "details that are no JSON", NEEDED) from error
     kinds = {"reasons": list, "timings": dict, "measures": dict}
     if not isinstance(found, dict) or not all(isinstance(found.get(name), kind) for name, kind in kinds.items()):
         raise RegistrationError(path, "details without reasons, timings and measures", NEEDED)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
-from tracker.errors import SequenceError
+from tracker.errors import SequenceError, reading
 from tracker.geometry import se3
 from tracker.model.t16_files import load_t16_model, load_t16_motion
 from tracker.synthesis.actor import Actor
@@ -57,10 +57,8 @@ def load_twin(folder: Path, sequence: str, max_faces: int | None) -> Performance
 
 def load_t16_camera(path: Path) -> Camera:
     """The camera in T16's `Cameras.txt`: a scale, K in rows, world to camera in rows, mm."""
-    try:
+    with reading(SequenceError, path, "a camera as T16 writes it"):
         numbers = [float(word) for word in path.read_text(encoding="ascii").split()]
-    except (OSError, ValueError) as error:
-        raise SequenceError(f"{path}: cannot be read as a camera ({error}).") from error
     if len(numbers) != 22 or not np.all(np.isfinite(numbers)):
         raise SequenceError(f"{path}: holds {len(numbers)} numbers; needed 22: a scale, 9 of K, 12 of the pose.")
     width, height = IMAGE_SIZE

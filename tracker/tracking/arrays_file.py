@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tracker.errors import TrackingError
+from tracker.errors import TrackingError, reading
 
 
 def save_arrays(path: Path, arrays: dict[str, np.ndarray]) -> None:
@@ -40,11 +40,11 @@ def load_arrays(path: Path, names: tuple[str, ...], optional: tuple[str, ...] = 
     Raises:
         TrackingError: The file is missing, damaged or lacks an array.
     """
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            missing = [name for name in names if name not in archive]
-            if missing:
-                raise TrackingError(f"{path}: has no {', '.join(missing)}; needed {', '.join(names)}.")
-            return {name: archive[name] for name in (*names, *(name for name in optional if name in archive))}
-    except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError) as error:
-        raise TrackingError(f"{path}: is no readable npz file ({error}).") from error
+    with (
+        reading(TrackingError, path, "an npz file as tracking writes it"),
+        np.load(path, allow_pickle=False) as archive,
+    ):
+        missing = [name for name in names if name not in archive]
+        if missing:
+            raise TrackingError(f"{path}: has no {', '.join(missing)}; needed {', '.join(names)}.")
+        return {name: archive[name] for name in (*names, *(name for name in optional if name in archive))}

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
-from tracker.errors import TrackingError
+from tracker.errors import TrackingError, reading
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.joints import HAND_JOINTS
 from tracker.model.npz_files import load_npz_model, save_npz_model
@@ -89,13 +89,11 @@ class TrackSetup:
     def load(cls, folder: Path) -> TrackSetup:
         """Read what `save` wrote."""
         folder = Path(folder)
-        try:
+        with reading(TrackingError, folder, "setup.json as a tracking run writes it"):
             document = json.loads((folder / "setup.json").read_text())
             names = tuple(str(name) for name in document["names"])
             camera, options = str(document["camera"]), TrackOptions.from_json(document["options"])
             marks = {str(n): np.array(p, dtype=np.float64).reshape(21, 3) for n, p in document["marks"].items()}
-        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-            raise TrackingError(f"{folder}: needed setup.json as a tracking run writes it ({error}).") from error
         models = tuple(load_npz_model(folder / "models" / f"{name}.npz") for name in names)
         return cls(names, models, camera, options, marks)
 

@@ -11,7 +11,6 @@ import hashlib
 import io
 import json
 import logging
-import zipfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Protocol
@@ -20,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.atomic_file import write_atomically
+from tracker.errors import TrainingError, reading
 from tracker.model.blend_model import BlendModel
 from tracker.training.options import TrainingOptions
 from tracker.training.training_set import TrainingSet
@@ -66,7 +66,7 @@ class FolderCheckpoints:
             return unpack_arrays(path.read_bytes())
         except FileNotFoundError:
             return None
-        except (OSError, ValueError) as error:
+        except (OSError, TrainingError) as error:
             log.warning("%s is damaged (%s); that stage is done again", path, str(error)[:120])
             return None
 
@@ -106,13 +106,13 @@ def unpack_arrays(data: bytes) -> dict[str, npt.NDArray]:
     """Arrays of an .npz.
 
     Raises:
-        ValueError: It is none, or is damaged.
+        TrainingError: It is none, or is damaged.
     """
-    try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
-    except (OSError, zipfile.BadZipFile, EOFError, KeyError, AttributeError) as error:
-        raise ValueError(str(error)) from error
+    with (
+        reading(TrainingError, "a checkpoint", "what training kept"),
+        np.load(io.BytesIO(data), allow_pickle=False) as file,
+    ):
+        return {name: file[name] for name in file.files}
 
 
 def compute_key(used: TrainingSet, initial: BlendModel, options: TrainingOptions) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tracker.errors import TrainingError
+from tracker.errors import TrainingError, reading
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
 FARTHEST = 100.0
@@ -139,7 +139,7 @@ def load_training_set(
 
 def _read_registration(path: Path) -> dict[str, Any] | None:
     """What training needs of a `registration.npz`; None for an .npz of another kind."""
-    try:
+    with reading(TrainingError, path, "a registration; register its scan again, or remove the file"):
         with zipfile.ZipFile(path) as archive:
             if sum(member.file_size for member in archive.infolist()) > MAX_BYTES:
                 raise TrainingError(f"{path}: more than {MAX_BYTES} bytes; no registration is so large.")
@@ -149,8 +149,6 @@ def _read_registration(path: Path) -> dict[str, Any] | None:
         with np.load(path, allow_pickle=False) as arrays:
             texts = {name: str(arrays[name]) for name in TEXTS if name in names and arrays[name].dtype.kind == "U"}
             vertices = arrays["vertices"]
-    except (OSError, ValueError, zipfile.BadZipFile, EOFError, KeyError, NotImplementedError, RuntimeError) as error:
-        raise TrainingError(f"{path}: no readable registration ({str(error)[:120]}); remove it.") from error
     is_mesh = vertices.ndim == 2 and vertices.shape[1] == 3 and len(vertices) <= MAX_VERTICES
     if not is_mesh or vertices.dtype.kind != "f" or len(texts) < len(TEXTS) or texts["side"] not in ("right", "left"):
         raise TrainingError(

@@ -205,7 +205,7 @@ def test_a_missing_file_a_face_out_of_range_and_objects_in_an_npz_are_refused(sc
     with pytest.raises(ScanError, match="triangle with the point"):
         load_scan(tmp_path / "faces.npz")
     np.savez(tmp_path / "objects.npz", points=np.array([object()] * 60, dtype=object))
-    with pytest.raises(ScanError, match="readable npz"):
+    with pytest.raises(ScanError, match="needed an npz"):
         load_scan(tmp_path / "objects.npz")
     np.savez(tmp_path / "nan.npz", points=np.full((1000, 3), np.nan))
     with pytest.raises(ScanError, match="0 finite points of 1000"):

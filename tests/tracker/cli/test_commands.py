@@ -119,7 +119,7 @@ def test_a_truth_file_that_is_none_is_refused(tracked, tmp_path, capsys):
     path = tmp_path / "truth.npz"
     path.write_bytes(b"not a zip file")
     assert main(["evaluate", str(tracked), "--truth", str(path)]) == 2
-    assert "not a truth file" in capsys.readouterr().err
+    assert "needed a truth file" in capsys.readouterr().err
 
 
 @pytest.mark.slow

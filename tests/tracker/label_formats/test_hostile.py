@@ -133,7 +133,7 @@ def test_a_table_with_too_much_in_it_is_refused(make_set: MakeSet) -> None:
     with pytest.raises(AnnotationError, match="2001 columns"):
         import_labels("deeplabcut", {"a.csv": wide}, [make_set()])
     long_cell = b"scorer,a,a\nbodyparts,wrist,wrist\ncoords,x,y\n000001.png," + b"9" * 200_000 + b",1\n"
-    with pytest.raises(AnnotationError, match="no sound table"):
+    with pytest.raises(AnnotationError, match="field limit"):
         import_labels("deeplabcut", {"a.csv": long_cell}, [make_set()], ImportHints(hand="left"))
 
 

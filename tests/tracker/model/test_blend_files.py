@@ -43,7 +43,7 @@ def test_a_model_comes_back_to_the_last_bit(tmp_path):
         ("regressor_columns", lambda a: a - 50, "'regressor_columns'"),
         ("tips", lambda a: a[:4], "'tips'"),
         ("format", lambda a: np.array(["handloom-model", "1"]), "handloom-blend-model 1"),
-        ("provenance", lambda a: np.array(["[1"]), "not JSON"),
+        ("provenance", lambda a: np.array(["[1"]), "needed a provenance that is a JSON object"),
     ],
 )
 def test_a_wrong_array_is_named(tmp_path, name, change, message):

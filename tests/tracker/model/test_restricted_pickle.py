@@ -150,5 +150,5 @@ def test_arrays_whose_data_do_not_fill_their_shape_are_refused(tmp_path):
     bad = good.replace(b"K\x02K\x03\x86", b"K\x02K\x04\x86")
     assert bad != good
     (tmp_path / "bad.pkl").write_bytes(bad)
-    with pytest.raises(ModelFileError, match=r"'v' damaged .*do not fill"):
+    with pytest.raises(ModelFileError, match=r"'v': found a damaged file .*do not fill"):
         read_restricted_pickle(tmp_path / "bad.pkl")

@@ -81,5 +81,5 @@ def test_a_truncated_file_is_refused_and_other_archives_are_passed_over(tmp_path
     assert len(load_training_set(tmp_path)) == 1
     path = tmp_path / "one" / "registration.npz"
     path.write_bytes(path.read_bytes()[:200])
-    with pytest.raises(TrainingError, match="no readable"):
+    with pytest.raises(TrainingError, match="damaged file"):
         load_training_set(tmp_path)

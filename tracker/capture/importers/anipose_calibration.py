@@ -5,15 +5,13 @@ from __future__ import annotations
 import tomllib
 
 from tracker.capture.importers.video_calibration import VideoCamera, make_camera
-from tracker.errors import CalibrationError
+from tracker.errors import CalibrationError, reading
 
 
 def parse_anipose(data: bytes, file: str) -> list[VideoCamera]:
     """Cameras of a calibration in the order of the file."""
-    try:
+    with reading(CalibrationError, file, "valid TOML"):
         document = tomllib.loads(data.decode("utf-8"))
-    except (ValueError, RecursionError) as cause:
-        raise CalibrationError(f"{file}: is no valid TOML: {cause}.") from None
     cameras = []
     for key, table in document.items():
         if key == "metadata" or not isinstance(table, dict):

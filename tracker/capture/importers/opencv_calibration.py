@@ -14,7 +14,7 @@ import numpy as np
 
 from tracker.capture.document import parse_json
 from tracker.capture.importers.video_calibration import MAX_CALIBRATION_BYTES, VideoCamera, make_camera
-from tracker.errors import CalibrationError
+from tracker.errors import CalibrationError, reading
 
 _NAMES = {
     "K": ("k", "m", "mtx", "matrix", "cameramatrix", "intrinsic", "intrinsics", "intrinsicmatrix"),
@@ -96,16 +96,12 @@ def _gather(values: dict[str, Any]) -> tuple[dict[str, dict[str, Any]], list[str
 
 
 def _parse_npz(data: bytes, file: str) -> dict[str, Any]:
-    try:
+    with reading(CalibrationError, file, "an npz of arrays"):
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             if sum(entry.file_size for entry in archive.infolist()) > MAX_CALIBRATION_BYTES:
                 raise CalibrationError(f"{file}: unpacks to more than {MAX_CALIBRATION_BYTES} bytes.")
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
             return {key: arrays[key] for key in list(arrays)[:1000]}
-    except CalibrationError:
-        raise
-    except Exception as cause:  # zipfile and numpy raise many kinds on a damaged file
-        raise CalibrationError(f"{file}: cannot be read as npz ({cause}).") from None
 
 
 def _parse_yaml(text: str, file: str) -> dict[str, Any]:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan import save_scan
-from tracker.errors import TrackerError
+from tracker.errors import TrackerError, reading
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan, scan_name
 from tracker.synthesis.scans.generated_scan import GeneratedScan
 from tracker.synthesis.scans.motions import load_motion_angles
@@ -98,10 +98,8 @@ def write_scan_set(
 
 
 def _read_settings(path: Path) -> Any:
-    try:
+    with reading(TrackerError, path, "a list of generated scans; choose another folder"):
         return json.loads(path.read_text())["settings"]
-    except (ValueError, KeyError, TypeError) as error:
-        raise TrackerError(f"{path} is not a list of generated scans; choose another folder.") from error
 
 
 def _generate(motions: str, subject: int, pose: str, side: str, seed: int, options: ScanOptions) -> GeneratedScan:

@@ -14,6 +14,7 @@ from starlette.routing import BaseRoute
 
 from server.accounts.tries import FailedTries
 from server.app.browser_app import BrowserApp
+from server.app.compression import Compression
 from server.app.document import DocumentedApp
 from server.app.door import Door
 from server.app.error_handler import install_error_handler
@@ -70,6 +71,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.router.routes.extend(_routes())
     app.router.default = BrowserApp(settings.web_dist)  # what no route takes
     app.add_middleware(Methods, prefix=API, routers=ROUTERS)
+    app.add_middleware(Compression)
     app.add_middleware(Door, settings=settings)
     app.add_middleware(Guard, settings=settings)  # added last, so it stands outermost
     return app

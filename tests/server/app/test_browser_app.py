@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -38,13 +39,12 @@ def test_every_address_of_the_app_gives_the_app(browser: TestClient, path: str) 
     assert answer.headers["content-type"].startswith("text/html")
 
 
-def test_hashed_files_are_kept_for_good_and_others_asked_for_again(browser: TestClient) -> None:
+def test_hashed_files_are_kept_for_good_and_others_are_compared(browser: TestClient) -> None:
     script = browser.get("/assets/index-4f2a.js")
     assert script.text == "run()"
     assert "immutable" in script.headers["cache-control"]
     assert script.headers["content-type"].startswith("text/javascript")
     icon = browser.get("/icon.svg")
-    assert icon.headers["cache-control"] == "no-cache"
     assert browser.get("/icon.svg", headers={"If-None-Match": icon.headers["etag"]}).status_code == 304
 
 
@@ -88,3 +88,26 @@ def test_an_app_that_is_not_built_says_how_to_build_it(tmp_path: Path) -> None:
         assert answer.status_code == 503
         assert "make setup" in answer.text
         assert client.get("/api/v1/health").status_code == 200
+
+
+def test_files_that_the_build_packed_go_out_packed_to_those_who_take_it(browser: TestClient, dist: Path) -> None:
+    script = dist / "assets" / "index-4f2a.js"
+    (dist / "assets" / "index-4f2a.js.br").write_bytes(b"brotli of it")
+    (dist / "assets" / "index-4f2a.js.gz").write_bytes(gzip.compress(b"run()"))
+    (dist / "index.html").write_text("<html>new</html>")
+    tags = set()
+    for accepted, coding in (("gzip, br", "br"), ("gzip", "gzip"), ("br;q=0, gzip", "gzip"), ("identity", None)):
+        with browser.stream("GET", "/assets/index-4f2a.js", headers={"Accept-Encoding": accepted}) as answer:
+            sent = b"".join(answer.iter_raw())
+        assert answer.headers.get("content-encoding") == coding, accepted
+        assert sent == (script.with_name(f"{script.name}.{coding[:2]}") if coding else script).read_bytes()
+        assert answer.headers["vary"] == "Accept-Encoding"
+        assert answer.headers["content-type"].startswith("text/javascript")
+        assert "immutable" in answer.headers["cache-control"]
+        tags.add(answer.headers["etag"])
+    assert len(tags) == 3, "each way of packing is another file to caches"
+    assert browser.get("/assets/index-4f2a.js.br").status_code == 404, "a packed file has no address of its own"
+
+
+def test_the_icon_is_kept_for_a_day(browser: TestClient) -> None:
+    assert browser.get("/icon.svg").headers["cache-control"] == "public, max-age=86400"

@@ -24,6 +24,7 @@ const ModelPage = lazy(() => import("./models/ModelPage"));
 const EvaluationsPage = lazy(() => import("./evaluations/EvaluationsPage"));
 const AccountPage = lazy(() => import("./account/AccountPage"));
 const PeoplePage = lazy(() => import("./account/PeoplePage"));
+const ApiPage = lazy(() => import("./api/ApiPage"));
 const AuditPage = lazy(() => import("./account/AuditPage"));
 const BinPage = lazy(() => import("./account/BinPage"));
 const AgreementPage = lazy(() => import("./projects/AgreementPage"));
@@ -69,6 +70,7 @@ export const router = createBrowserRouter([
           { path: "people", element: <PeoplePage /> },
           { path: "audit", element: <AuditPage /> },
           { path: "bin", element: <BinPage /> },
+          { path: "docs/api", element: <ApiPage /> },
           { path: "login", element: <Navigate to="/recordings" replace /> },
           { path: "*", element: <MissingPage /> },
         ],

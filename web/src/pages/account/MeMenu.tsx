@@ -1,5 +1,5 @@
 import { Menu, Text, UnstyledButton } from "@mantine/core";
-import { IconHistory, IconLogout, IconUserCircle, IconTrash, IconUsers } from "@tabler/icons-react";
+import { IconApi, IconHistory, IconLogout, IconTrash, IconUserCircle, IconUsers } from "@tabler/icons-react";
 import { Link } from "react-router";
 import { logOut } from "../../api/account";
 import { hasRole, useMe } from "../../state/me";
@@ -42,6 +42,9 @@ export function MeMenu() {
             </Menu.Item>
           </>
         )}
+        <Menu.Item component={Link} to="/docs/api" leftSection={<IconApi size={16} />}>
+          API for scripts
+        </Menu.Item>
         {me.is_login_needed && (
           <>
             <Menu.Divider />

@@ -73,7 +73,7 @@ def test_the_page_of_the_api_shows_every_request_and_loads_nothing_from_elsewher
     page.locator(".mantine-Accordion-item").first.wait_for()
     assert page.locator(".mantine-Accordion-item").count() == sum(len(item) for item in paths.values())
     screenshots.take(page, "api")
-    page.get_by_label("Find a request").fill("crop put")
+    page.get_by_label("Find a request").fill("replace what is left out of a scan")
     found = page.locator(".mantine-Accordion-item")
     page.wait_for_function("() => document.querySelectorAll('.mantine-Accordion-item').length === 1")
     found.get_by_role("button").click()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from alembic import op
 
 revision = "0010"
-down_revision = "0009_errors_of_own_labels"
+down_revision = "0009"
 branch_labels = None
 depends_on = None
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from fastapi import Depends
-from sqlalchemy import ColumnElement
-from sqlalchemy.orm import InstrumentedAttribute, Session
+from sqlalchemy import SQLColumnExpression
+from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
 from server.accounts.models import Account
@@ -32,11 +32,11 @@ class BinKind:
 
     kind: str
     word: str
-    id: InstrumentedAttribute[uuid.UUID]
-    name: InstrumentedAttribute[str]
-    deleted_at: InstrumentedAttribute[Any]
+    id: SQLColumnExpression[uuid.UUID]
+    name: SQLColumnExpression[str]
+    deleted_at: SQLColumnExpression[Any]
     restore: Callable[[Session, Account, uuid.UUID], object]
-    parent: tuple[str, ColumnElement[uuid.UUID]] | None = None
+    parent: tuple[str, SQLColumnExpression[uuid.UUID]] | None = None
     area: str | None = None
 
 

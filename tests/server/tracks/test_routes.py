@@ -127,7 +127,7 @@ def test_what_cannot_be_exported_is_refused_with_the_reason(
     (folder / "track.npz").write_bytes(b"damaged")
     refused = client.get(f"{address}/export/glb")
     assert refused.status_code == 422
-    assert "needed an npz of arrays" in refused.json()["detail"]
+    assert "needed an npz file as tracking writes it" in refused.json()["detail"]
     assert str(studio.settings.data_dir) not in refused.text
 
 

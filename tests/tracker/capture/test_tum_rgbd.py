@@ -70,7 +70,7 @@ def test_depth_without_colour_in_time_is_refused_until_it_is_allowed(folder: Pat
     )
     report = check_import(folder, options=ImportOptions(intrinsics="freiburg3", allow_gaps=True))
     assert report.ok and report.frame_count == 4 and "depth/100.067000.png" in report.left_out
-    assert "1 frames seem to have been dropped" in " ".join(report.warnings)
+    assert "1 frame seems to have been dropped" in " ".join(report.warnings)
 
 
 @pytest.mark.parametrize(

@@ -74,7 +74,7 @@ export function Shell() {
               </Group>
             </Tooltip>
           )}
-          <UnstyledButton className={classes.search} onClick={openSearch} aria-label="Search">
+          <UnstyledButton className={classes.search} onClick={openSearch}>
             <IconSearch size={15} aria-hidden />
             <span>Search</span>
             <Kbd size="xs">Ctrl K</Kbd>

@@ -53,6 +53,7 @@ def test_a_colleagues_change_is_never_overwritten_silently(studio, recording, op
 
     first = annotate_elsewhere(studio, recording, [[300, 340, 2], *EMPTY[1:]], {"If-None-Match": "*"})
     page = open_page()
+    page.route(re.compile(r"/sequences/[^/]+/live"), lambda route: route.abort())  # no news comes before the gesture
     page.goto(f"/recordings/{recording['id']}/annotate")
     picture = picture_of(page)
     picture.wait()

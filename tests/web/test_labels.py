@@ -62,7 +62,7 @@ def test_labels_are_kept_compared_restored_exported_and_imported(
     screenshots.take(page, "labels-compare")
 
     with page.expect_download() as export:
-        page.get_by_role("link", name="Download coco_keypoints.json").click()
+        page.get_by_role("link", name="coco_keypoints").click()
     labels = Path(export.value.path()).read_text()
     assert len(json.loads(labels)["annotations"]) == 5
     page.get_by_role("combobox", name="Format").click()

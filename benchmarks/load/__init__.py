@@ -1,0 +1,1 @@
+"""Labels under load: people at real browsers and simulated ones, on a network that is late and breaks."""

@@ -60,7 +60,7 @@ def _find_want(hands: Sequence[TrainingHand], with_mirrored: bool) -> list[str]:
     if count < len(hands):
         left = "" if with_mirrored else " and left hands are left out"
         said += (
-            f" Of {_count(len(hands), 'registration')} the others do not count: a hand needs at least "
+            f" {_count(len(hands) - count, 'registration does', 'registrations do')} not count: a hand needs at least "
             f"{FEWEST_OF_A_HAND} of its own{left}."
         )
     return [f"{said} Register and accept more scans."]

@@ -28,7 +28,8 @@ from tests.server.conftest import GeneratedHand, Studio, Tracked
 from tests.server.curation import add_registered
 from tests.server.jobs.scan_bench import ScanBench, bench
 from tests.server.teams.conftest import Join, join
-from tracker import load_blend_model, load_registration, save_registration
+from tracker import load_blend_model, load_registration, save_registration, untrained_hand
+from tracker.evaluation.scan_fit import fit_pose_to_vertices
 from tracker.synthesis.scans.generate import generate_truth
 
 __all__ = ["bench", "join"]
@@ -73,9 +74,10 @@ def test_a_trained_model_knows_what_it_was_trained_from_and_registers_the_next_r
     for subject in (1, 2, 4):
         for pose in range(8):
             truth = generate_truth(subject, 5 * pose)
+            fit = fit_pose_to_vertices(untrained_hand("right"), truth.vertices)
             folder = tmp_path / f"{subject}-{pose}"
-            found = replace(generated_hand.found, vertices=truth.vertices, subject=str(subject), verdict="doubtful")
-            save_registration(found, folder)
+            found = replace(generated_hand.found, vertices=truth.vertices, pose=fit.pose, subject=str(subject))
+            save_registration(replace(found, verdict="doubtful"), folder)
             shutil.copyfile(generated_hand.folder / "hand.ply", folder / "hand.ply")
             hand = replace(generated_hand, folder=folder)
             add_registered(bench.app, hand, folder.name, subject=str(subject), verdict="good", collection="true")
@@ -134,18 +136,19 @@ def test_jobs_that_make_no_sense_are_refused(studio: Studio, generated_hand: Gen
     assert rob.send("POST", "/jobs/register", {}).status_code == 422
     add_registered(studio.app, generated_hand, "one")
     assert rob.send("POST", "/jobs/register", {"scan_ids": [nobody]}).status_code == 404
-    assert rob.send("POST", "/jobs/register", {"only": "all", "model_id": nobody}).status_code == 404
+    unknown = rob.send("POST", "/jobs/register", {"only": "all", "model_id": nobody})
+    assert unknown.status_code == 422 and nobody in unknown.json()["obstacles"][0], unknown.text
     assert rob.send("POST", "/jobs/train", {"training_set_id": nobody, "name": "x"}).status_code == 404
     assert rob.send("POST", "/jobs/loop", {"name": "x", "by": "decisions", "rounds": 2}).status_code == 422
-    assert "accepted" in rob.send("POST", "/jobs/loop", {"name": "x", "by": "decisions"}).json()["detail"]
+    refused = rob.send("POST", "/jobs/loop", {"name": "x", "by": "decisions"}).json()["obstacles"]
+    assert "There are 0 registrations" in refused[0] and "1 registration waits for a decision" in refused[1]
     assert rob.send("POST", "/jobs/loop", {"name": "x", "options": {"rounds": 0}}).status_code == 422
+    assert "1 registration does not count" in rob.send("POST", "/jobs/loop", {"name": "x"}).json()["detail"]
+    for number in range(19):
+        add_registered(studio.app, generated_hand, f"s{number}", subject=("Ada", "Bob")[number % 2])
     made = rob.send("POST", "/jobs/loop", {"name": "x"}).json()
-    assert (made["kind"], made["title"], made["unit"], made["sequence_id"]) == (
-        "loop",
-        "x: 1 round over 1 scans",
-        "scans",
-        None,
-    )
+    told = (made["kind"], made["title"], made["unit"], made["sequence_id"])
+    assert told == ("loop", "x: 1 round over 20 scans", "scans", None)
     for kind in ("register", "train", "loop"):
         assert ann.send("POST", f"/jobs/{kind}", {"name": "x"}).status_code in (403, 422)
     listed = rob.get("/jobs", kind="loop", search="round")["items"]

@@ -31,7 +31,7 @@ log = logging.getLogger(__name__)
 
 def evaluate_model(run: ScanRun, attempt: int, model_id: UUID, parent_id: UUID, number: int, span: Span) -> bool:
     """Judge a model and add what was found to its report; whether there was anybody to judge it on."""
-    from tracker import STUDY_LEVELS, TrainingOptions, study_held_out
+    from tracker import STUDY_LEVELS, TrainingOptions, say_count, study_held_out
 
     level = run.row.params["evaluate"]
     with run.context.database.reading() as session:
@@ -66,7 +66,8 @@ def evaluate_model(run: ScanRun, attempt: int, model_id: UUID, parent_id: UUID, 
         assert stored.report is not None, "it had one before"
         found = stored.report.get("study", {}) | study | {"level": level}
         stored.report = {**stored.report, "study": found}
-    progress.log("info", f"{row.name} is evaluated on {study['scans']} scans of {len(study['people'])} people")
+    scanned, people = say_count(study["scans"], "scan"), say_count(len(study["people"]), "person", "people")
+    progress.log("info", f"{row.name} is evaluated on {scanned} of {people}")
     return True
 
 

@@ -51,7 +51,7 @@ class TrackOptions:
         "LO fits depth both ways; C collision, S fingertips, P physics.",
         label="Terms",
         choices=TERMS,
-        choice_labels=tuple(TERM_LABELS[name] for name in TERMS),
+        choice_labels=tuple(f"{name} · {TERM_LABELS[name]}" for name in TERMS),
     )
     iterations: int = _option(10, "Gauss-Newton iterations on every frame.", label="Iterations", low=1, high=200)
     first_iterations: int = _option(

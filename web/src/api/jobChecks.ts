@@ -18,11 +18,12 @@ const AT_ONCE = 500;
 
 /** Whether a job can be started: the server answers with the code that starts it. `path` is where the job is asked for. */
 export function useJobCheck(path: string, body: unknown, isWanted: boolean) {
-  const [settled] = useDebouncedValue(JSON.stringify(body), SETTLED_MS);
+  const asked = JSON.stringify(body);
+  const [settled] = useDebouncedValue(asked, SETTLED_MS);
   return useQuery({
     queryKey: [...jobKeys.checks, path, settled],
     queryFn: () => request<JobCheck>("POST", `${path}/check`, { body: JSON.parse(settled) as unknown }),
-    enabled: isWanted,
+    enabled: isWanted && settled === asked, // what was asked before the page knew its recording is asked of nobody
     placeholderData: (seen) => seen,
     staleTime: 0,
     gcTime: 0,

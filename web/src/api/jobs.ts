@@ -163,7 +163,7 @@ export const useJobForm = (isWanted: boolean) =>
     queryKey: ["job-form"],
     queryFn: () => request<JobForm>("GET", "/jobs/form"),
     enabled: isWanted,
-    staleTime: Infinity,
+    staleTime: 0, // a hand model that was trained since is among its choices
   });
 
 export function useStartTracking() {

@@ -28,3 +28,14 @@ test("parameters of a training are listed one by one, with names in place of ids
     ["Left hands, mirrored", "yes"],
   ]);
 });
+
+test("a choice is told by its words, and the last frame by what it is", () => {
+  const choices = { name: "hand_model_id", label: "Hand model", choices: ["", "7f43"], choice_labels: ["The default hand", "Our hand"] };
+  const tracking = { fields: [choices, { name: "last_frame", label: "Last frame" }] } as unknown as JobForm;
+  expect(describeParams({ hand_model_id: "7f43", last_frame: -1 }, tracking)).toEqual([
+    ["Hand model", "Our hand"],
+    ["Last frame", "the recording's last"],
+  ]);
+  const [hand, last] = compareParams(job({ hand_model_id: "7f43", last_frame: -1 }), job({ hand_model_id: "", last_frame: 4 }), tracking);
+  expect([hand?.first, hand?.second, last?.first, last?.second]).toEqual(["Our hand", "The default hand", "the recording's last", "4"]);
+});

@@ -1,6 +1,6 @@
 /** Two runs side by side: what was asked of each, and where that differs. */
 
-import type { Job, JobForm } from "../api/types";
+import type { FormField, Job, JobForm } from "../api/types";
 import { formatName } from "./format";
 
 export interface ParamRow {
@@ -21,11 +21,12 @@ const TRAINING_LABELS: Readonly<Record<string, string>> = {
 };
 
 /** Parameters one by one, as people read them: those inside others too, and no id beside the name of the same thing. */
-export function describeParams(params: Readonly<Record<string, unknown>>): [label: string, value: string][] {
+export function describeParams(params: Readonly<Record<string, unknown>>, form?: JobForm): [label: string, value: string][] {
   const { options, ...rest } = params;
+  const fields = listFields(form);
   const training = typeof options === "object" && options !== null ? Object.entries(options) : [];
   return [
-    ...listParams(rest).map(([name, value]): [string, string] => [formatName(name), showValue(value)]),
+    ...listParams(rest).map(([name, value]): [string, string] => [fields.get(name)?.label ?? formatName(name), showParam(fields.get(name), value)]),
     ...training.map(([name, value]): [string, string] => [TRAINING_LABELS[name] ?? formatName(name), showValue(value)]),
   ];
 }
@@ -37,15 +38,23 @@ export function showValue(value: unknown): string {
   return value === undefined || value === "" || value === null ? "–" : typeof value === "string" ? value : JSON.stringify(value);
 }
 
+/** The same of an option of the form: a choice by its words, and no number that only programs understand. */
+function showParam(field: FormField | undefined, value: unknown): string {
+  if (field?.name === "last_frame" && value === -1) return "the recording's last";
+  return (typeof value === "string" && field?.choice_labels?.[field.choices?.indexOf(value) ?? -1]) || showValue(value);
+}
+
+const listFields = (form: JobForm | undefined): Map<string, FormField> => new Map(form?.fields.map((field) => [field.name, field]));
+
 /** Every parameter of either, in the order of the form; the ones that differ first. */
 export function compareParams(first: Job, second: Job, form: JobForm | undefined): ParamRow[] {
-  const labels = new Map(form?.fields.map((field) => [field.name, field.label]));
-  const names = [...new Set([...labels.keys(), ...Object.keys(first.params), ...Object.keys(second.params)])];
+  const fields = listFields(form);
+  const names = [...new Set([...fields.keys(), ...Object.keys(first.params), ...Object.keys(second.params)])];
   const rows = names
     .filter((name) => name in first.params || name in second.params)
     .map((name) => {
       const [a, b] = [first.params[name], second.params[name]];
-      return { name, label: labels.get(name) ?? formatName(name), first: showValue(a), second: showValue(b), isDifferent: JSON.stringify(a) !== JSON.stringify(b) };
+      return { name, label: fields.get(name)?.label ?? formatName(name), first: showParam(fields.get(name), a), second: showParam(fields.get(name), b), isDifferent: JSON.stringify(a) !== JSON.stringify(b) };
     });
   return [...rows.filter((row) => row.isDifferent), ...rows.filter((row) => !row.isDifferent)];
 }

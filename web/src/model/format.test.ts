@@ -1,8 +1,12 @@
 import { expect, test } from "vitest";
-import { formatAgo, formatBytes, formatDuration, formatName, formatNumber } from "./format";
+import { formatAgo, formatBytes, formatDuration, formatLeft, formatName, formatNumber } from "./format";
 
 test("durations are short for seconds and plain for hours", () => {
   expect([0.27, 9.99, 65, 3725].map(formatDuration)).toEqual(["0.3 s", "0:10", "1:05", "1 h 02 min"]);
+});
+
+test("what is left is never nothing while it lasts", () => {
+  expect([0, 0.4, 5.4, 65].map(formatLeft)).toEqual(["almost done", "almost done", "5.4 s left", "1:05 left"]);
 });
 
 test("times are told as people would", () => {

@@ -8,6 +8,9 @@ export function formatDuration(seconds: number): string {
   return `${Math.floor(whole / 3600)} h ${String(Math.floor((whole % 3600) / 60)).padStart(2, "0")} min`;
 }
 
+/** What is left of something that runs; "0.0 s left" of what is not done yet would be no true word. */
+export const formatLeft = (seconds: number): string => (seconds < 1 ? "almost done" : `${formatDuration(seconds)} left`);
+
 /** "2 minutes ago", and the date when that is longer than a week. */
 export function formatAgo(time: string, now: number = Date.now()): string {
   const seconds = (now - Date.parse(time)) / 1000;

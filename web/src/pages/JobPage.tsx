@@ -2,7 +2,7 @@ import { Code, Group, Progress, ScrollArea, SimpleGrid, Stack, Text, Title } fro
 import { useEffect, useRef } from "react";
 import { Link, useParams } from "react-router";
 import { useRestartCheck } from "../api/jobChecks";
-import { isActive, useJob, useJobLog } from "../api/jobs";
+import { isActive, useJob, useJobForm, useJobLog } from "../api/jobs";
 import { useRecording } from "../api/recordings";
 import { describeParams } from "../model/compareJobs";
 import { formatAgo, formatDuration, formatName } from "../model/format";
@@ -40,10 +40,11 @@ export function JobPage() {
   const { data: job, error, refetch } = useJob(jobId);
   const recording = useRecording(job?.sequence_id ?? undefined).data;
   const restart = useRestartCheck(job).data;
+  const form = useJobForm(job?.kind === "track").data;
   useTitle(job ? `${formatName(job.kind)} ${job.title}` : "Job");
   if (error && !job) return <Failure what="The job could not be loaded" error={error} safe="If it runs, it goes on by itself." onRetry={() => void refetch()} />;
   if (!job) return <PageSkeleton />;
-  const params = describeParams(job.params);
+  const params = describeParams(job.params, form);
   return (
     <div className="page">
       <Group mb="lg" justify="space-between" wrap="nowrap" align="flex-start">
@@ -101,7 +102,9 @@ export function JobPage() {
         </Fact>
         <Fact label="Started by">{job.created_by_name ?? "–"}</Fact>
         <Fact label={job.state === "running" ? "Runs on" : "Ran on"}>{job.worker ? job.worker.name : "–"}</Fact>
-        <Fact label={job.unit === "scans" ? "Scans" : "Frames"}>{job.frames_total ? `${job.frames_done ?? 0} of ${job.frames_total}` : "–"}</Fact>
+        {job.kind !== "train" && (
+          <Fact label={job.unit === "scans" ? "Scans" : "Frames"}>{job.frames_total ? `${job.frames_done ?? 0} of ${job.frames_total}` : "–"}</Fact>
+        )}
       </SimpleGrid>
       {job.track_id && <JobResult trackId={job.track_id} />}
       <div className={classes.columns}>

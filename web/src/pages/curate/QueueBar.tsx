@@ -3,7 +3,7 @@ import { IconUsers } from "@tabler/icons-react";
 import { Link } from "react-router";
 import { useQueueCounts, type Order, type Queue, type QueueChoice } from "../../api/registrations";
 import { useScanCollections } from "../../api/scans";
-import { formatDuration } from "../../model/format";
+import { formatLeft } from "../../model/format";
 import { paceOf } from "../../model/pace";
 import type { CurationState } from "../../state/curation";
 import frame from "../hand3d/HandPage.module.css";
@@ -73,7 +73,7 @@ export function QueueBar({ choice, onChange, state }: QueueBarProps) {
         {perMinute !== null && (
           <Text size="xs" span data-testid="pace">
             <strong>{perMinute.toFixed(0)}</strong> a minute
-            {secondsLeft !== null && left > 0 ? ` · ${formatDuration(secondsLeft)} left` : ""}
+            {secondsLeft !== null && left > 0 ? ` · ${formatLeft(secondsLeft)}` : ""}
           </Text>
         )}
         <Text size="xs" span className="quiet">

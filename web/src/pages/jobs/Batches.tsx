@@ -2,7 +2,7 @@ import { Button, Group, Progress, Stack, Text, Title } from "@mantine/core";
 import { useBatches, useBulkAct } from "../../api/jobs";
 import { fetchAll } from "../../api/recordings";
 import type { Batch, Job } from "../../api/types";
-import { formatAgo, formatCount, formatDuration } from "../../model/format";
+import { formatAgo, formatCount, formatLeft } from "../../model/format";
 import { For } from "../parts/For";
 
 const SHOWN = 3;
@@ -34,7 +34,7 @@ function BatchRow({ batch, isChosen, onChoose }: { batch: Batch; isChosen: boole
           <Text size="xs" className="quiet one-line">
             {countsOf(batch)} · started {formatAgo(batch.created_at)}
             {batch.created_by_name ? ` by ${batch.created_by_name}` : ""}
-            {batch.seconds_left !== null ? ` · ${formatDuration(batch.seconds_left)} left` : ""}
+            {batch.seconds_left !== null ? ` · ${formatLeft(batch.seconds_left)}` : ""}
           </Text>
         </div>
         <Progress.Root w={240} aria-label={`${Math.round(100 * batch.progress)} % of the batch done`}>

@@ -17,7 +17,7 @@ export function JobField({ field, recording, value, onChange }: JobFieldProps) {
     return <Select {...common} description={undefined} data={[{ value: "", label: `The first with depth (${first})` }, ...cameras]} value={String(value)} allowDeselect={false} onChange={onChange} />;
   }
   if (field.choices) {
-    const data = field.choices.map((choice, place) => ({ value: choice, label: field.choice_labels ? `${choice} · ${field.choice_labels[place] ?? ""}` : choice }));
+    const data = field.choices.map((choice, place) => ({ value: choice, label: field.choice_labels?.[place] ?? choice }));
     return <Select {...common} data={data} value={String(value)} allowDeselect={false} onChange={onChange} />;
   }
   if (field.type === "boolean") {

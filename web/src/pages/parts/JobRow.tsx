@@ -5,7 +5,7 @@ import { Link } from "react-router";
 import type { RestartCheck } from "../../api/jobChecks";
 import { isActive, useJobAction } from "../../api/jobs";
 import type { Job, JobState } from "../../api/types";
-import { formatAgo, formatDuration, formatName } from "../../model/format";
+import { formatAgo, formatDuration, formatLeft, formatName } from "../../model/format";
 import classes from "./JobRow.module.css";
 import { For } from "./For";
 
@@ -34,7 +34,7 @@ export function jobProgress(job: Job): string {
   const parts = [];
   if (job.stage && isActive(job)) parts.push(capitalize(job.stage));
   if (job.frames_total) parts.push(`${job.frames_done ?? 0} of ${job.frames_total} ${job.unit}`);
-  if (job.state === "running" && job.seconds_left !== null) parts.push(`${formatDuration(job.seconds_left)} left`);
+  if (job.state === "running" && job.seconds_left !== null) parts.push(formatLeft(job.seconds_left));
   if (job.state === "queued") parts.push("a worker takes it as soon as one is free");
   return parts.join(" · ");
 }

@@ -27,6 +27,7 @@ import { StartTracking } from "./parts/StartTracking";
 import { TrackButton, useTrackObstacles } from "./parts/TrackButton";
 import { TrackTable } from "./parts/TrackTable";
 import { useTitle } from "./parts/useTitle";
+import { offerUndo } from "./projects/offerUndo";
 import { For } from "./parts/For";
 
 function Cameras({ recording }: { recording: Recording }) {
@@ -96,25 +97,7 @@ export function RecordingPage() {
     remove.mutate(recording, {
       onSuccess: () => {
         void navigate("/recordings");
-        notifications.show({
-          id: `deleted-${recording.id}`,
-          autoClose: 15000,
-          message: (
-            <Group justify="space-between" wrap="nowrap">
-              <span>{recording.name} was deleted.</span>
-              <Button
-                size="compact-sm"
-                variant="default"
-                onClick={() => {
-                  restore.mutate(recording.id);
-                  notifications.hide(`deleted-${recording.id}`);
-                }}
-              >
-                Undo
-              </Button>
-            </Group>
-          ),
-        });
+        offerUndo(`${recording.name} was moved to the bin.`, () => restore.mutateAsync(recording.id));
       },
       onError: (failure) => notifications.show({ color: "red", title: "Not deleted", message: failure.message }),
     });

@@ -62,7 +62,7 @@ export function LiveModel({ model }: { model: HandModel }) {
             Mean
           </Button>
         </Group>
-        {count === 0 && (
+        {geometry && count === 0 && (
           <Text size="xs" className="quiet">
             This model has no shape space.
           </Text>

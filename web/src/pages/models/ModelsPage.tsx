@@ -121,6 +121,11 @@ export default function ModelsPage() {
             </Table>
           </div>
         )}
+        {models && (
+          <Text size="xs" className="quiet" mt={-16}>
+            Shape and pose: how many components each space has.
+          </Text>
+        )}
         {models && !hasTrained && (
           <EmptyState
             icon={<IconHandStop size={48} stroke={1.25} />}
@@ -135,11 +140,6 @@ export default function ModelsPage() {
           </EmptyState>
         )}
         <TrainingSets />
-        {hasTrained && (
-          <Text size="xs" className="quiet">
-            Shape and pose: how many components each space has.
-          </Text>
-        )}
       </Stack>
       <TrainDialog isOpen={isTraining} onClose={training.close} />
       <LoopDialog isOpen={isLooping} onClose={looping.close} />

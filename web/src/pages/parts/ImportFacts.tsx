@@ -58,7 +58,7 @@ export function ImportFacts({ report }: { report: ImportReport }) {
   const baselines = Object.entries(report.baselines_m ?? {});
   return (
     <>
-      <SimpleGrid cols={5} spacing="md">
+      <SimpleGrid cols={{ base: 2, sm: 5 }} spacing="md">
         <Fact label="Frames">{report.frame_count.toLocaleString("en")}</Fact>
         <Fact label="Frames per second">{formatNumber(report.fps, report.fps !== null && Number.isInteger(report.fps) ? 0 : 2)}</Fact>
         <Fact label="Hands">{report.hands.join(", ") || "–"}</Fact>

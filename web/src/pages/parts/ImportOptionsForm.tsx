@@ -70,7 +70,7 @@ export function ImportOptionsForm({ importId, report, live }: ImportOptionsFormP
           <Select label="Camera of the benchmark" description={ask("intrinsics")?.ask} data={benchmark} value={text("intrinsics") || null} clearable w={416} onChange={(value) => set({ intrinsics: value ?? undefined })} />
         )}
         {numberFields(takes).length > 0 && (
-          <SimpleGrid cols={4} spacing="md">
+          <SimpleGrid cols={{ base: 2, sm: 4 }} spacing="md">
             {numberFields(takes).map(({ name, label, unit, hint }) => (
               <NumberInput
                 key={name}
@@ -118,7 +118,7 @@ export function ImportOptionsForm({ importId, report, live }: ImportOptionsFormP
           Patterns and format
         </Button>
         <Collapse expanded={isMoreShown}>
-          <SimpleGrid cols={3} spacing="md">
+          <SimpleGrid cols={{ base: 2, sm: 3 }} spacing="md">
             {SERIES.filter((name) => takes.includes(name)).map((name) => (
               <TextInput
                 key={name}

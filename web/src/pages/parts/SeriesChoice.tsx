@@ -24,7 +24,7 @@ export function SeriesChoice({ importId, question, chosen, onChoose }: SeriesCho
       error={question.is_required && chosen === null ? "Choose one" : undefined}
       data-needed={question.is_required || undefined}
     >
-      <SimpleGrid cols={2} spacing="sm" my="sm">
+      <SimpleGrid cols={{ base: 1, sm: 2 }} spacing="sm" my="sm">
         {question.choices.map(({ value, label, count, detail, pictures }) => (
           <Radio.Card key={String(value)} value={String(value)} className={classes.card} aria-label={label}>
             <Group gap="sm" mb={pictures.length > 0 ? 8 : 0}>

@@ -48,10 +48,10 @@ export function TrackingForm({ options: { form, changed, setTouched }, recording
       {form.data && (
         <PresetChoice presets={form.data.presets} chosen={matchPreset(form.data, changed)} onChoose={(preset) => setTouched(choosePreset(form.data, changed, preset))} />
       )}
-      <SimpleGrid cols={2} spacing="md">
+      <SimpleGrid cols={{ base: 1, sm: 2 }} spacing="md">
         {fields.filter((field) => !field.is_advanced && field.type !== "boolean").map(show)}
       </SimpleGrid>
-      <SimpleGrid cols={3} spacing="md">
+      <SimpleGrid cols={{ base: 1, sm: 3 }} spacing="md">
         {fields.filter((field) => !field.is_advanced && field.type === "boolean").map(show)}
       </SimpleGrid>
       {advanced.length > 0 && (
@@ -60,7 +60,7 @@ export function TrackingForm({ options: { form, changed, setTouched }, recording
             {isAllShown ? "Fewer parameters" : "All parameters"}
           </Button>
           <Collapse expanded={isAllShown}>
-            <SimpleGrid cols={2} spacing="md">
+            <SimpleGrid cols={{ base: 1, sm: 2 }} spacing="md">
               {advanced.map(show)}
             </SimpleGrid>
           </Collapse>

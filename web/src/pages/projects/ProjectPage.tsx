@@ -47,7 +47,7 @@ function Head({ project, mayChange, isLead }: { project: Project; mayChange: boo
   const archive = async (): Promise<void> => {
     await change.mutateAsync({ method: "DELETE", path });
     await navigate("/projects");
-    offerUndo(`${project.name} was archived.`, async () => {
+    offerUndo(`${project.name} was archived; it is in the bin too.`, async () => {
       await change.mutateAsync({ method: "POST", path: `${path}/restore` });
       await navigate(path);
     });

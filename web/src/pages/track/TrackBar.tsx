@@ -21,6 +21,7 @@ import type { Recording, Track } from "../../api/types";
 import { useHint } from "../../state/keys";
 import classes from "./TrackReview.module.css";
 import { For } from "../parts/For";
+import { offerUndo } from "../projects/offerUndo";
 
 interface TrackBarProps {
   track: Track;
@@ -51,25 +52,7 @@ export function TrackBar(props: TrackBarProps) {
     remove.mutate(track.id, {
       onSuccess: () => {
         void navigate("/tracks");
-        notifications.show({
-          id: `deleted-${track.id}`,
-          autoClose: 15000,
-          message: (
-            <Group justify="space-between" wrap="nowrap">
-              <span>{track.name} was deleted.</span>
-              <Button
-                size="compact-sm"
-                variant="default"
-                onClick={() => {
-                  restore.mutate(track.id);
-                  notifications.hide(`deleted-${track.id}`);
-                }}
-              >
-                Undo
-              </Button>
-            </Group>
-          ),
-        });
+        offerUndo(`${track.name} was moved to the bin.`, () => restore.mutateAsync(track.id));
       },
       onError: (failure) => notifications.show({ color: "red", title: "Not deleted", message: failure.message }),
     });

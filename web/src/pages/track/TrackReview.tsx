@@ -120,6 +120,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
           fullWidth
           m={8}
           mb={0}
+          flex="none"
           aria-label="What is shown"
           data={[
             { value: "image", label: "Picture" },

@@ -87,8 +87,14 @@ def list_label_formats() -> LabelFormats:
     return LabelFormats(items=items, joint_orders=list(JOINT_ORDERS))
 
 
+_KINDS = sorted({MEDIA_TYPES[Path(kind.file).suffix] for kind in LABEL_FORMATS.values()})
 _FILE: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}}
+    200: {
+        "content": {
+            kind: {} if kind == "application/json" else {"schema": {"type": "string", "format": "binary"}}
+            for kind in _KINDS
+        }
+    }
 }
 
 

@@ -15395,7 +15395,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/octet-stream": string;
+                    "application/json": unknown;
+                    "application/zip": string;
                 };
             };
             /** @description Unauthorized */
@@ -21626,7 +21627,8 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/octet-stream": string;
+                    "application/json": unknown;
+                    "application/zip": string;
                 };
             };
             /** @description Unauthorized */

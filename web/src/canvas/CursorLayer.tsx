@@ -1,5 +1,5 @@
 import type { ReactNode } from "react";
-import { Circle, Group, Image, Layer, Line, Rect, Text } from "react-konva";
+import { Circle, Group, Image, Layer, Line, Rect, Text } from "./shapes";
 import type { Camera } from "../api/types";
 import { usePointer, type PointerStore } from "../state/pointer";
 import type { PaneLayer } from "./ImagePane";

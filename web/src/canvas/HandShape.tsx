@@ -1,4 +1,4 @@
-import { Circle, Group, Line, Rect, Text } from "react-konva";
+import { Circle, Group, Line, Rect, Text } from "./shapes";
 import type { Side } from "../api/types";
 import { EDGES, HAND_COLORS, jointColor, jointLabel } from "../model/joints";
 import { isPlaced, isShown, type Pose } from "../model/pose";

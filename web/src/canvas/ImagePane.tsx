@@ -1,7 +1,7 @@
 import { useElementSize } from "@mantine/hooks";
 import type Konva from "konva";
 import { useCallback, useEffect, useLayoutEffect, useRef, type ReactNode } from "react";
-import { Image, Layer, Rect, Stage } from "react-konva";
+import { Image, Layer, Rect, Stage } from "./shapes";
 import type { Camera } from "../api/types";
 import type { PointerStore } from "../state/pointer";
 import { CursorLayer } from "./CursorLayer";

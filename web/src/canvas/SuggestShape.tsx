@@ -1,4 +1,4 @@
-import { Circle, Group, Line, Rect } from "react-konva";
+import { Circle, Group, Line, Rect } from "./shapes";
 import type { Side } from "../api/types";
 import { EDGES } from "../model/joints";
 import { isPlaced, type Pose } from "../model/pose";

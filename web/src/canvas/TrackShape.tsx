@@ -1,4 +1,4 @@
-import { Circle, Group, Line, Rect } from "react-konva";
+import { Circle, Group, Line, Rect } from "./shapes";
 import { EDGES, jointColor, JOINTS, OBJECT_COLOR } from "../model/joints";
 import { toScreen, type View } from "./view";
 

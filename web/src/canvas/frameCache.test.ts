@@ -76,6 +76,8 @@ test("prefetching stops where it would push out what is wanted sooner", async ()
 
 test("who keeps going gets a second of frames in stock, unless they are large; a jump starts anew", () => {
   let travel: Travel = { frame: 0, direction: 1, run: 0 };
+  expect(aheadFor({ frame: 0, direction: 1, run: -1 }, 1e6)).toBe(4); // nobody knows which way yet
+  expect(travelOn({ frame: 0, direction: 1, run: -1 }, 1).run).toBe(0);
   for (const frame of [1, 2, 3]) travel = travelOn(travel, frame);
   expect([travel.run, aheadFor(travel, 1e6), aheadFor(travel, 30e6)]).toEqual([3, 30, 5]);
   expect(travelOn(travel, 500)).toEqual({ frame: 500, direction: 1, run: 0 });

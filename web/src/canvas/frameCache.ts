@@ -193,7 +193,7 @@ export function createFrameCache<T>(load: Load<T>, { capacity, weigh, dispose = 
   };
 }
 
-/** Which way somebody goes through the frames, and for how many steps already. */
+/** Which way somebody goes through the frames, and for how many steps already; -1 before the first. */
 export interface Travel {
   readonly frame: number;
   readonly direction: 1 | -1;
@@ -207,10 +207,10 @@ export function travelOn(travel: Travel, frame: number): Travel {
   return { frame, direction, run: isSteady ? travel.run + 1 : 0 };
 }
 
-/** Who keeps going needs more in stock: up to a second at 30 frames a second, as far as memory allows. */
+/** Who keeps going needs more in stock: up to a second at 30 frames a second, as far as memory allows. Before the first step nobody knows which way. */
 export function aheadFor({ run }: Travel, bytesOfFrame: number): number {
   const affordable = Math.max(4, Math.floor(160e6 / bytesOfFrame));
-  return Math.min(affordable, run < 3 ? 8 : 30);
+  return Math.min(affordable, run < 0 ? 4 : run < 3 ? 8 : 30);
 }
 
 /** The frame of now, then those ahead, then one behind, all within the recording. */

@@ -86,7 +86,7 @@ interface Shown {
  * in the direction of travel.
  */
 export function usePictures(recording: Recording, camera: Camera, frame: number, wanted: Kinds, range: DepthRange | null, most = 30): Pictures {
-  const travel = useRef<Travel>({ frame, direction: 1, run: 0 });
+  const travel = useRef<Travel>({ frame, direction: 1, run: -1 });
   travel.current = travelOn(travel.current, frame);
   const { direction } = travel.current;
   const ahead = Math.min(most, aheadFor(travel.current, 4 * camera.width * camera.height));

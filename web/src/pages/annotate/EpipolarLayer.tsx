@@ -1,4 +1,4 @@
-import { Group, Line, Text } from "react-konva";
+import { Group, Line, Text } from "../../canvas/shapes";
 import { toScreen, type Point, type View } from "../../canvas/view";
 import { epipolarCurve, type Curve } from "../../model/epipolar";
 import { jointColor } from "../../model/joints";

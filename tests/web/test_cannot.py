@@ -60,11 +60,14 @@ def test_a_recording_that_cannot_be_tracked_is_not_offered_to_be(
     from playwright.sync_api import expect
 
     page = open_page(scheme=scheme)
+    asked: list[int] = []
+    page.on("response", lambda one: asked.append(one.status) if one.url.endswith("/jobs/check") else None)
     page.goto(f"/recordings/{colour_only['id']}")
     tracks = page.get_by_role("region", name="Tracks")
     expect(tracks.get_by_text("It cannot be tracked. None of its cameras has depth images")).to_be_visible()
     for button in page.get_by_role("button", name="Track …").all():
         expect(button).to_be_disabled()
+    assert set(asked) == {200}, "asked once the page knows its recording, and answered"
     take_both(open_page, screenshots, page, f"recording-{scheme}")
 
     page.goto("/jobs")

@@ -133,6 +133,12 @@ def test_a_phone_curates_by_taps_alone(studio, fresh, open_page, screenshots):
     wait_for_hand(page, third)
     wait_until_saved(page)
     assert decided(studio)[:3] == ["accept", "unsure", None]
+
+    page.goto("/curate?collection=nobody%27s")
+    empty = page.get_by_role("heading", name=re.compile("^Nothing "))
+    expect(empty).to_be_visible()
+    box = empty.bounding_box()
+    assert box["x"] >= 0 and box["width"] > 120 and box["height"] < 64, "it has the screen, not the column of the tools"
     expect(page.get_by_role("button", name="Menu")).to_be_visible()
     assert page.evaluate("document.scrollingElement.scrollWidth <= innerWidth")
 

@@ -168,6 +168,8 @@ def test_a_track_is_looked_at_by_fingers(studio, track, open_page, picture_of, s
     page.get_by_text("3D view", exact=True).click()
     expect(page.get_by_role("group", name="Layers of the 3D view")).to_be_visible()
     expect(picture.element).to_be_hidden()
+
+
 def test_a_job_tells_the_error_that_the_page_of_its_track_tells(studio, track, synthesized, open_page):
     """The labels have changed since the track was made, and nobody has opened it."""
     from playwright.sync_api import expect

@@ -95,7 +95,7 @@ def test_a_trained_model_knows_what_it_was_trained_from_and_registers_the_next_r
         assert model.report is not None and model.facts["shape_parameters"] == ["shape 1", "shape 2"]
     assert load_blend_model(find_file(bench.storage, model)).num_shape == 2
     with bench.database.reading() as session:
-        scan_id = session.scalars(select(ScanRow.id).order_by(ScanRow.name)).first()
+        scan_id = session.scalars(select(ScanRow.id).order_by(ScanRow.name).limit(1)).one()
     asked = RegisterCreate(scan_ids=[scan_id], model_id=model.id)
     again = bench.make(making.make_register_job, asked)
     bench.wait_for_end(again)

@@ -16,13 +16,17 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
+from tests.tracker.label_formats.test_hostile import make_hand
 from tracker import Scan, load_annotations, load_scan, save_scan, untrained_hand
 from tracker.capture.archive import extract_archive
 from tracker.capture.image_file import decode_color, decode_depth
 from tracker.capture.importers.anipose_calibration import parse_anipose
+from tracker.capture.importers.dat_calibration import parse_dat
 from tracker.capture.importers.opencv_calibration import parse_opencv
 from tracker.capture.scan_ply import write_ply
+from tracker.capture.video_file import VideoFile
 from tracker.errors import AnnotationError, FileError, ScanError, TrackerError, reading, reads
+from tracker.label_formats.formats import import_labels
 from tracker.model.default_hand import default_hand
 from tracker.model.files import load_model
 from tracker.model.mano_files import load_mano, save_mano
@@ -125,6 +129,27 @@ def _scan(suffix: str) -> Callable[[Path], bytes]:
     return make
 
 
+GOLDEN = Path(__file__).parent / "label_formats" / "golden"
+"""One file of each format of labels."""
+
+
+def _labels(name: str) -> Kind:
+    def read(path: Path) -> object:
+        return import_labels(None, {path.name: path.read_bytes()}, [make_hand()])
+
+    return Kind(name, lambda _: (GOLDEN / name).read_bytes(), read)
+
+
+def _video(path: Path) -> bytes:
+    file = path / "sound.avi"
+    writer = cv2.VideoWriter(str(file), cv2.VideoWriter.fourcc(*"MJPG"), 30.0, (32, 24))
+    for shade in range(5):
+        writer.write(np.full((24, 32, 3), 40 * shade, np.uint8))
+    writer.release()
+    return file.read_bytes()
+
+
+DAT = "intrinsic:\n30 0 16\n0 30 12\n0 0 1\ndistortion:\n0 0 0 0 0\nR:\n1 0 0\n0 1 0\n0 0 1\nT:\n0\n0\n1\n"
 COLOR = np.zeros((20, 20, 3), np.uint8)
 GRAY = np.arange(400, dtype=np.uint16).reshape(20, 20) * 50
 KINDS = (
@@ -153,6 +178,9 @@ KINDS = (
     Kind("depth.png", lambda _: _image(".png", GRAY), lambda p: decode_depth(p.read_bytes(), "x", inflate=True)),
     Kind("recording.zip", lambda _: _zip(), _read_zip),
     Kind("calibration.toml", lambda _: CALIBRATION.encode(), lambda p: parse_anipose(p.read_bytes(), "x")),
+    Kind("c0.dat", lambda _: DAT.encode(), lambda p: parse_dat(p.read_bytes(), None, "c0", "c0.dat")),
+    Kind("video.avi", _video, lambda p: list(VideoFile(p.parent, p.name).read())),
+    *(_labels(path.name) for path in sorted(GOLDEN.iterdir())),
     Kind("camera.npz", lambda _: _npz(K=np.eye(3)), lambda p: parse_opencv(p.read_bytes(), "x.npz")),
     Kind("annotations.json", lambda _: ANNOTATIONS.encode(), load_annotations),
     Kind(

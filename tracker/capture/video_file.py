@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from tracker.capture.calibration import MAX_PIXELS
 from tracker.capture.import_plan import SourceImage, StreamProbe
-from tracker.errors import FrameError, say_count
+from tracker.errors import FrameError, reading, say_count
 
 VIDEO_SUFFIXES = (".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm")
 MAX_VIDEO_FRAMES = 1_000_000
@@ -122,12 +122,13 @@ class VideoFile:
             raise FrameError(f"{self.name}: is no MP4, MOV, AVI, MKV or WebM video (begins with {head[:8].hex(' ')}).")
         capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
         try:
-            if not capture.isOpened():
-                raise FrameError(f"{self.name}: cannot be opened; is it cut off, or in a codec that is not known here?")
-            if capture.get(cv2.CAP_PROP_FRAME_WIDTH) * capture.get(cv2.CAP_PROP_FRAME_HEIGHT) > MAX_PIXELS:
-                raise FrameError(f"{self.name}: has more than {MAX_PIXELS} pixels a frame.")
-            yield capture
-        except cv2.error as cause:
-            raise FrameError(f"{self.name}: cannot be decoded ({cause.err or cause}).") from None
+            with reading(FrameError, self.name, "a video that can be decoded"):
+                if not capture.isOpened():
+                    raise FrameError(
+                        f"{self.name}: cannot be opened; is it cut off, or in a codec that is not known here?"
+                    )
+                if capture.get(cv2.CAP_PROP_FRAME_WIDTH) * capture.get(cv2.CAP_PROP_FRAME_HEIGHT) > MAX_PIXELS:
+                    raise FrameError(f"{self.name}: has more than {MAX_PIXELS} pixels a frame.")
+                yield capture
         finally:
             capture.release()

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from tracker.capture.source_choice import ALL, count_origins, describe_origin, is_independent, keep_joints, say_left_out
-from tracker.errors import AnnotationError
+from tracker.errors import AnnotationError, reading
 from tracker.label_formats.coco_keypoints import read_coco_keypoints, write_coco_keypoints
 from tracker.label_formats.coco_wholebody import read_coco_wholebody, write_coco_wholebody
 from tracker.label_formats.deeplabcut import read_deeplabcut, write_deeplabcut
@@ -167,7 +167,9 @@ def import_labels(
     name: str | None, files: dict[str, bytes], sets: list[LabelSet], hints: ImportHints | None = None
 ) -> tuple[str, ImportedLabels]:
     """The format and what was found; raises when the files cannot be read at all."""
-    format_ = find_label_format(name or recognise_labels(files))
+    first = next(iter(files), "files of labels")
+    with reading(AnnotationError, first, f"labels as {', '.join(LABEL_FORMATS)} write them"):
+        format_ = find_label_format(name or recognise_labels(files))
     if len(sets) != 1 and not format_.several:
         raise AnnotationError(f"{format_.title} holds one recording a file; name the recording.")
     hints = hints or ImportHints()
@@ -175,7 +177,8 @@ def import_labels(
         raise AnnotationError(f"The option hand is {str(hints.hand)[:40]!r}; needed right or left.")
     if hints.pixel_centre not in (None, 0.0, 0.5):
         raise AnnotationError(f"The option pixel_centre is {hints.pixel_centre}; needed 0 or 0.5.")
-    return format_.name, format_.read(files, sets, hints)
+    with reading(AnnotationError, first, f"labels as {format_.title} writes them"):
+        return format_.name, format_.read(files, sets, hints)
 
 
 def recognise_labels(files: dict[str, bytes]) -> str:

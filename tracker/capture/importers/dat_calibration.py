@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from tracker.capture.importers.video_calibration import VideoCamera, make_camera
-from tracker.errors import CalibrationError
+from tracker.errors import CalibrationError, reading
 
 _SECTIONS = {"intrinsic": "K", "distortion": "distortion", "r": "R", "t": "t"}
 
 
 def parse_dat(intrinsics: bytes, extrinsics: bytes | None, name: str, file: str) -> VideoCamera:
     """One camera from its file of intrinsics and its file of extrinsics, if it has one."""
-    values = _parse_sections(intrinsics, file)
-    if extrinsics is not None:
-        values |= {k: v for k, v in _parse_sections(extrinsics, f"rot_trans_{file}").items() if k in ("R", "t")}
+    with reading(CalibrationError, file, "sections of numbers such as 'intrinsic:'"):
+        values = _parse_sections(intrinsics, file)
+        if extrinsics is not None:
+            values |= {k: v for k, v in _parse_sections(extrinsics, f"rot_trans_{file}").items() if k in ("R", "t")}
     if "K" not in values:
         raise CalibrationError(f"{file}: has no section 'intrinsic:'.")
     if extrinsics is not None and not {"R", "t"} <= values.keys():

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.calibration import ORTHONORMAL_TOLERANCE, nearest_rotation
-from tracker.errors import CalibrationError
+from tracker.errors import CalibrationError, reads
 
 Array = npt.NDArray[np.float64]
 MAX_CALIBRATION_BYTES = 4 * 1024 * 1024
@@ -69,6 +69,7 @@ def to_array(value: Any, what: str) -> Array:
     return array
 
 
+@reads(CalibrationError, "a camera: K of 3x3 numbers, R of 3x3 or a rotation vector, t of three")
 def make_camera(name: str, what: str, values: dict[str, Any]) -> VideoCamera:
     """A camera from its values: K, and if known distortion, R (3x3 or rotation vector), t, size."""
     K = to_array(values["K"], f"{what}: K")

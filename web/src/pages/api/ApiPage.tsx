@@ -41,8 +41,8 @@ export default function ApiPage() {
               {operations.map((operation) => (
                 <Accordion.Item key={operation.operationId} value={operation.operationId}>
                   <Accordion.Control>
-                    <Group gap="sm" wrap="nowrap" align="baseline">
-                      <Badge variant="light" radius="sm" w={72} color={COLORS[operation.method] ?? "gray"} style={{ flexShrink: 0 }}>
+                    <Group gap="md" wrap="nowrap" align="center">
+                      <Badge variant="outline" radius="sm" w={72} color={COLORS[operation.method] ?? "gray"} style={{ flexShrink: 0 }}>
                         {operation.method}
                       </Badge>
                       <div style={{ minWidth: 0, overflowWrap: "anywhere" }}>
@@ -50,7 +50,7 @@ export default function ApiPage() {
                           {operation.path}
                         </Text>
                         <Text size="sm" className="quiet">
-                          {operation.description?.split("\n")[0]}
+                          <Words text={operation.description?.split("\n")[0]} />
                         </Text>
                       </div>
                     </Group>
@@ -68,11 +68,16 @@ export default function ApiPage() {
   );
 }
 
+/** The document's words; what stands between backticks is code. */
+function Words({ text = "" }: { text?: string | undefined }) {
+  return text.split("`").map((part, place) => (place % 2 ? <Code key={place}>{part}</Code> : part));
+}
+
 function Details({ operation, document }: { operation: Operation; document: ApiDocument }) {
   const bodies = Object.entries(operation.requestBody?.content ?? {});
   return (
     <Stack gap="md">
-      {operation.description?.includes("\n") && <Text size="sm">{operation.description.split("\n").slice(1).join(" ").trim()}</Text>}
+      {operation.description?.includes("\n") && <Text size="sm"><Words text={operation.description.split("\n").slice(1).join(" ").trim()} /></Text>}
       {(operation.parameters?.length ?? 0) > 0 && (
         <Table>
           <Table.Thead>
@@ -92,7 +97,9 @@ function Details({ operation, document }: { operation: Operation; document: ApiD
                 </Table.Td>
                 <Table.Td>{parameter.in}</Table.Td>
                 <Table.Td>{describeSchema(parameter.schema)}</Table.Td>
-                <Table.Td>{parameter.description}</Table.Td>
+                <Table.Td>
+                  <Words text={parameter.description} />
+                </Table.Td>
               </Table.Tr>
             ))}
           </Table.Tbody>

@@ -213,7 +213,7 @@ def test_work_is_given_done_submitted_returned_and_accepted(
 
 
 def test_a_reviewer_looks_through_the_work_comments_and_accepts_by_touch(
-    join, open_as, recording, project, picture_of, screenshots
+    join, open_as, recording, synthesized, project, picture_of, screenshots
 ) -> None:
     from playwright.sync_api import expect
 
@@ -221,7 +221,7 @@ def test_a_reviewer_looks_through_the_work_comments_and_accepts_by_touch(
     ann = join("Ann", "annotator")
     frames = {"sequence_id": recording["id"], "account_id": ann.id, "frame_first": 0, "frame_last": 1}
     work = lead.send("POST", f"/projects/{made['id']}/assignments", json=frames)
-    hand = {"points": [[200 + 4 * joint, 200, 2] for joint in range(21)], "operation_id": str(uuid.uuid4())}
+    hand = {"points": [[x, y, 2] for x, y in synthesized.joints], "operation_id": str(uuid.uuid4())}
     place = f"/sequences/{recording['id']}/annotations/cam0/0/right"
     ann.send("PUT", place, json=hand, headers={"If-None-Match": "*"})
     ann.submit(ann.send("GET", f"/assignments/{work['id']}"))
@@ -244,8 +244,8 @@ def test_a_reviewer_looks_through_the_work_comments_and_accepts_by_touch(
     page.wait_for_function(
         "(scale) => JSON.parse(document.querySelector('[data-picture]').dataset.view).scale > 2 * scale", arg=scale
     )
-    page.touchscreen.tap(*picture.at(330, 330))
-    page.touchscreen.tap(*picture.at(200 + 4 * 8, 200))
+    page.touchscreen.tap(*picture.at(280, 230))
+    page.touchscreen.tap(*picture.at(*synthesized.joints[8]))
     bar = page.get_by_role("group", name="Assignment")
     bar.get_by_role("button", name="Comment").tap()
     words = page.get_by_label("Comment on the right index tip")

@@ -173,7 +173,7 @@ def test_keys_go_on_working_after_a_layer_is_ticked_and_after_a_click_into_the_3
     page.goto(f"/tracks/{track['id']}?frame=3&layers=mesh")
     frame = page.get_by_test_id("frame")
     bar = page.get_by_role("group", name="Layers of the 3D view")
-    inner = page.frame_locator("iframe").locator("canvas").first
+    inner = page.frame_locator("iframe").locator("canvas[data-engine]")
     inner.wait_for(timeout=60_000)
     for press, then in (("f", 4), ("Right", 5), ("d", 4), ("Home", 0), ("v", 10)):
         bar.get_by_label("Cloud").click()

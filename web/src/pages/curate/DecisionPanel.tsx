@@ -86,7 +86,7 @@ export function DecisionPanel({ item, mine, reasons, mayDecide, isDrawn, onDecid
             </Kbd>
           </button>
         ))}
-        <button type="button" className={classes.act} data-kind="undo" disabled={!canUndo} aria-label="Undo the last decision" onClick={onUndo}>
+        <button type="button" className={classes.act} data-kind="undo" disabled={!canUndo} title="Undo the last decision" onClick={onUndo}>
           <IconArrowBackUp size={18} aria-hidden />
           Undo
           <Kbd size="xs" aria-hidden>

@@ -76,7 +76,7 @@ export function SizeCheck({ measured, answers, shown, isOnlyThis, isConfirmed, o
       {guesses > 0 && (
         <Stack gap={4} className={classes.guess}>
           <Group gap="sm" wrap="nowrap" align="flex-start">
-            <Badge color="yellow" variant="light" style={{ flex: "none" }}>
+            <Badge color="yellow" variant="outline" c="var(--mantine-color-text)" style={{ flex: "none" }}>
               Guess
             </Badge>
             <Text size="sm">

@@ -27,7 +27,7 @@ export function UnitPanel({ scan, hasUnsavedCrop }: { scan: Scan; hasUnsavedCrop
       <Group gap="sm" mb="sm">
         <Title order={3}>Unit and size</Title>
         {scan.is_unit_guessed && (
-          <Badge color="yellow" variant="light" size="sm">
+          <Badge color="yellow" variant="outline" size="sm" c="var(--mantine-color-text)">
             Guess
           </Badge>
         )}

@@ -6,20 +6,14 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
-import socket
 import sqlite3
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import httpx
 import pytest
 import schemathesis
 from fastapi import FastAPI
@@ -31,8 +25,6 @@ from schemathesis.checks import CHECKS, load_all_checks
 from schemathesis.config import SchemathesisConfig
 from schemathesis.python.asgi import get_client, shutdown_lifespans
 
-from server.accounts.models import Account, TokenRow
-from server.accounts.secrets import hash_secret
 from server.accounts.tries import FailedTries
 from server.app import create_app
 from server.app.openapi import write_document
@@ -159,63 +151,3 @@ def _feed(fed: Fed, operation: Any, mode: GenerationMode, examples: int) -> None
         case.validate_response(answer, checks=CHECKS.get_all())
 
     feed()
-
-
-def _serve(data_dir: Path, **more: str) -> tuple[subprocess.Popen[bytes], str]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    environment = os.environ | {"HANDLOOM_DATA_DIR": str(data_dir)} | more
-    process = subprocess.Popen(
-        [sys.executable, "-m", "server.cli", "serve", "--port", str(port)], cwd=ROOT, env=environment
-    )
-    url = f"http://127.0.0.1:{port}/api/v1"
-    for _ in range(600):
-        try:
-            if httpx.get(f"{url}/health").is_success:
-                return process, url
-        except httpx.HTTPError:
-            time.sleep(0.2)
-    process.kill()
-    raise AssertionError("the studio was not up within two minutes")
-
-
-def _write_config(known: dict[str, Any], path: Path) -> None:
-    """The exceptions, and the ids of what is there: without them nearly every request would be about nothing."""
-    names = ["sequence_id", "content_key", "camera", "track_id", "project_id", "assignment_id", "replica_set_id"]
-    names += ["snapshot_id", "scan_id", "registration_id", "decision_id", "training_set_id", "model_id", "job_id"]
-    names += ["batch_id", "import_id", "account_id", "comment_id", "key"]
-    lines = [f'"path.{name}" = {json.dumps(known[name])}' for name in names]
-    path.write_text("\n".join([EXCEPTIONS.read_text(), "[parameters]", *lines, ""]))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("login", ["auto", "required"])
-def test_the_command_schemathesis_finds_nothing_in_a_served_studio(
-    login: str, rendered: Path, tracked_folder: Path, generated_hand: GeneratedHand, tmp_path: Path
-) -> None:
-    """All checks and all phases against the real server with data, for one person and where people log in."""
-    secret = "handloom-token-of-a-test"
-    with _open(tmp_path) as (app, schema, client):
-        known = fill(app, _sender(schema, client), rendered, tracked_folder, generated_hand)
-        with app.state.database.writing() as session:
-            admin = Account(name="Ada", role="admin")
-            session.add(admin)
-            session.flush()
-            hashed = hash_secret("token", secret)
-            session.add(TokenRow(account_id=admin.id, name="test", secret_hash=hashed, may_write=True))
-    _write_config(known.parameters, tmp_path / "config.toml")
-    process, url = _serve(tmp_path, HANDLOOM_LOGIN=login)
-    try:
-        base = url.removesuffix("/api/v1")
-        command = [str(Path(sys.executable).with_name("schemathesis")), "--config-file", str(tmp_path / "config.toml")]
-        command += ["run", str(ROOT / "web" / "src" / "api" / "openapi.json"), "--url", base, "--checks", "all"]
-        if login == "required":
-            command += ["-H", f"Authorization: Bearer {secret}"]
-        command += ["--max-examples", "20", "--continue-on-failure", "--no-shrink", "--warnings", "off"]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    finally:
-        process.terminate()
-        process.wait(30)
-    (tmp_path / "said.txt").write_text(done.stdout + done.stderr)
-    assert done.returncode == 0, done.stdout[-8000:] + done.stderr[-2000:]

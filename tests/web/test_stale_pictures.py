@@ -70,6 +70,31 @@ KEYS = [
 """Every key that changes labels."""
 
 
+COUNT_OBSERVERS = """
+  window.observed = 0;
+  const observe = ResizeObserver.prototype.observe;
+  ResizeObserver.prototype.observe = function (element, options) {
+    if (element.matches("[data-picture]")) window.observed += 1;
+    return observe.call(this, element, options);
+  };
+"""
+
+
+def test_the_pane_is_in_reach_at_every_drawing_so_that_no_picture_stays_unnoted(
+    studio, recording, open_page, picture_of
+):
+    page = open_page()
+    page.add_init_script(COUNT_OBSERVERS)
+    page.goto(f"/recordings/{recording['id']}/annotate")
+    picture = picture_of(page)
+    picture.wait()
+    picture.element.focus()
+    for _ in range(4):
+        page.keyboard.press("f")
+        picture.wait()
+    assert page.evaluate("observed") == 1, "the pane was let go and taken hold of again between two frames"
+
+
 def test_nothing_is_changed_in_a_picture_that_is_not_on_the_screen(
     studio, recording, open_page, picture_of, screenshots
 ):

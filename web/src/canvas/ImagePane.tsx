@@ -1,6 +1,6 @@
-import { useElementSize } from "@mantine/hooks";
+import { useElementSize, useMergedRef } from "@mantine/hooks";
 import type Konva from "konva";
-import { useCallback, useEffect, useLayoutEffect, useRef, type ReactNode } from "react";
+import { useCallback, useEffect, useLayoutEffect, useRef, useState, type ReactNode } from "react";
 import { Image, Layer, Rect, Stage } from "./shapes";
 import type { Camera } from "../api/types";
 import type { PointerStore } from "../state/pointer";
@@ -61,7 +61,10 @@ export function ImagePane(props: ImagePaneProps) {
   const { label, camera, layers, view, onView, brightness, contrast, pointer, cursorLabel, isMagnified, children, withCursor, overlay, frame, shownFrame, setback, onRetry, isRefused = false, onDrawn } = props;
   const { ref: sizeRef, width, height } = useElementSize();
   const surface = useRef<HTMLDivElement | null>(null);
-  const imageLayer = useRef<Konva.Layer>(null);
+  // One that stays: with a new one at each render the pane is out of reach for a moment, and a picture drawn then was never noted.
+  const held = useMergedRef(surface, sizeRef);
+  // The stage draws its own tree, sometimes after the effects of this one: its layer is told of, not looked for.
+  const [imageLayer, setImageLayer] = useState<Konva.Layer | null>(null);
   const shownView = view ?? fitView(camera, { width, height });
   const onScreen = useRef<number | null>(null);
   const wanted = useRef(frame);
@@ -72,7 +75,7 @@ export function ImagePane(props: ImagePaneProps) {
 
   useEffect(() => {
     // The browser's own filter on the picture's layer costs nothing; Konva's filters would redo every pixel.
-    const canvas = imageLayer.current?.getNativeCanvasElement();
+    const canvas = imageLayer?.getNativeCanvasElement();
     if (canvas) canvas.style.filter = brightness === 1 && contrast === 1 ? "" : `brightness(${brightness}) contrast(${contrast})`;
   });
 
@@ -81,9 +84,7 @@ export function ImagePane(props: ImagePaneProps) {
   useLayoutEffect(() => {
     meant.current = { pictures: drawable, frame: shownFrame, onDrawn };
   });
-  const hasStage = width > 0 && height > 0;
   useEffect(() => {
-    const layer = imageLayer.current;
     const tell = (drawn: number | null): void => {
       const isNew = onScreen.current !== drawn;
       onScreen.current = drawn;
@@ -94,18 +95,18 @@ export function ImagePane(props: ImagePaneProps) {
     };
     const note = (): void => {
       const { pictures, frame: of } = meant.current;
-      const images = layer?.find<Konva.Image>("Image") ?? [];
+      const images = imageLayer?.find<Konva.Image>("Image") ?? [];
       const isOnScreen = pictures.length > 0 && images.length === pictures.length && images.every((image, index) => image.image() === pictures[index]);
       tell(isOnScreen ? of : null);
     };
-    layer?.on("draw", note);
+    imageLayer?.on("draw", note);
     // What was drawn before is noted, too.
-    layer?.batchDraw();
+    imageLayer?.batchDraw();
     return () => {
-      layer?.off("draw", note);
+      imageLayer?.off("draw", note);
       tell(null);
     };
-  }, [hasStage]);
+  }, [imageLayer]);
 
   const pictures = layers.flatMap(({ picture, opacity }, index) =>
     picture && picture.width > 0 ? (
@@ -124,10 +125,7 @@ export function ImagePane(props: ImagePaneProps) {
   );
   return (
     <div
-      ref={(element) => {
-        surface.current = element;
-        sizeRef(element);
-      }}
+      ref={held}
       className={classes.pane}
       role="application"
       aria-label={label}
@@ -139,9 +137,9 @@ export function ImagePane(props: ImagePaneProps) {
       aria-busy={shownFrame !== frame}
       {...handlers}
     >
-      {hasStage && (
+      {width > 0 && height > 0 && (
         <Stage width={width} height={height} listening={false}>
-          <Layer ref={imageLayer} imageSmoothingEnabled={shownView.scale < SQUARE_PIXELS} listening={false}>
+          <Layer ref={setImageLayer} imageSmoothingEnabled={shownView.scale < SQUARE_PIXELS} listening={false}>
             {pictures}
           </Layer>
           <Layer listening={false}>

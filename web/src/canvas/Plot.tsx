@@ -1,5 +1,5 @@
 import { useComputedColorScheme } from "@mantine/core";
-import { useElementSize } from "@mantine/hooks";
+import { useElementSize, useMergedRef } from "@mantine/hooks";
 import { useEffect, useRef } from "react";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
@@ -52,6 +52,7 @@ const decades = (low: number | null, high: number | null): [number, number] => {
 export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false, joinsAll = false, isBelowTwoAxes = false, hasLegend = true }: PlotProps) {
   const { ref: sizeRef, width, height } = useElementSize();
   const holder = useRef<HTMLDivElement | null>(null);
+  const held = useMergedRef(holder, sizeRef);
   const plot = useRef<uPlot | null>(null);
   const here = useRef(frame);
   const seek = useRef(onSeek);
@@ -178,13 +179,7 @@ export function Plot({ label, frames, curves, lost, frame, onSeek, isLog = false
   return (
     <figure className={classes.figure} aria-label={label} data-seeks={onSeek !== undefined}>
       {hasLegend && <PlotLegend curves={curves} index={index} />}
-      <div
-        ref={(element) => {
-          holder.current = element;
-          sizeRef(element);
-        }}
-        className={classes.holder}
-      />
+      <div ref={held} className={classes.holder} />
     </figure>
   );
 }

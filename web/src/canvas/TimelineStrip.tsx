@@ -1,5 +1,5 @@
 import { useComputedColorScheme } from "@mantine/core";
-import { useElementSize } from "@mantine/hooks";
+import { useElementSize, useMergedRef } from "@mantine/hooks";
 import { useEffect, useRef, useState, type KeyboardEvent, type PointerEvent } from "react";
 import { drawTimeline, lanesOf, type TimelineContent } from "./drawTimeline";
 import { frameAt, panWindow, xOf, zoomWindow, type FrameWindow } from "./frameWindow";
@@ -20,6 +20,7 @@ export function TimelineStrip({ content, frame, window: shown, onWindow, onSeek,
   const { ref, width } = useElementSize();
   const canvas = useRef<HTMLCanvasElement>(null);
   const surface = useRef<HTMLDivElement | null>(null);
+  const held = useMergedRef(surface, ref);
   const scheme = useComputedColorScheme("dark");
   const [hovered, setHovered] = useState<number | null>(null);
   const { frameCount } = content;
@@ -87,10 +88,7 @@ export function TimelineStrip({ content, frame, window: shown, onWindow, onSeek,
 
   return (
     <div
-      ref={(element) => {
-        surface.current = element;
-        ref(element);
-      }}
+      ref={held}
       className={classes.strip}
       style={{ height }}
       role="slider"

@@ -54,7 +54,7 @@ def read_images(node: Node, collector: ImportCollector, hints: ImportHints) -> d
         size = tuple(image.get(key).value if image.has(key) else None for key in ("width", "height"))
         if None not in size and size != (camera.width, camera.height):
             collector.problems.add(
-                "{n} images have another size than in the recording; scaled images cannot be matched",
+                "{n} [image has|images have] another size than in the recording; scaled images cannot be matched",
                 f"{name}: {size[0]}x{size[1]}, recorded {camera.width}x{camera.height}",
             )
             continue
@@ -75,16 +75,18 @@ def _find_place(image: Node, name: str, collector: ImportCollector, hints: Impor
     if len(matches) == 1:
         if indexed is not None and indexed != matches[0]:
             collector.warnings.add(
-                "{n} images were taken by their file name although their frame number says otherwise", name
+                "{n} [image was|images were] taken by file name although [its|their] frame number says otherwise", name
             )
         return matches[0]
     if matches:
-        collector.problems.add("{n} file names mean several images of the recording; name the camera", name)
+        collector.problems.add(
+            "{n} [file name means|file names mean] several images of the recording; name the camera", name
+        )
         return None
     if indexed is not None:
-        collector.warnings.add("{n} file names are not known here; their frame number was taken", name)
+        collector.warnings.add("{n} [file name is|file names are] not known here; the frame number was taken", name)
         return indexed
-    collector.warnings.add("{n} images are not in the recording; their labels were left out", name)
+    collector.warnings.add("{n} [image is|images are] not in the recording; [its|their] labels were left out", name)
     return None
 
 

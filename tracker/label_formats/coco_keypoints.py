@@ -111,7 +111,7 @@ def read_coco_keypoints(files: dict[str, bytes], sets: list[LabelSet], hints: Im
         category = item.get("category_id").integer(0, MAX_ID)
         image = item.get("image_id").integer(0, MAX_ID)
         if category not in categories:
-            collector.warnings.add("{n} annotations are of categories that are no hands and were left out")
+            collector.warnings.add("{n} [annotation|annotations] of categories that are no hands [was|were] left out")
         elif image not in known:
             item.get("image_id").fail("the id of one of the images")
         elif image in images:

@@ -111,11 +111,13 @@ def read_coco_wholebody(files: dict[str, bytes], sets: list[LabelSet], hints: Im
                 sources = parse_sources(item.get(member), range(21)) if item.has(member) else None
                 collector.add(key, Annotation(frame, camera, side, points, sources))
         if item.has("num_keypoints") and item.get("num_keypoints").integer(0, 10**6):
-            collector.warnings.add("{n} people have a body, which was left out")
+            collector.warnings.add("{n} [person has|people have] a body, which was left out")
     return collector.finish()
 
 
 def _note_floats(node: Node, collector: ImportCollector) -> None:
     seen = read_numbers(node, (21, 3), MAX_PIXEL)[:, 2]
     strange = int((~np.isin(seen, (0, 1, 2)) & (seen > 0)).sum())
-    collector.warnings.add("{n} joints have a confidence for a visibility and were taken as visible", count=strange)
+    collector.warnings.add(
+        "{n} [joint has|joints have] a confidence for a visibility and [was|were] taken as visible", count=strange
+    )

@@ -102,7 +102,7 @@ def read_deeplabcut(files: dict[str, bytes], sets: list[LabelSet], hints: Import
         raise AnnotationError(f"Needed a table CollectedData_....csv; found {', '.join(sorted(files)[:5])}.")
     for name in tables:
         _read_table(name, files[name], only, hints, collector)
-    collector.warnings.add("DeepLabCut does not say what is occluded; {n} tables have every joint as visible",
+    collector.warnings.add("DeepLabCut does not say what is occluded; in {n} [table|tables] every joint is visible",
                            count=len(tables))  # fmt: skip
     return collector.finish()
 
@@ -161,7 +161,9 @@ def _read_header(
         joint = find_joint(rows["bodyparts"][i])
         if side is None or joint is None or coords[i] not in ("x", "y"):
             what = f"{rows['bodyparts'][i]} of {who}"[:80]
-            collector.warnings.add("{n} columns are no joint of the right or left hand and were left out", what)
+            collector.warnings.add(
+                "{n} [column is|columns are] no joint of the right or left hand and [was|were] left out", what
+            )
             continue
         column = (side, joint, "xy".index(coords[i]))
         if column in columns.values():
@@ -210,9 +212,14 @@ def _find_image(
 ) -> Place | None:
     found = labels.names.find(path, hints.camera)
     if len(found) > 1:
-        collector.problems.add("{n} rows name an image that several cameras have; give the option camera", path)
+        collector.problems.add(
+            "{n} [row names|rows name] an image that several cameras have; give the option camera", path
+        )
     elif not found:
-        collector.warnings.add("{n} rows name images that are not in the recording and were left out", path or where)
+        collector.warnings.add(
+            "{n} [row names an image that is|rows name images that are] not in the recording and [was|were] left out",
+            path or where,
+        )
     return found[0] if len(found) == 1 else None
 
 

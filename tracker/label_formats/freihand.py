@@ -40,7 +40,7 @@ def write_freihand(sets: list[LabelSet]) -> ExportedLabels:
     losses = Notes()
     note_flat_visibility(losses, only.annotations.items, "FreiHAND")
     lefts = sum(item.hand == "left" for item in only.annotations.items)
-    losses.add("{n} left hands were left out: FreiHAND holds right hands only", count=lefts)
+    losses.add("{n} left [hand was|hands were] left out: FreiHAND holds right hands only", count=lefts)
     right = dataclasses.replace(only, annotations=type(only.annotations)(
         tuple(item for item in only.annotations.items if item.hand == "right")
     ))  # fmt: skip
@@ -48,7 +48,7 @@ def write_freihand(sets: list[LabelSet]) -> ExportedLabels:
     for hand in find_hands_3d(right, losses):
         if not np.isfinite(hand.points).all():
             where = f"frame {hand.frame}"
-            losses.add("{n} right hands were left out: FreiHAND needs all 21 joints in 3D", where)
+            losses.add("{n} right [hand was|hands were] left out: FreiHAND needs all 21 joints in 3D", where)
             continue
         for camera_id in hand.labels:
             camera = only.sequence.camera(camera_id)
@@ -59,7 +59,7 @@ def write_freihand(sets: list[LabelSet]) -> ExportedLabels:
             name = only.names.name((camera_id, hand.frame))
             samples.append({"camera": camera_id, "frame": hand.frame, "hand": "right", "file_name": name})
             losses.add(
-                "{n} samples are of images with lens distortion, which FreiHAND's projection does not know",
+                "FreiHAND's projection knows no lens distortion, which {n} [sample has|samples have]",
                 count=int(bool(camera.distortion.any())),
             )
     if not xyz:
@@ -92,11 +92,13 @@ def read_freihand(files: dict[str, bytes], sets: list[LabelSet], hints: ImportHi
             continue
         recorded = only.sequence.camera(place[0])
         if np.abs(K - recorded.K).max() > K_TOLERANCE:
-            collector.warnings.add("{n} samples have other intrinsics than the recording; theirs were used", place[0])
+            collector.warnings.add(
+                "{n} [sample has|samples have] other intrinsics than the recording; [its|theirs] were used", place[0]
+            )
         eye = Camera(recorded.id, recorded.width, recorded.height, K, recorded.distortion)
         marked = project_hand(eye, points, np.ones(21, dtype=np.bool_))
         collector.add(only.key, Annotation(place[1], place[0], "right", marked))
-    collector.warnings.add("FreiHAND does not say what is occluded; {n} hands have every joint in the image as visible",
+    collector.warnings.add("FreiHAND does not say what is occluded; of {n} [hand|hands] every joint seen is visible",
                            count=len(xyz))  # fmt: skip
     return collector.finish()
 
@@ -140,10 +142,13 @@ def _find_sample(
         if len(found) == 1:
             if found[0] != (camera, frame):
                 collector.warnings.add(
-                    "{n} samples were taken by file name; their frame number says otherwise", file_name
+                    "{n} [sample was|samples were] taken by file name; [its|their] frame number says otherwise",
+                    file_name,
                 )
             return found[0]
     if camera in cameras and frame < labels.sequence.frame_count:
         return camera, frame
-    collector.warnings.add("{n} samples are not in the recording and were left out", f"frame {frame} of {camera}")
+    collector.warnings.add(
+        "{n} [sample is|samples are] not in the recording and [was|were] left out", f"frame {frame} of {camera}"
+    )
     return None

@@ -34,7 +34,7 @@ def read_handloom(files: dict[str, bytes], sets: list[LabelSet], hints: ImportHi
     for item in parse_annotations(find_json(files, ".json")).items:
         if item.camera not in cameras or item.frame >= only.sequence.frame_count:
             place = f"frame {item.frame} of {item.camera}"
-            collector.problems.add("{n} hands are in images that the recording has not", place)
+            collector.problems.add("{n} [hand is in an image|hands are in images] that the recording has not", place)
         else:
             collector.add(only.key, item)
     return collector.finish()

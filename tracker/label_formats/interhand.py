@@ -85,7 +85,7 @@ def write_interhand(sets: list[LabelSet]) -> ExportedLabels:
                 }
             )
     for camera in only.sequence.cameras:
-        losses.add("{n} cameras have lens distortion, which InterHand2.6M does not hold", camera.id,
+        losses.add("{n} [camera has|cameras have] lens distortion, which InterHand2.6M does not hold", camera.id,
                    count=int(bool(camera.distortion.any())))  # fmt: skip
     files = {
         f"{PREFIX}_data.json": write_json({"images": images, "annotations": annotations}),
@@ -162,7 +162,7 @@ def read_interhand(files: dict[str, bytes], sets: list[LabelSet], hints: ImportH
                 marked = project_hand(eyes[capture, camera], own, known.astype(np.bool_))
                 collector.add(only.key, Annotation(frame, camera, side, marked))
                 collector.warnings.add(
-                    "InterHand2.6M does not say what is occluded; {n} hands have every joint in the image as visible"
+                    "InterHand2.6M does not say what is occluded; of {n} [hand|hands] every joint seen is visible"
                 )
     return collector.finish()
 
@@ -182,5 +182,8 @@ def _read_camera(capture: Node, image: Node, labels: LabelSet, camera_id: str, c
     K = np.array([[focal[0], 0, centre[0]], [0, focal[1], centre[1]], [0, 0, 1]])
     away = np.linalg.norm(T[:3, 3] - recorded.T_world_camera[:3, 3])
     if np.abs(K - recorded.K).max() > TOLERANCE_PX or away > TOLERANCE_M:
-        collector.warnings.add("{n} cameras are calibrated otherwise than in the recording; theirs was used", name)
+        collector.warnings.add(
+            "{n} [camera has|cameras have] another calibration than in the recording; [its|their] own was used",
+            name,
+        )
     return Camera(camera_id, recorded.width, recorded.height, K, recorded.distortion, T)

@@ -49,13 +49,14 @@ def find_hands_3d(labels: LabelSet, notes: Notes) -> list[Hand3D]:
         points = np.full((len(HAND_JOINTS), 3), np.nan)
         if labels.track_joints:
             points = labels.track_joints.get((frame, hand), points)
-            notes.add("{n} joints are those of a track, a machine's guess, not what people marked",
+            notes.add("{n} [joint is that of|joints are those of] a track, a machine's guess, not what people marked",
                       count=int(np.isfinite(points).all(axis=1).sum()))  # fmt: skip
         else:
             points = _find_points(labels, views, marked, depths, notes)
         known = np.isfinite(points).all(axis=1)
         notes.add(
-            "{n} labelled joints have no known position in 3D and were left out", count=int((marked & ~known).sum())
+            "{n} labelled [joint has|joints have] no known position in 3D and [was|were] left out",
+            count=int((marked & ~known).sum()),
         )
         hands.append(Hand3D(frame, hand, points, views))
     return hands
@@ -70,7 +71,7 @@ def _find_points(
     if len(names) >= 2:
         points = triangulate([labels.sequence.camera(name) for name in names], marks).points
         notes.add(
-            "{n} joints were triangulated from two or more cameras",
+            "{n} [joint was|joints were] triangulated from two or more cameras",
             count=int(np.isfinite(points).all(axis=1).sum()),
         )
     for name, view in views.items():
@@ -79,7 +80,9 @@ def _find_points(
             pixel = view.points[joint, :2]
             z = depths.at(name, view.frame, *pixel)
             if z > 0:
-                notes.add("{n} joints are points of the skin, from the depth under them; the joint lies deeper")
+                notes.add(
+                    "{n} [joint is|joints are] on the skin, where the depth was read; the joint itself lies deeper"
+                )
                 ray = camera.unproject(pixel[None])[0]
                 points[joint] = camera.T_world_camera[:3, :3] @ (z * ray) + camera.T_world_camera[:3, 3]
     return points

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -96,7 +97,10 @@ class Notes:
         self._examples: dict[str, list[str]] = {}
 
     def add(self, kind: str, example: str = "", count: int = 1) -> None:
-        """Note that something of a kind happened; `{n}` in the kind becomes the number of times."""
+        """Note that something of a kind happened.
+
+        In the kind `{n}` becomes the number of times, and of `[one|many]` the word that fits it stays.
+        """
         if count:
             self._counts[kind] += count
             examples = self._examples.setdefault(kind, [])
@@ -109,7 +113,8 @@ class Notes:
         for kind, count in list(self._counts.items())[:MAX_NOTES]:
             examples = self._examples[kind]
             more = f" ({', '.join(examples)}{', ...' if count > len(examples) else ''})" if examples else ""
-            told.append(f"{kind.replace('{n}', str(count))}{more}.")
+            fitting = re.sub(r"\[(.*?)\|(.*?)\]", r"\1" if count == 1 else r"\2", kind)
+            told.append(f"{fitting.replace('{n}', str(count))}{more}.")
         if len(self._counts) > MAX_NOTES:
             told.append(f"{say_count(len(self._counts) - MAX_NOTES, 'further kind', 'further kinds')} of notes.")
         return tuple(told)
@@ -126,12 +131,12 @@ class ImportCollector:
     def add(self, key: str, annotation: Annotation) -> None:
         """Take an annotation in; one without a single joint says nothing."""
         if not (annotation.points[:, 2] > 0).any() and not annotation.points[:, :2].any():
-            self.warnings.add("{n} hands without a single joint were left out")
+            self.warnings.add("{n} [hand|hands] without a single joint [was|were] left out")
             return
         own = self._found[key]
         place = f"the {annotation.hand} hand in frame {annotation.frame} of {annotation.camera}"
         if annotation.key in own:
-            self.problems.add("{n} places have two hands of the same side; say which is which", place)
+            self.problems.add("{n} [place has|places have] two hands of the same side; say which is which", place)
             return
         own[annotation.key] = annotation
 
@@ -158,7 +163,8 @@ def note_flat_visibility(notes: Notes, annotations: Iterable[Annotation], name: 
     """Losses of a format that knows only whether a joint is there."""
     for item in annotations:
         notes.add(
-            f"{{n}} occluded joints: {name} does not say what is occluded", count=int((item.points[:, 2] == 1).sum())
+            f"{{n}} occluded [joint|joints]: {name} does not say what is occluded",
+            count=int((item.points[:, 2] == 1).sum()),
         )
     note_outside(notes, annotations, name)
 
@@ -167,6 +173,6 @@ def note_outside(notes: Notes, annotations: Iterable[Annotation], name: str) -> 
     """Losses of a format that has one word for outside the image and for not looked at."""
     for item in annotations:
         notes.add(
-            f"{{n}} joints marked as outside the image: {name} holds them like joints nobody looked at",
+            f"{{n}} [joint|joints] marked as outside the image: {name} holds [it|them] like joints nobody looked at",
             count=int(is_outside(item.points).sum()),
         )

@@ -73,9 +73,12 @@ def _write_frame(hands: dict[str, Annotation], losses: Notes) -> tuple[str, int]
             px, py, v = hands[hand].points[HAND_JOINTS.index(joint)]
             if v > 0:
                 x, y = round(px) + PIXEL_CENTRE, round(py) + PIXEL_CENTRE
-                losses.add("{n} positions were rounded to whole px", count=int((x, y) != (px, py)))
+                losses.add("{n} [position was|positions were] rounded to whole px", count=int((x, y) != (px, py)))
                 if x <= 0 or y <= 0:
-                    losses.add("{n} joints at x or y of 0 or less were left out: there it means not labelled", joint)
+                    losses.add(
+                        "{n} [joint|joints] at x or y of 0 or less [was|were] left out: there it means not labelled",
+                        joint,
+                    )
                     x = y = 0
                 else:
                     count += 1
@@ -98,11 +101,11 @@ def read_t16(files: dict[str, bytes], sets: list[LabelSet], hints: ImportHints) 
         camera = _find_camera(match[1], only, hints)
         frame = int(match[2])
         if frame >= only.sequence.frame_count:
-            collector.problems.add("{n} files are of frames that the recording has not", name)
+            collector.problems.add("{n} [file is of a frame|files are of frames] that the recording has not", name)
             continue
         for hand, points in _read_frame(name, files[name], slots[folder]).items():
             collector.add(only.key, Annotation(frame, camera, hand, points))
-    collector.warnings.add("The layout does not say what is occluded; {n} files have every joint as visible",
+    collector.warnings.add("The layout does not say what is occluded; {n} [file has|files have] every joint as visible",
                            count=len(found))  # fmt: skip
     return collector.finish()
 

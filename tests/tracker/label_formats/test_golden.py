@@ -108,7 +108,7 @@ def test_wholebody_hands_are_read_where_they_are_valid(make_set: MakeSet) -> Non
     assert item.key == (2, "cam1", "right")
     np.testing.assert_array_equal(item.points, mark(("wrist", 100, 200, 2), ("little_tip", 110, 210.5, 1)))
     assert back.problems == ()
-    assert back.warnings == ("1 people have a body, which was left out.",)
+    assert back.warnings == ("1 person has a body, which was left out.",)
     written = json.loads(export_labels("coco_wholebody", [make_set((item,))]).files["coco_wholebody.json"])
     (person,) = written["annotations"]
     golden = json.loads((GOLDEN / "coco_wholebody.json").read_text())["annotations"][0]
@@ -122,7 +122,7 @@ def test_two_people_in_one_image_are_a_problem_and_not_a_choice(make_set: MakeSe
     document["annotations"].append(document["annotations"][0] | {"id": 2})
     _, back = import_labels("coco_wholebody", {"a.json": json.dumps(document).encode()}, [make_set()])
     assert back.problems == (
-        "1 places have two hands of the same side; say which is which (the right hand in frame 2 of cam1).",
+        "1 place has two hands of the same side; say which is which (the right hand in frame 2 of cam1).",
     )
 
 
@@ -161,7 +161,7 @@ def test_the_layout_of_t16_is_written_as_its_readers_read_it(make_set: MakeSet) 
     exported = export_labels("t16", [make_set((TWO_JOINTS,))])
     golden = {"1/joints_2D_GT/001.txt": "joints_2D_GT_001.txt", "1/joints.txt": "joints.txt"}
     assert exported.files == {name: (GOLDEN / file).read_bytes() for name, file in golden.items()}
-    assert "1 positions were rounded to whole px." in exported.notes
+    assert "1 position was rounded to whole px." in exported.notes
 
 
 def test_numbers_of_joints_that_nobody_explained_are_refused_unless_told(make_set: MakeSet) -> None:
@@ -239,7 +239,7 @@ def test_original_file_names_lead_to_their_frame_and_a_wrong_frame_number_is_tol
     document["images"][0]["frame"] = 4
     _, back = import_labels(None, {"a.json": json.dumps(document).encode()}, [labels])
     assert [item.frame for item in back.annotations["key"].items] == [1]
-    assert "although their frame number says otherwise" in back.warnings[0]
+    assert "although its frame number says otherwise" in back.warnings[0]
     document["images"][0] |= {"file_name": "renamed.png"}
     _, back = import_labels(None, {"a.json": json.dumps(document).encode()}, [labels])
     assert [item.frame for item in back.annotations["key"].items] == [4]
@@ -247,7 +247,7 @@ def test_original_file_names_lead_to_their_frame_and_a_wrong_frame_number_is_tol
     document["images"][0].pop("frame")
     _, back = import_labels(None, {"a.json": json.dumps(document).encode()}, [labels])
     assert back.annotations["key"].items == ()
-    assert back.warnings == ("1 images are not in the recording; their labels were left out (renamed.png).",)
+    assert back.warnings == ("1 image is not in the recording; its labels were left out (renamed.png).",)
 
 
 def test_a_name_that_two_cameras_have_is_a_problem_and_not_a_choice(make_set: MakeSet) -> None:
@@ -255,6 +255,6 @@ def test_a_name_that_two_cameras_have_is_a_problem_and_not_a_choice(make_set: Ma
     document["images"][0] = {"id": 7, "file_name": "000001.png"}
     files = {"a.json": json.dumps(document).encode()}
     _, back = import_labels(None, files, [make_set()])
-    assert back.problems == ("1 file names mean several images of the recording; name the camera (000001.png).",)
+    assert back.problems == ("1 file name means several images of the recording; name the camera (000001.png).",)
     _, back = import_labels(None, files, [make_set()], ImportHints(camera="cam1"))
     assert [item.camera for item in back.annotations["aaaaaaaa"].items] == ["cam1"]

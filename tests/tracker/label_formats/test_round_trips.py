@@ -97,7 +97,7 @@ def test_interhand_leaves_out_joints_that_one_view_alone_marks() -> None:
     items = tuple(Annotation(0, f"cam{number}", "left", points) for number, points in enumerate(marks))
     labels = LabelSet("key", sequence, list_image_names(sequence), Annotations(items))
     exported = export_labels("interhand", [labels])
-    assert "1 labelled joints have no known position in 3D and were left out." in exported.notes
+    assert "1 labelled joint has no known position in 3D and was left out." in exported.notes
     back = there_and_back("interhand", labels).annotations["key"]
     assert [item.points[5].tolist() for item in back.items] == [[0, 0, 0], [0, 0, 0]]
 
@@ -199,7 +199,7 @@ def test_depth_under_visible_joints_gives_3d_in_one_camera(tmp_path: Path) -> No
     marks[3, 2] = 1
     labels = LabelSet("key", sequence, list_image_names(sequence), Annotations((Annotation(0, "cam0", "left", marks),)))
     exported = export_labels("interhand", [labels])
-    assert "18 joints are points of the skin, from the depth under them; the joint lies deeper." in exported.notes
+    assert "18 joints are on the skin, where the depth was read; the joint itself lies deeper." in exported.notes
     assert "3 labelled joints have no known position in 3D and were left out." in exported.notes
     world = json.loads(exported.files["InterHand2.6M_train_joint_3d.json"])["0"]["0"]
     coords, valid = np.array(world["world_coord"]), np.ravel(world["joint_valid"]).astype(bool)

@@ -212,8 +212,8 @@ def test_what_a_format_loses_is_told_before(studio: Studio, add_recording: AddRe
     notes = studio.client.get(address, params={"format": "deeplabcut"}).json()
     assert (notes["items"], notes["joints"], notes["file"]) == (1, 20, "waving-deeplabcut.zip")
     assert notes["notes"] == [
-        "1 occluded joints: DeepLabCut does not say what is occluded.",
-        "1 joints marked as outside the image: DeepLabCut holds them like joints nobody looked at.",
+        "1 occluded joint: DeepLabCut does not say what is occluded.",
+        "1 joint marked as outside the image: DeepLabCut holds it like joints nobody looked at.",
     ]
     assert studio.client.get(address, params={"format": "annotations"}).json()["notes"] == []
     assert studio.client.get(address, params={"format": "yolo"}).status_code == 422

@@ -243,7 +243,7 @@ def test_original_file_names_lead_to_their_frame_and_a_wrong_frame_number_is_tol
     document["images"][0] |= {"file_name": "renamed.png"}
     _, back = import_labels(None, {"a.json": json.dumps(document).encode()}, [labels])
     assert [item.frame for item in back.annotations["key"].items] == [4]
-    assert "their frame number was taken" in back.warnings[0]
+    assert "the frame number was taken" in back.warnings[0]
     document["images"][0].pop("frame")
     _, back = import_labels(None, {"a.json": json.dumps(document).encode()}, [labels])
     assert back.annotations["key"].items == ()

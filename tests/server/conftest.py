@@ -97,8 +97,23 @@ def s3(s3_server: S3, monkeypatch: pytest.MonkeyPatch) -> S3:
 
 @pytest.fixture(params=["sqlite", "postgresql"])
 def database_kind(request: pytest.FixtureRequest) -> str:
-    """Every test that uses a database runs on both kinds."""
+    """Every test that uses a database runs on both kinds, some of them on PostgreSQL with `make proofs` only."""
     return request.param
+
+
+POSTGRESQL_IN_PROOFS = {
+    "app", "client", "evaluations", "exchange", "hand_models", "imports", "quality", "registrations", "scans",
+    "sequences", "suggestions", "tracks", "training_sets",
+}  # fmt: skip
+"""Rooms that read more than they write. Where many write at once (labels, jobs, people), `make test` has both."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        is_postgresql = getattr(getattr(item, "callspec", None), "params", {}).get("database_kind") == "postgresql"
+        if is_postgresql and item.path.parent.name in POSTGRESQL_IN_PROOFS:
+            item.add_marker(pytest.mark.slow)
 
 
 @contextmanager

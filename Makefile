@@ -50,7 +50,7 @@ $(COMPILED): $(PROJECT) $(TRACKER_SOURCES)
 demo: setup
 	$(BIN)/handloom demo
 
-# All suites run even if one fails; pytest last, so that its closing line closes. Browsers need the processors for themselves.
+# All suites run even if one fails; pytest last, so that its closing line closes. Two browsers at once: each has a studio and a worker.
 test: setup
 	@status=0; $(MAKE) --no-print-directory test-web || status=1; $(MAKE) --no-print-directory test-python || status=1; exit $$status
 
@@ -61,7 +61,7 @@ test-rooms: setup
 	$(BIN)/python -m pytest -rs -m "not browser and not slow" --numprocesses auto --maxprocesses 4 --dist worksteal
 
 test-browser: setup
-	$(BIN)/python -m pytest tests/web -rs -m "browser and not slow"
+	$(BIN)/python -m pytest tests/web -rs -m "browser and not slow" --numprocesses auto --maxprocesses 2 --dist loadfile
 
 # What takes minutes: a loop of two rounds whose worker is killed, the demo, scans that become a model in the browser.
 proofs: setup

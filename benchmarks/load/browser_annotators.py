@@ -12,7 +12,15 @@ from typing import Any
 
 from server.cli.bench_server import BITS, HEIGHT, STRIPE, WIDTH
 
-PATIENCE_MS = 90_000
+PATIENCE_MS = 30_000
+"""So long somebody waits for a page before loading it again."""
+
+PATIENT_PART = 0.6
+"""Of the clicks: those made when the picture is there; the others come at once."""
+
+TAKEN_AFTER_MS = 150
+"""So long after a click the page has told which joint the next one places; nobody presses anything meanwhile."""
+
 WATCH = """([bits, stripe]) => {
   const shown = (pane, view) => {
     const canvas = pane.querySelector('canvas');
@@ -44,16 +52,19 @@ WATCH = """([bits, stripe]) => {
       is_taken: false,
     };
     window.handloomGestures.push(gesture);
-    requestAnimationFrame(() => requestAnimationFrame(() => {
-      gesture.is_taken = joint(pane) !== gesture.joint;
-    }));
+    setTimeout(() => (gesture.is_taken = joint(pane) !== gesture.joint), %d);
   }, true);
-}"""
+}""" % TAKEN_AFTER_MS
 """Notes with every gesture which frame is on the screen at that moment, read from the picture's own pixels."""
 
 WHERE = """(pane) => {
   const box = pane.getBoundingClientRect();
   return [box.x, box.y, JSON.parse(pane.dataset.view)];
+}"""
+
+DRAWN = """() => {
+  const pane = document.querySelector('[data-picture]');
+  return pane && pane.dataset.drawn === pane.dataset.frame;
 }"""
 
 
@@ -110,7 +121,7 @@ class BrowserAnnotator:
                     raise
                 await self._collect()
                 is_open = False
-            await asyncio.sleep(self.chance.expovariate(1 / self.pause))
+            await asyncio.sleep(TAKEN_AFTER_MS / 1000 + self.chance.expovariate(1 / self.pause))
 
     async def _open(self, frame: int) -> bool:
         with contextlib.suppress(Exception):
@@ -121,7 +132,7 @@ class BrowserAnnotator:
         return False
 
     async def _go_and_click(self) -> int:
-        """Twice a key that moves, and a click at once."""
+        """Up to twice a key that moves, and a click, at once or on the picture that comes."""
         frame = int(await self.page.get_by_label("Frame", exact=True).input_value(timeout=5000))
         low, high = self.frames[0] + 21, self.frames[-1] - 21
         keys = "vf" if frame < low else "cd" if frame > high else "vcfd"
@@ -131,9 +142,15 @@ class BrowserAnnotator:
         key = self.chance.choice(keys)
         for _ in range(self.chance.choice((0, 1, 2, 2))):
             await self.page.keyboard.press(key)
+        if self.chance.random() < PATIENT_PART:
+            await self._wait_for_picture()
         scale = view["scale"]
         await self.page.mouse.click(left + view["x"] + scale * (x + 0.5), top + view["y"] + scale * (y + 0.5))
         return frame
+
+    async def _wait_for_picture(self) -> None:
+        with contextlib.suppress(Exception):
+            await self.page.wait_for_function(DRAWN, timeout=10_000)
 
     def _choose_place(self) -> tuple[float, float]:
         """Anywhere below the number."""

@@ -31,7 +31,7 @@ from server.app.parts import (
     SEQUENCE_FACTS,
     SIGHT_GUARDS,
 )
-from server.database import Database
+from server.database import Admission, Database
 from server.database.migrate import upgrade
 from server.errors import error_responses
 from server.live.visits import Visits
@@ -95,6 +95,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         storage = app.state.storage = await run_in_threadpool(open_storage, settings)
         database = app.state.database = Database(settings.sqlalchemy_url)
         stack.callback(database.close)
+        app.state.admission = Admission(database)
         await run_in_threadpool(upgrade, database)
         app.state.frame_images = FrameImages(database, storage, settings.image_cache_mb * 1_000_000)
         for lifespan in LIFESPANS:

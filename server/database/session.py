@@ -2,14 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import AsyncIterator
 from typing import Annotated
 
+from anyio import CapacityLimiter
 from fastapi import Depends
+from fastapi.concurrency import contextmanager_in_threadpool
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
 from server.database.database import Database
+
+READERS, WRITERS = 8, 4
+"""Requests that have a session at once. Together fewer than the engine's pool has connections (15), so that work beside
+the requests' sessions always finds one. On SQLite one writes at a time."""
+
+
+class Admission:
+    """Requests wait here for their session, and not in a thread.
+
+    A request gives its thread back between its dependencies and its route, and keeps its session. If those that wait
+    held the threads, those that have a session would find none to go on in: fifty saves at once stood still until locks
+    and connections were given up.
+    """
+
+    def __init__(self, database: Database) -> None:
+        self.readers = CapacityLimiter(READERS)
+        self.writers = CapacityLimiter(1 if database.is_sqlite else WRITERS)
 
 
 def get_database(connection: HTTPConnection) -> Database:
@@ -20,10 +39,15 @@ def get_database(connection: HTTPConnection) -> Database:
 DatabaseDep = Annotated[Database, Depends(get_database)]
 
 
-def get_session(connection: HTTPConnection, database: DatabaseDep) -> Iterator[Session]:
+async def get_session(connection: HTTPConnection, database: DatabaseDep) -> AsyncIterator[Session]:
     """Commits when the route has returned and before the answer leaves, so that what was answered is stored."""
+    admission: Admission = connection.app.state.admission
     reads_only = connection.scope.get("method") in ("GET", "HEAD")
-    with database.reading() if reads_only else database.writing() as session:
+    opened = database.reading() if reads_only else database.writing()
+    async with (
+        admission.readers if reads_only else admission.writers,
+        contextmanager_in_threadpool(opened) as session,
+    ):
         yield session
 
 

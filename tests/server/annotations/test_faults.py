@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 import uuid
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime
 from typing import Any
 
@@ -83,3 +85,22 @@ def test_a_clock_set_back_changes_neither_order_nor_what_counts(
     history = client.get(f"{place}/history").json()["items"]
     assert [(item["revision"], item["points"][0][0]) for item in history] == [(3, 3.0), (2, 2.0), (1, 1.0)]
     assert client.get(place).json()["points"][0][0] == 3.0
+
+
+def test_many_saves_at_once_wait_for_each_other_and_not_for_a_thread(client: TestClient, add_recording) -> None:
+    """After an outage everybody's page saves at once."""
+    base = f"/api/v1/sequences/{add_recording('waving', frames=3)['id']}/annotations/cam0"
+    places = [f"{base}/{frame}/{hand}" for frame in range(3) for hand in ("right", "left")]
+    revisions = {place: put(client, place, 1.0, None).json()["revision"] for place in places}
+    began = time.monotonic()
+    with ThreadPoolExecutor(90) as people:
+        answers = list(
+            people.map(lambda n: _save_or_look(client, places[n % 6], revisions[places[n % 6]], n), range(180))
+        )
+    assert {answer.status_code for answer in answers} == {200, 409}
+    assert [answer.status_code for answer in answers if answer.request.method == "PUT"].count(200) == 6
+    assert time.monotonic() - began < 10, "they wait until a lock or a connection is given up"
+
+
+def _save_or_look(client: TestClient, place: str, revision: int, turn: int) -> Any:
+    return client.get(place) if turn % 5 == 4 else put(client, place, float(turn % 30), revision)

@@ -21,7 +21,8 @@ PATIENT_PART = 0.6
 TAKEN_AFTER_MS = 150
 """So long after a click the page has told which joint the next one places; nobody presses anything meanwhile."""
 
-WATCH = """([bits, stripe]) => {
+WATCH = (
+    """([bits, stripe]) => {
   const shown = (pane, view) => {
     const canvas = pane.querySelector('canvas');
     if (!canvas) return null;
@@ -52,9 +53,11 @@ WATCH = """([bits, stripe]) => {
       is_taken: false,
     };
     window.handloomGestures.push(gesture);
-    setTimeout(() => (gesture.is_taken = joint(pane) !== gesture.joint), %d);
+    setTimeout(() => (gesture.is_taken = joint(pane) !== gesture.joint), TAKEN_AFTER_MS);
   }, true);
-}""" % TAKEN_AFTER_MS
+}"""
+    % TAKEN_AFTER_MS
+)
 """Notes with every gesture which frame is on the screen at that moment, read from the picture's own pixels."""
 
 WHERE = """(pane) => {

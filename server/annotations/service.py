@@ -224,6 +224,14 @@ def get_past(session: Session, row: AnnotationRow, revision: int) -> AnnotationR
     return past
 
 
+def find_revisions(session: Session, sequence_id: uuid.UUID) -> dict[uuid.UUID, int]:
+    """The revision of every annotation of a recording, by its id."""
+    query = select(AnnotationRow.id, AnnotationRow.revision).where(
+        AnnotationRow.sequence_id == sequence_id, AnnotationRow.replica == "", AnnotationRow.points.is_not(null())
+    )
+    return {id_: revision for id_, revision in session.execute(query)}  # noqa: C416
+
+
 def list_annotations(
     session: Session,
     sequence_id: uuid.UUID,

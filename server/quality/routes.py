@@ -10,9 +10,8 @@ from fastapi import APIRouter, Query
 
 from server.accounts.service import CurrentAccount
 from server.annotations.guards import GuardsDep, find_hidden
-from server.annotations.models import AnnotationRow
 from server.annotations.routes import PlaceDep
-from server.annotations.service import Place, list_annotations
+from server.annotations.service import Place
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, read_cursor, write_cursor
 from server.errors import error_responses
@@ -43,7 +42,6 @@ def list_flags(
     track = None
     with database.reading() as session:
         sequence = get_sequence(session, sequence_id)
-        rows, _ = list_annotations(session, sequence_id)
         hidden = find_hidden(guards, session, account, sequence_id)
         put_away = service.find_dismissed(session, sequence_id)
         best = find_best_tracks(session, [sequence_id]).get(sequence_id)
@@ -51,10 +49,14 @@ def list_flags(
             row = get_track(session, best["best_track"]["id"])
             track = Compared(row.id, row.name)
         session.expunge_all()
-    check = finder.find(sequence_id, sequence.content_key, sequence.hands, rows, track)
-    shown = [row for row in rows if not any(_place_of(row) in places for places in hidden)]
-    seen = {row.id for row in shown}
-    flags = [flag for flag in check.findings if flag.label.id in seen]
+    found = finder.find(database, sequence_id, sequence.content_key, sequence.hands, track)
+    shown = [
+        label
+        for label in found.labels
+        if not any(Place(sequence_id, label.camera, label.frame, label.hand) in places for places in hidden)
+    ]
+    seen = {label.id for label in shown}
+    flags = [flag for flag in found.findings if flag.label.id in seen]
     is_away = {id(flag): (flag.label.id, flag.label.revision, flag.kind) in put_away for flag in flags}
     counts = Counter(flag.kind for flag in flags if not is_away[id(flag)])
     wanted = [flag for flag in flags if is_away[id(flag)] == dismissed and kind in (None, flag.kind)]
@@ -69,10 +71,11 @@ def list_flags(
         dismissed=sum(is_away.values()),
         checked=Checked(
             labels=len(shown),
-            frames=len({row.frame for row in shown}),
+            frames=len({label.frame for label in shown}),
+            is_behind=found.is_behind,
             track=None if track is None else track.name,
             checks=[
-                CheckOut(kind=one.kind, labels=len(one.labels & seen), missing=one.missing) for one in check.coverage
+                CheckOut(kind=one.kind, labels=len(one.labels & seen), missing=one.missing) for one in found.coverage
             ],
         ),
     )
@@ -90,10 +93,6 @@ def restore_flag(
 ) -> None:
     """Bring a flag back that was put away."""
     service.restore(session, place, kind, revision)
-
-
-def _place_of(row: AnnotationRow) -> Place:
-    return Place(row.sequence_id, row.camera, row.frame, row.hand)
 
 
 def _order(flag: Finding) -> tuple[int, str, str]:

@@ -41,6 +41,7 @@ class Checked(BaseModel):
 
     labels: int = Field(description="Labelled hands in images.")
     frames: int
+    is_behind: bool = Field(description="Labels have changed since; ask again in a few seconds.")
     track: str | None = Field(description="Name of the track that they are compared with; null where there is none.")
     checks: list[CheckOut]
 

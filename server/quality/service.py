@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import threading
+import time
 import uuid
 from collections import OrderedDict
+from collections.abc import AsyncIterator, Mapping
 from collections.abc import Sequence as Many
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
+from anyio import CapacityLimiter
 from fastapi import Depends
 from sqlalchemy import delete, select
 from sqlalchemy.exc import IntegrityError
@@ -19,10 +22,12 @@ from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
 from server.annotations.models import AnnotationRow
-from server.annotations.service import Place, get_annotation
+from server.annotations.service import Place, find_revisions, get_annotation, list_annotations
+from server.database import Database
 from server.errors import ConflictError
-from server.quality.find import LabelCheck, Setting, check_labels
-from server.quality.labels import LabelReader
+from server.quality.find import Coverage, LabelCheck, Setting, check_labels
+from server.quality.finding import Finding
+from server.quality.labels import Label, LabelReader
 from server.quality.models import DismissalRow
 from server.storage import Storage
 
@@ -31,6 +36,9 @@ if TYPE_CHECKING:
 
 KEPT = 16
 """Recordings whose flags are remembered."""
+
+SHARE, CREDIT_SECONDS = 0.1, 3.0
+"""Checks of a recording may take this part of a processor, and so many seconds at once after a rest."""
 
 
 @dataclass(frozen=True)
@@ -41,37 +49,86 @@ class Compared:
     name: str
 
 
+@dataclass(frozen=True)
+class Flagged:
+    """A recording's labels as the checks saw them.
+
+    Attributes:
+        findings: What looked wrong, the worst first, of labels that are still as they were.
+        is_behind: Labels have changed since.
+    """
+
+    labels: Many[Label]
+    findings: Many[Finding]
+    coverage: Many[Coverage]
+    is_behind: bool
+
+
+@dataclass(frozen=True)
+class _Known:
+    labels: list[Label]
+    check: LabelCheck
+    revisions: Mapping[uuid.UUID, int]
+    done_at: float
+    spent: float
+
+    def see(self, revisions: Mapping[uuid.UUID, int]) -> Flagged:
+        """What of it still holds."""
+        found = [one for one in self.check.findings if revisions.get(one.label.id) == one.label.revision]
+        return Flagged(self.labels, found, self.check.coverage, revisions != self.revisions)
+
+
 class FlagFinder:
-    """Finds flags, once for each state of a recording's labels."""
+    """Finds flags of a recording's labels, and remembers them.
+
+    Labels change while people work, and all their pages ask. Where checks would take more than a tenth of a processor,
+    the last outcome is given again, and says that it is behind.
+    """
 
     def __init__(self, storage: Storage) -> None:
         self._storage = storage
         self._reader = LabelReader()
-        self._known: OrderedDict[tuple, LabelCheck] = OrderedDict()
+        self._known: OrderedDict[tuple, _Known] = OrderedDict()
         self._lock = threading.Lock()
+        self.turns = CapacityLimiter(2)
 
     def find(
         self,
+        database: Database,
         sequence_id: uuid.UUID,
         content_key: str,
         hands: Many[str],
-        rows: Many[AnnotationRow],
         track: Compared | None,
-    ) -> LabelCheck:
+    ) -> Flagged:
         """What the checks of the labels found and looked at; `track` is the one they are compared with, if any."""
-        from tracker import load_sequence
-
-        state = frozenset((row.id, row.revision) for row in rows)
-        key = (sequence_id, content_key, tuple(hands), track, state)
+        key = (sequence_id, content_key, tuple(hands), track)
         with self._lock:  # one at a time: several people open the same page
-            if key not in self._known:
-                recording = load_sequence(self._storage.folder("sequences", sequence_id))
-                setting = self._describe(recording, hands, track)
-                self._known[key] = check_labels(self._read(recording, rows), setting)
+            with database.reading() as session:
+                revisions = find_revisions(session, sequence_id)
+            known = self._known.get(key)
+            spent = 0.0 if known is None else max(0.0, known.spent - SHARE * (time.monotonic() - known.done_at))
+            if known is None or (known.revisions != revisions and spent < CREDIT_SECONDS):
+                known = self._known[key] = self._check(database, sequence_id, hands, track, spent)
+                revisions = known.revisions
                 while len(self._known) > KEPT:
                     self._known.popitem(last=False)
             self._known.move_to_end(key)
-            return self._known[key]
+        return known.see(revisions)
+
+    def _check(
+        self, database: Database, sequence_id: uuid.UUID, hands: Many[str], track: Compared | None, spent: float
+    ) -> _Known:
+        from tracker import load_sequence
+
+        began = time.monotonic()
+        with database.reading() as session:
+            rows, _ = list_annotations(session, sequence_id)
+            session.expunge_all()
+        recording = load_sequence(self._storage.folder("sequences", sequence_id))
+        labels = self._read(recording, rows)
+        check = check_labels(labels, self._describe(recording, hands, track))
+        now = time.monotonic()
+        return _Known(labels, check, {row.id: row.revision for row in rows}, now, spent + now - began)
 
     def _describe(self, recording: Sequence, hands: Many[str], track: Compared | None) -> Setting:
         cameras = {camera.id: camera for camera in recording.cameras}
@@ -147,12 +204,13 @@ def restore(session: Session, place: Place, kind: str, revision: int) -> None:
     )
 
 
-def get_flag_finder(connection: HTTPConnection) -> FlagFinder:
-    """The app's."""
+async def get_flag_finder(connection: HTTPConnection) -> AsyncIterator[FlagFinder]:
+    """The app's; who waits for it does so here, not in a thread."""
     state = connection.app.state
     if not hasattr(state, "flag_finder"):
         state.flag_finder = FlagFinder(state.storage)
-    return state.flag_finder
+    async with state.flag_finder.turns:
+        yield state.flag_finder
 
 
-FlagFinderDep = Annotated[FlagFinder, Depends(get_flag_finder)]
+FlagFinderDep = Annotated[FlagFinder, Depends(get_flag_finder, scope="function")]

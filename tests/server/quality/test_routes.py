@@ -11,6 +11,7 @@ import pytest
 
 from server.accounts.models import LOCAL_ACCOUNT_ID
 from server.imports.service import ImportDesk, import_recording
+from server.quality import service
 from tests.server.quality.errors import Item, inject
 
 
@@ -233,3 +234,18 @@ def test_what_makes_no_sense_is_refused(client, labelled):
     assert client.get(f"{labelled}/flags", params={"cursor": "abc"}).status_code == 404
     assert client.get(f"/api/v1/sequences/{uuid.uuid4()}/flags").status_code == 404
     assert client.put(f"{labelled}/flags/cam0/99/right/jump/dismissal", json={"revision": 1}).status_code == 404
+
+
+def test_where_checks_would_take_too_long_the_last_one_is_given_and_says_that_it_is_behind(
+    client, labelled, monkeypatch
+):
+    assert not find(client, labelled)["checked"]["is_behind"]
+    spoil(client, labelled, "outside", 3)
+    monkeypatch.setattr(service, "CREDIT_SECONDS", 0.0)
+    behind = find(client, labelled)
+    assert behind["checked"]["is_behind"]
+    assert not [flag for flag in behind["items"] if flag["frame"] == 3], "it knows nothing of the new revision"
+    monkeypatch.setattr(service, "CREDIT_SECONDS", 3.0)
+    caught_up = find(client, labelled)
+    assert not caught_up["checked"]["is_behind"]
+    assert caught_up["items"][0]["frame"] == 3

@@ -8,6 +8,10 @@ const PAGE = 24;
 /** The annotator walks through so many, the worst ones. */
 const WALK = 1000;
 
+/** A check that labels have overtaken is asked for again after a while. */
+const AGAIN_MS = 5000;
+const askAgain = (page: FlagPage | undefined): number | false => (page?.checked.is_behind ? AGAIN_MS : false);
+
 const fetchFlags = (recording: string, query: Record<string, string | number | null | undefined>, signal: AbortSignal): Promise<FlagPage> =>
   request<FlagPage>("GET", `/sequences/${recording}/flags`, { query, signal });
 
@@ -18,11 +22,17 @@ export const useFlagPages = (recording: string, kind: string | null, isDismissed
     queryFn: ({ pageParam, signal }) => fetchFlags(recording, { kind, dismissed: String(isDismissed), cursor: pageParam, limit: PAGE }, signal),
     initialPageParam: null as string | null,
     getNextPageParam: (page) => page.next_cursor,
+    refetchInterval: ({ state }) => askAgain(state.data?.pages[0]),
     placeholderData: keepPreviousData,
   });
 
 export const useFlags = (recording: string) =>
-  useQuery({ queryKey: [...flagKeys.of(recording), "all"], queryFn: ({ signal }) => fetchFlags(recording, { limit: WALK }, signal), placeholderData: keepPreviousData });
+  useQuery({
+    queryKey: [...flagKeys.of(recording), "all"],
+    queryFn: ({ signal }) => fetchFlags(recording, { limit: WALK }, signal),
+    refetchInterval: ({ state }) => askAgain(state.data),
+    placeholderData: keepPreviousData,
+  });
 
 /** Say that a label is right, or take it back. */
 export function useDismissal(recording: string) {

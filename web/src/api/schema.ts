@@ -4044,6 +4044,11 @@ export interface components {
             /** Frames */
             frames: number;
             /**
+             * Is Behind
+             * @description Labels have changed since; ask again in a few seconds.
+             */
+            is_behind: boolean;
+            /**
              * Labels
              * @description Labelled hands in images.
              */

@@ -21,8 +21,7 @@ PATIENT_PART = 0.6
 TAKEN_AFTER_MS = 150
 """So long after a click the page has told which joint the next one places; nobody presses anything meanwhile."""
 
-WATCH = (
-    """([bits, stripe]) => {
+WATCH = """([bits, stripe, takenAfter]) => {
   const shown = (pane, view) => {
     const canvas = pane.querySelector('canvas');
     if (!canvas) return null;
@@ -53,11 +52,9 @@ WATCH = (
       is_taken: false,
     };
     window.handloomGestures.push(gesture);
-    setTimeout(() => (gesture.is_taken = joint(pane) !== gesture.joint), TAKEN_AFTER_MS);
+    setTimeout(() => (gesture.is_taken = joint(pane) !== gesture.joint), takenAfter);
   }, true);
 }"""
-    % TAKEN_AFTER_MS
-)
 """Notes with every gesture which frame is on the screen at that moment, read from the picture's own pixels."""
 
 WHERE = """(pane) => {
@@ -110,7 +107,7 @@ class BrowserAnnotator:
 
     async def work(self, until: float) -> None:
         """Annotate until a moment of `time.monotonic`."""
-        await self.page.add_init_script(f"({WATCH})({[BITS, STRIPE]})")
+        await self.page.add_init_script(f"({WATCH})({[BITS, STRIPE, TAKEN_AFTER_MS]})")
         frame = self.frames[len(self.frames) // 2]
         is_open = False
         while time.monotonic() < until:

@@ -13,7 +13,7 @@ from starlette.requests import HTTPConnection
 
 from server.database.database import Database
 
-READERS, WRITERS = 8, 4
+READERS, WRITERS = 4, 4
 """Requests that have a session at once. Together fewer than the engine's pool has connections (15), so that work beside
 the requests' sessions always finds one. On SQLite one writes at a time."""
 

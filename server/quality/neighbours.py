@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
@@ -26,10 +27,13 @@ STILL_FRAMES = 3
 def check_handedness(labels: Sequence[Label], hands: Sequence[str], looked: Looked) -> Iterator[Finding]:
     """Labels nearer to the other hand in the neighbouring frames than to their own."""
     tracks = _by_hand(labels)
+    frames = {hand: [label.frame for label in track] for hand, track in tracks.items()}
     for label in labels:
         other = "left" if label.hand == "right" else "right"
-        own_px = _nearest(label, tracks[label.camera, label.hand])
-        other_px = _nearest(label, tracks[label.camera, other])
+        own_px, other_px = (
+            _nearest(label, tracks[label.camera, hand], frames.get((label.camera, hand), []))
+            for hand in (label.hand, other)
+        )
         if np.isfinite([own_px, other_px]).any() or (hands and label.hand not in hands):
             looked.at("handedness", label)
         if not np.isfinite(other_px) or other_px > 0.5 * label.size_px:
@@ -102,11 +106,11 @@ def _by_hand(labels: Sequence[Label]) -> dict[tuple[str, str], list[Label]]:
     return tracks
 
 
-def _nearest(label: Label, track: Sequence[Label]) -> float:
+def _nearest(label: Label, track: Sequence[Label], frames: Sequence[int]) -> float:
     """Mean distance, px, to the nearest of the labels just before and after; infinite without any."""
-    before = [one for one in track if label.frame - REACH_FRAMES <= one.frame < label.frame][-1:]
-    after = [one for one in track if label.frame < one.frame <= label.frame + REACH_FRAMES][:1]
-    found = [np.linalg.norm(label.pixels - one.pixels, axis=1) for one in before + after]
+    beside = bisect_left(frames, label.frame) - 1, bisect_right(frames, label.frame)
+    near = [track[at] for at in beside if 0 <= at < len(track) and abs(frames[at] - label.frame) <= REACH_FRAMES]
+    found = [np.linalg.norm(label.pixels - one.pixels, axis=1) for one in near]
     means = [float(np.nanmean(d)) for d in found if np.isfinite(d).any()]
     return min(means, default=np.inf)
 

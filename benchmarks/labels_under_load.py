@@ -28,6 +28,9 @@ from server.cli.simulated_annotators import Ledger, annotate_together, find_faul
 PAGE = Path(__file__).parents[1] / "docs" / "server_load.md"
 FRAMES, OF_ONE_BROWSER = 10_000, 200
 KILLS, OUTAGES, OUTAGE_SECONDS = 2, 4, 5.0
+REST_SECONDS = 20.0
+"""So long after an outage everybody's page saves and loads at once."""
+
 CALM_SECONDS = 120.0
 """So long the browsers have to save everything once the network is well again."""
 
@@ -66,9 +69,15 @@ async def work(
         await asyncio.gather(*(person.finish(CALM_SECONDS) for person in people))
         await browser.close()
     gestures = [gesture for person in people for gesture in person.gestures]
+    opened = [
+        f"{at:.1f} a browser at frames from {person.frames[0]} opened" for person in people for at in person.opened
+    ]
     judged = await asyncio.to_thread(judge, studio.url, base, range(own, FRAMES), gestures)
     faults = await asyncio.to_thread(find_faults, studio.url, ledger)
-    return describe(network, ledger, judged, faults, studio, args)
+    result = describe(network, ledger, judged, faults, studio, args)
+    if judged.lost:
+        result["faults"] += opened
+    return result
 
 
 def _write_modest_browser(folder: Path) -> Path:
@@ -88,6 +97,7 @@ async def _trouble(studio: ServedStudio, network: SlowNetwork, seconds: float) -
         await asyncio.sleep(max(0.0, began + moment * seconds - time.monotonic()))
         if moment in kills:
             await asyncio.to_thread(studio.kill_and_restart)
+            network.mended.append(time.monotonic())
         else:
             await network.go_down(OUTAGE_SECONDS)
 
@@ -105,6 +115,7 @@ def describe(
         one for one in network.answered if one.method == "PUT" and "/annotations/" in one.path and one.status < 500
     ]
     times = sorted(1e3 * one.seconds for one in saves)
+    calm = sorted(1e3 * one.seconds for one in saves if not any(0 <= one.at - m < REST_SECONDS for m in network.mended))
     return {
         "annotators": f"{args.annotators}, {args.browsers} of them at browsers",
         "seconds": args.seconds,
@@ -118,6 +129,8 @@ def describe(
         "saves, median ms of the server's own time": round(times[len(times) // 2], 1),
         "saves, 95 % ms": round(times[int(0.95 * len(times))], 1),
         "saves, 99 % ms": round(times[int(0.99 * len(times))], 1),
+        f"the same but for {REST_SECONDS:g} s after each outage, median ms": round(calm[len(calm) // 2], 1),
+        f"the same but for {REST_SECONDS:g} s after each outage, 95 % ms": round(calm[int(0.95 * len(calm))], 1),
         "simulated: lost or double": len(faults),
         "browsers: lost": len(judged.lost),
         "browsers: on another frame than the one shown": len(judged.elsewhere),

@@ -50,6 +50,7 @@ WATCH = """([bits, stripe, takenAfter]) => {
       x: (event.clientX - box.left - view.x) / view.scale - 0.5,
       y: (event.clientY - box.top - view.y) / view.scale - 0.5,
       is_taken: false,
+      at: Date.now() / 1000,
     };
     window.handloomGestures.push(gesture);
     setTimeout(() => (gesture.is_taken = joint(pane) !== gesture.joint), takenAfter);
@@ -77,6 +78,7 @@ class Gesture:
         joint: What the page said that a click would place; empty when none.
         x, y: Where, px of the picture.
         is_taken: The page went on to the next joint.
+        at: When, s since 1970.
     """
 
     frame: int | None
@@ -84,6 +86,7 @@ class Gesture:
     x: float
     y: float
     is_taken: bool
+    at: float
 
 
 @dataclass
@@ -103,7 +106,7 @@ class BrowserAnnotator:
     pause: float
     chance: random.Random
     gestures: list[Gesture] = field(default_factory=list)
-    opened: int = 0
+    opened: list[float] = field(default_factory=list)
 
     async def work(self, until: float) -> None:
         """Annotate until a moment of `time.monotonic`."""
@@ -127,7 +130,7 @@ class BrowserAnnotator:
         with contextlib.suppress(Exception):
             await self.page.goto(f"{self.url}?frame={frame}", timeout=PATIENCE_MS, wait_until="domcontentloaded")
             await self.page.locator("[data-picture] canvas").first.wait_for(timeout=PATIENCE_MS)
-            self.opened += 1
+            self.opened.append(time.time())
             return True
         return False
 

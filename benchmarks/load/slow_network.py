@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import random
+import time
 from dataclasses import dataclass, field
 
 import h11
@@ -29,12 +30,14 @@ class Answered:
         path: Without the query.
         status: Of the answer.
         seconds: The studio's own time: from handing it the whole request to its whole answer.
+        at: When it was answered, s of `time.monotonic`.
     """
 
     method: str
     path: str
     status: int
     seconds: float
+    at: float
 
 
 @dataclass
@@ -55,6 +58,7 @@ class SlowNetwork:
     answered: list[Answered] = field(default_factory=list)
     cuts: int = 0
     is_down: bool = False
+    mended: list[float] = field(default_factory=list)
     _connections: set[asyncio.StreamWriter] = field(default_factory=set)
     _tasks: set[asyncio.Task[None]] = field(default_factory=set)
 
@@ -88,6 +92,7 @@ class SlowNetwork:
         self.cut_all()
         await asyncio.sleep(seconds)
         self.is_down = False
+        self.mended.append(time.monotonic())
 
     def _take(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         task = asyncio.create_task(self._serve(reader, writer))
@@ -123,8 +128,7 @@ class SlowNetwork:
         await asyncio.sleep(on_the_way)
         method, target = request.method.decode(), request.target.decode()
         self._may_cut(target)
-        clock = asyncio.get_running_loop().time
-        began = clock()
+        began = time.monotonic()
         headers = [(key, value) for key, value in request.headers if key not in HOP_BY_HOP]
         async with self._client.stream(method, target, headers=headers, content=body) as answer:
             kept = [(key, value) for key, value in answer.headers.raw if key.lower() not in HOP_BY_HOP]
@@ -137,7 +141,8 @@ class SlowNetwork:
                     await writer.drain()
             else:
                 content = b"".join([part async for part in answer.aiter_raw()])
-                self.answered.append(Answered(method, target.split("?")[0], answer.status_code, clock() - began))
+                now = time.monotonic()
+                self.answered.append(Answered(method, target.split("?")[0], answer.status_code, now - began, now))
                 await asyncio.sleep(late - on_the_way)
                 self._may_cut(target)
                 writer.write(connection.send(opening) or b"")

@@ -52,7 +52,7 @@ def judge(url: str, base: str, frames: Iterable[int], gestures: Sequence[Gesture
                     found[gesture].add(frame)
     last = {(gesture.frame, gesture.joint): gesture for gesture in gestures if gesture.is_taken}
     lost = [
-        f"{gesture} is stored nowhere"
+        f"{gesture} is stored nowhere; its frame: {_neighbours(gesture, gestures)}"
         for at, gesture in enumerate(gestures)
         if gesture.is_taken
         and not found[gesture]
@@ -62,6 +62,10 @@ def judge(url: str, base: str, frames: Iterable[int], gestures: Sequence[Gesture
     elsewhere = [f"{gesture} is stored on {sorted(on)}" for gesture, on in found.items() if on - {gesture.frame}]
     taken = sum(gesture.is_taken for gesture in gestures)
     return Judgement(taken, len(gestures) - taken, stored, lost, elsewhere)
+
+
+def _neighbours(gesture: Gesture, gestures: Sequence[Gesture]) -> list[Gesture]:
+    return [one for one in gestures if one.frame == gesture.frame and one is not gesture]
 
 
 def _meets_another(gesture: Gesture, earlier: Sequence[Gesture]) -> bool:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import gc
 import errno
+import gc
 import signal
 import socket
 import sys

@@ -157,7 +157,7 @@ def main() -> None:
     faults = result.pop("faults")
     table = "\n".join(["| figure | value |", "|---|---|", *(f"| {name} | {value} |" for name, value in result.items())])
     print(table)
-    for fault in faults[:20]:
+    for fault in faults[:60]:
         print(fault)
     if args.write:
         before, _, rest = PAGE.read_text().partition("<!-- trouble -->")

@@ -50,7 +50,8 @@ def judge(url: str, base: str, frames: Iterable[int], gestures: Sequence[Gesture
             for gesture in gestures:
                 if any(abs(gesture.x - x) < SAME_PX and abs(gesture.y - y) < SAME_PX for x, y in places):
                     found[gesture].add(frame)
-    last = {(gesture.frame, gesture.joint): gesture for gesture in gestures if gesture.is_taken}
+    # A page at idle priority may say later than is looked that it took a click: what is stored was taken.
+    last = {(one.frame, one.joint): one for one in gestures if one.is_taken or found[one]}
     lost = [
         f"{gesture} is stored nowhere; its frame: {_neighbours(gesture, gestures)}"
         for at, gesture in enumerate(gestures)

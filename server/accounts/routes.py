@@ -49,6 +49,6 @@ def put_preferences(
     if_match: IfMatch = None,
 ) -> MyAccount:
     """Replace my preferences. With `If-Match` only if nobody did so before; without, the last one counts."""
-    expected = None if not if_match else read_if_match(if_match)
+    expected = None if if_match is None else read_if_match(if_match)
     account = store_preferences(session, visitor.account_id, body, expected)
     return describe_me(account, visitor, request, response)

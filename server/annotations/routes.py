@@ -28,6 +28,7 @@ from server.annotations.schemas import (
 )
 from server.annotations.service import Change, Place, StaleAnnotationError
 from server.database import SessionDep
+from server.database.frames import FramePath
 from server.database.paging import Cursor, Page
 from server.database.revision import IfMatch, IfNoneMatch, read_if_match, write_etag
 from server.download import name_download
@@ -39,7 +40,6 @@ router = APIRouter(prefix="/sequences/{sequence_id}", tags=["annotations"], resp
 
 CONFLICTS: dict[int | str, dict[str, Any]] = {409: {"model": AnnotationConflict}, **error_responses(428)}
 CameraPath = Annotated[str, Path(max_length=64)]
-FramePath = Annotated[int, Path(ge=0, le=10**9)]
 FrameQuery = Annotated[int | None, Query(ge=0, le=10**9)]
 ReplicaQuery = Annotated[
     uuid.UUID | None, Query(description="The assignment of a blind replica; none for the annotations of everybody.")

@@ -25,7 +25,7 @@ def write_etag(revision: int) -> str:
 
 def read_if_match(if_match: str | None) -> int:
     """The revision that a request means to change; it must say so."""
-    if not if_match:
+    if if_match is None:
         raise PreconditionMissingError(
             'Others may change this too: send If-Match with the revision that you change, such as "3".'
         )

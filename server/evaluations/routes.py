@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 from server.accounts.service import CurrentAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import DatabaseDep
+from server.database.frames import FramePath
 from server.download import name_download
 from server.errors import InvalidError, error_responses
 from server.evaluations import service
@@ -63,7 +64,7 @@ def get_evaluation_picture(
     track: SeenTrack,
     labels: Annotated[str, Path(pattern="^(now-[0-9]{1,15}|snapshot-[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12})$")],
     camera: Annotated[str, Path(max_length=64)],
-    frame: Annotated[int, Path(ge=0, le=10**9)],
+    frame: FramePath,
     hand: Hand,
     request: Request,
     database: DatabaseDep,

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
+from server.database.frames import FramePath
 from server.errors import InvalidError, error_responses
 from server.sequences.depth_colors import Colormap
 from server.sequences.frame_images import FrameAddress, FrameImagesDep
@@ -27,7 +28,7 @@ def get_address(
     sequence_id: uuid.UUID,
     content_key: Annotated[str, Path(pattern="^[0-9a-f]{32}$", description="`content_key` of the recording.")],
     camera: Annotated[str, Path(max_length=64)],
-    frame: Annotated[int, Path(ge=0, le=10**9)],
+    frame: FramePath,
 ) -> FrameAddress:
     """The frame that the address names."""
     return FrameAddress(sequence_id, content_key, camera, frame)

@@ -10,10 +10,11 @@ from fastapi import APIRouter, BackgroundTasks, Query
 
 from server.accounts.service import CurrentAccount
 from server.annotations.guards import GuardsDep, check_read, find_hidden
-from server.annotations.routes import CameraPath, FramePath, get_annotated_sequence
+from server.annotations.routes import CameraPath, get_annotated_sequence
 from server.annotations.schemas import Hand
 from server.annotations.service import check_place, check_points
 from server.database import DatabaseDep
+from server.database.frames import FramePath
 from server.database.paging import Page
 from server.errors import error_responses
 from server.suggestions import service

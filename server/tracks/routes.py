@@ -15,6 +15,7 @@ from starlette.requests import HTTPConnection
 from server.accounts.audit import record_act
 from server.accounts.service import LeadAccount
 from server.database import Base, SessionDep
+from server.database.frames import FramePath
 from server.database.paging import Cursor, Limit, Page
 from server.download import name_download
 from server.errors import NotFoundError, error_responses
@@ -81,7 +82,7 @@ def get_track_frames(track: SeenTrack, storage: StorageDep) -> TrackFrames:
 
 
 @router.get("/tracks/{track_id}/frames/{frame}/energy", responses=error_responses(404))
-def get_frame_energy(track: SeenTrack, frame: int, storage: StorageDep) -> FrameEnergy:
+def get_frame_energy(track: SeenTrack, frame: FramePath, storage: StorageDep) -> FrameEnergy:
     """Energy of one frame's fit by term and iteration."""
     return FrameEnergy.model_validate(service.read_energy(storage.folder("tracks", track.id), frame))
 
@@ -105,7 +106,7 @@ def get_track_joints(track: SeenTrack, storage: StorageDep, camera: str | None =
     responses={200: {"content": {"image/png": {}}}} | error_responses(404),
 )
 def get_track_overlay(
-    track: SeenTrack, camera: str, frame: int, storage: StorageDep, overlays: OverlaysDep
+    track: SeenTrack, camera: str, frame: FramePath, storage: StorageDep, overlays: OverlaysDep
 ) -> FileResponse:
     """The meshes of one frame as the camera sees them, on transparent ground. Neither a track nor this changes ever."""
     folder = storage.folder("tracks", track.id)

@@ -24,6 +24,7 @@ def test_of_two_tabs_the_one_that_asks_is_told_of_the_other(client: TestClient) 
     assert client.put(PREFERENCES, json={"a": 1}, headers={"If-Match": etag}).status_code == 200
     late = client.put(PREFERENCES, json={"a": 2}, headers={"If-Match": etag})
     assert (late.status_code, late.json()["theirs"]) == (409, {"a": 1})
+    assert client.put(PREFERENCES, json={"a": 4}, headers={"If-Match": ""}).status_code == 422, "it asks for nothing"
     assert client.put(PREFERENCES, json={"a": 3}).json()["preferences"] == {"a": 3}
 
 

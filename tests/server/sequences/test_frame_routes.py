@@ -90,6 +90,14 @@ def test_an_image_is_kept_for_good_and_not_sent_to_who_has_it(client: TestClient
     assert client.get(address(found, 1, file)).headers["etag"] != answer.headers["etag"]
 
 
+@pytest.mark.parametrize("frame", ["1.0", "+1", "%201", "1_0", "-1", "1e0", "9999999999", "\u0661"])
+def test_the_number_of_a_frame_is_digits_alone(client: TestClient, add_recording, frame: str) -> None:
+    here = address(add_recording(), 1, "color.jpg")
+    answer = client.get(here.replace("/frames/1/", f"/frames/{frame}/"))
+    assert answer.status_code == 422
+    assert "frame" in answer.json()["detail"]
+
+
 def test_images_that_are_not_there_are_said_to_be_missing(client: TestClient, add_recording) -> None:
     found = add_recording("waving", depth=False)
     other = {**found, "content_key": "0" * 32}

@@ -18,5 +18,5 @@ def _read_digits(text: object) -> object:
     return text
 
 
-FramePath = Annotated[int, BeforeValidator(_read_digits), Path(ge=0, le=LAST_FRAME)]
+FramePath = Annotated[int, Path(ge=0, le=LAST_FRAME), BeforeValidator(_read_digits)]
 """A frame in an address."""

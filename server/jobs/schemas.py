@@ -6,7 +6,7 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, model_validator
+from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, model_validator
 
 from server.database.texts import Label, Name
 from server.training_sets.schemas import TrainingRule
@@ -46,9 +46,13 @@ class TrainingParams(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    rounds: int = Field(default=3, ge=1, le=20, description="Times that all parts of the model are improved in turn.")
-    num_shapes: int = Field(default=10, ge=1, le=200, description="Shape directions of the whole hand kept, at most.")
-    num_local_shapes: int = Field(
+    rounds: StrictInt = Field(
+        default=3, ge=1, le=20, description="Times that all parts of the model are improved in turn."
+    )
+    num_shapes: StrictInt = Field(
+        default=10, ge=1, le=200, description="Shape directions of the whole hand kept, at most."
+    )
+    num_local_shapes: StrictInt = Field(
         default=0,
         ge=0,
         le=200,

@@ -229,6 +229,8 @@ def test_decisions_reasons_and_undo_by_keys_alone(studio, fresh, open_page):
 def test_no_decision_is_lost_or_doubled_when_the_tab_dies(studio, fresh, open_page):
     before = [len(history(studio, one)) for one in fresh.registrations[:4]]
     page = open_queue(open_page)
+    wait_for_hand(page, fresh.registrations[0])
+    wait_until_saved(page)
 
     def store_and_lose_the_answer(route):
         route.fetch()  # the server has it; nobody hears

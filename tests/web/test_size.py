@@ -17,7 +17,8 @@ ANNOTATOR = 600_000
 
 
 class Wire:
-    """Counts what a page is sent, by Chromium's own account."""
+    """Counts what a page is sent, by Chromium's own account; each address once, because lists are asked for again
+    whenever a job of another test goes on."""
 
     def __init__(self, page: Any) -> None:
         self.addresses: dict[str, str] = {}
@@ -34,13 +35,21 @@ class Wire:
     def _add(self, event: Any) -> None:
         self.sizes[event["requestId"]] = event["encodedDataLength"]
 
+    def by_address(self) -> dict[str, float]:
+        """The largest answer of each."""
+        found: dict[str, float] = {}
+        for id_, size in self.sizes.items():
+            address = self.addresses.get(id_, "?")
+            found[address] = max(size, found.get(address, 0.0))
+        return found
+
     def report(self) -> str:
-        rows = sorted(((size, self.addresses.get(id_, "?")) for id_, size in self.sizes.items()), reverse=True)
-        return "\n".join([f"{sum(self.sizes.values()):.0f} in all", *(f"{size:9.0f} {url}" for size, url in rows[:20])])
+        rows = sorted(((size, address) for address, size in self.by_address().items()), reverse=True)
+        return "\n".join([f"{self.total:.0f} in all", *(f"{size:9.0f} {url}" for size, url in rows[:20])])
 
     @property
     def total(self) -> float:
-        return sum(self.sizes.values())
+        return sum(self.by_address().values())
 
 
 @contextmanager

@@ -9,7 +9,6 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from pydantic_core import from_json
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.engine.interfaces import DBAPIConnection
 from sqlalchemy.exc import OperationalError
@@ -30,11 +29,7 @@ class Database:
     def __init__(self, url: str) -> None:
         self.url = url
         self.is_sqlite = make_url(url).get_backend_name() == "sqlite"
-        self.engine = (
-            _create_sqlite_engine(url)
-            if self.is_sqlite
-            else create_engine(url, pool_pre_ping=True, json_deserializer=from_json)
-        )
+        self.engine = _create_sqlite_engine(url) if self.is_sqlite else create_engine(url, pool_pre_ping=True)
         self._sessions = sessionmaker(self.engine, expire_on_commit=False)
         self._turn = Lock()
 
@@ -79,8 +74,7 @@ def _create_sqlite_engine(url: str) -> Engine:
     if path and path != ":memory:":
         Path(path).parent.mkdir(parents=True, exist_ok=True)
     # autocommit of the driver, so that it begins nothing by itself: SQLAlchemy's `begin` does, below.
-    options = {"timeout": BUSY_TIMEOUT, "isolation_level": None}
-    engine = create_engine(url, connect_args=options, json_deserializer=from_json)
+    engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT, "isolation_level": None})
     event.listen(engine, "connect", _configure_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine

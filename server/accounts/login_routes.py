@@ -30,7 +30,7 @@ COOKIE_LIFE = timedelta(days=400)
 """As long as browsers keep one at most; the studio ends logins much sooner."""
 
 
-def get_tries(connection: HTTPConnection) -> FailedTries:
+async def get_tries(connection: HTTPConnection) -> FailedTries:
     """The app's."""
     return connection.app.state.failed_tries
 
@@ -38,7 +38,7 @@ def get_tries(connection: HTTPConnection) -> FailedTries:
 TriesDep = Annotated[FailedTries, Depends(get_tries)]
 
 
-def get_browser(connection: HTTPConnection) -> Browser:
+async def get_browser(connection: HTTPConnection) -> Browser:
     """Where the request comes from."""
     return Browser(
         address=connection.client.host if connection.client else "",

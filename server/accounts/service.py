@@ -16,7 +16,7 @@ from server.accounts.visitor import Visitor, read_visitor
 from server.errors import ForbiddenError
 
 
-def get_visitor(connection: HTTPConnection) -> Visitor:
+async def get_visitor(connection: HTTPConnection) -> Visitor:
     """Who makes the request; the door found out before anything else was done."""
     return read_visitor(connection.scope)
 
@@ -24,7 +24,7 @@ def get_visitor(connection: HTTPConnection) -> Visitor:
 VisitorDep = Annotated[Visitor, Depends(get_visitor)]
 
 
-def get_current_account(visitor: VisitorDep) -> Account:
+async def get_current_account(visitor: VisitorDep) -> Account:
     """The account of a request, to be read: id, name and role. It belongs to no session and costs no query."""
     return Account(id=visitor.account_id, name=visitor.name, role=visitor.role)
 
@@ -43,7 +43,7 @@ class RequireRole:
     def __init__(self, role: Role) -> None:
         self.role: Role = role
 
-    def __call__(self, account: CurrentAccount) -> Account:
+    async def __call__(self, account: CurrentAccount) -> Account:
         if not has_role(account, self.role):
             raise ForbiddenError(
                 f"{account.name} is {account.role}; this needs {self.role} or higher. Ask a lead to do it or to change "
@@ -58,7 +58,7 @@ LeadAccount = Annotated[Account, Depends(require_lead)]
 AdminAccount = Annotated[Account, Depends(RequireRole("admin"))]
 
 
-def require_person(visitor: VisitorDep) -> Visitor:
+async def require_person(visitor: VisitorDep) -> Visitor:
     """Dependency: a person, not a script. A stolen token must not make further tokens, nor people."""
     if visitor.token_id is not None:
         raise ForbiddenError("A token opens no account administration. Do it in a browser.")
@@ -68,7 +68,7 @@ def require_person(visitor: VisitorDep) -> Visitor:
 PersonDep = Annotated[Visitor, Depends(require_person)]
 
 
-def get_current_account_id(visitor: VisitorDep) -> uuid.UUID:
+async def get_current_account_id(visitor: VisitorDep) -> uuid.UUID:
     """The account's id, without a session: for routes that work longer than one transaction."""
     return visitor.account_id
 

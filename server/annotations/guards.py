@@ -30,7 +30,7 @@ class PlaceGuard:
     find_hidden: Callable[[Session, Account, uuid.UUID, str], Sequence[HiddenPlaces]]
 
 
-def get_place_guards(connection: HTTPConnection) -> tuple[PlaceGuard, ...]:
+async def get_place_guards(connection: HTTPConnection) -> tuple[PlaceGuard, ...]:
     """Those the app was put together with."""
     return connection.app.state.place_guards
 

@@ -54,7 +54,7 @@ def get_annotated_sequence(sequence_id: uuid.UUID, session: SessionDep) -> Seque
 SequenceDep = Annotated[SequenceRow, Depends(get_annotated_sequence)]
 
 
-def name_replica(replica: ReplicaQuery = None) -> str:
+async def name_replica(replica: ReplicaQuery = None) -> str:
     """Where the annotations of a request lie: empty for those of everybody."""
     return "" if replica is None else str(replica)
 
@@ -62,7 +62,9 @@ def name_replica(replica: ReplicaQuery = None) -> str:
 ReplicaDep = Annotated[str, Depends(name_replica)]
 
 
-def get_place(sequence: SequenceDep, camera: CameraPath, frame: FramePath, hand: Hand, replica: ReplicaDep) -> Place:
+async def get_place(
+    sequence: SequenceDep, camera: CameraPath, frame: FramePath, hand: Hand, replica: ReplicaDep
+) -> Place:
     """The place of the address."""
     return service.check_place(sequence, camera, frame, hand, replica)
 

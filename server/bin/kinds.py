@@ -40,7 +40,7 @@ class BinKind:
     area: str | None = None
 
 
-def get_bin_kinds(connection: HTTPConnection) -> tuple[BinKind, ...]:
+async def get_bin_kinds(connection: HTTPConnection) -> tuple[BinKind, ...]:
     """Those the app was put together with."""
     return connection.app.state.bin_kinds
 

@@ -31,7 +31,7 @@ class Admission:
         self.writers = CapacityLimiter(1 if database.is_sqlite else WRITERS)
 
 
-def get_database(connection: HTTPConnection) -> Database:
+async def get_database(connection: HTTPConnection) -> Database:
     """The app's database, for routes whose work is longer than one transaction."""
     return connection.app.state.database
 

@@ -85,7 +85,7 @@ class Judge:
         )
 
 
-def get_judge(connection: HTTPConnection) -> Judge:
+async def get_judge(connection: HTTPConnection) -> Judge:
     """The app's."""
     state = connection.app.state
     if not hasattr(state, "judge"):

@@ -30,7 +30,7 @@ SourceQuery = Annotated[list[SourceChoice], Query(min_length=1, max_length=10, d
 JUDGING: list[SourceChoice] = ["independent"]
 
 
-def get_sight_check(account: CurrentAccount, guards: SightDep) -> Callable[[Session, uuid.UUID], None]:
+async def get_sight_check(account: CurrentAccount, guards: SightDep) -> Callable[[Session, uuid.UUID], None]:
     """Raises at a recording in which whoever asks must not see tracks."""
     return lambda session, sequence_id: check_sight(guards, session, account, sequence_id)
 

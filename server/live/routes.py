@@ -25,12 +25,12 @@ from server.sequences.service import get_sequence
 router = APIRouter(prefix="/sequences/{sequence_id}", tags=["live"], responses=error_responses(404))
 
 
-def get_watches(connection: HTTPConnection) -> Watches:
+async def get_watches(connection: HTTPConnection) -> Watches:
     """The app's."""
     return connection.app.state.watches
 
 
-def get_visits(connection: HTTPConnection) -> Visits:
+async def get_visits(connection: HTTPConnection) -> Visits:
     """The app's."""
     return connection.app.state.visits
 

@@ -24,7 +24,7 @@ from server.storage import StorageDep
 router = APIRouter(prefix="/registrations", tags=["registrations"], responses=error_responses())
 
 
-def get_filter(
+async def get_filter(
     scan_id: uuid.UUID | None = None,
     model_id: uuid.UUID | None = None,
     job_id: uuid.UUID | None = None,

@@ -19,7 +19,7 @@ FactFinder = Callable[[Session, Sequence[uuid.UUID]], dict[uuid.UUID, dict[str, 
 """For some scans, fields of `ScanOut` that a room knows."""
 
 
-def get_fact_finders(connection: HTTPConnection) -> tuple[FactFinder, ...]:
+async def get_fact_finders(connection: HTTPConnection) -> tuple[FactFinder, ...]:
     """Those the app was put together with."""
     return connection.app.state.scan_facts
 
@@ -28,7 +28,7 @@ Resized = Callable[[Session, ScanRow], None]
 """What a room does when a scan's size was corrected."""
 
 
-def get_resized(connection: HTTPConnection) -> tuple[Resized, ...]:
+async def get_resized(connection: HTTPConnection) -> tuple[Resized, ...]:
     """Those the app was put together with."""
     return connection.app.state.scan_resized
 

@@ -76,7 +76,7 @@ _BODY: dict[str, Any] = {
 }
 
 
-def get_shelf(connection: HTTPConnection) -> service.ScanShelf:
+async def get_shelf(connection: HTTPConnection) -> service.ScanShelf:
     """The app's scans that were asked for lately."""
     state = connection.app.state
     if not hasattr(state, "scan_shelf"):

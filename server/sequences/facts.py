@@ -17,7 +17,7 @@ FactFinder = Callable[[Session, Sequence[uuid.UUID]], dict[uuid.UUID, dict[str, 
 """For some recordings, fields of `SequenceOut` that a room knows."""
 
 
-def get_fact_finders(connection: HTTPConnection) -> tuple[FactFinder, ...]:
+async def get_fact_finders(connection: HTTPConnection) -> tuple[FactFinder, ...]:
     """Those the app was put together with."""
     return connection.app.state.sequence_facts
 

@@ -146,7 +146,7 @@ def _encode_jpeg(image: npt.NDArray[np.uint8], quality: int) -> bytes:
     return data.tobytes()
 
 
-def get_frame_images(connection: HTTPConnection) -> FrameImages:
+async def get_frame_images(connection: HTTPConnection) -> FrameImages:
     """The app's."""
     return connection.app.state.frame_images
 

@@ -24,7 +24,7 @@ IMMUTABLE = "private, max-age=31536000, immutable"
 Distance = Annotated[float | None, Query(ge=0, le=1000, allow_inf_nan=False, description="m")]
 
 
-def get_address(
+async def get_address(
     sequence_id: uuid.UUID,
     content_key: Annotated[str, Path(pattern="^[0-9a-f]{32}$", description="`content_key` of the recording.")],
     camera: Annotated[str, Path(max_length=64)],

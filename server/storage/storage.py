@@ -104,7 +104,7 @@ def open_storage(settings: Settings) -> Storage:
     return SharedStorage(settings.data_dir, store, int(settings.store_cache_gb * 1e9))
 
 
-def get_storage(connection: HTTPConnection) -> Storage:
+async def get_storage(connection: HTTPConnection) -> Storage:
     """The app's storage."""
     return connection.app.state.storage
 

@@ -64,7 +64,7 @@ class Shelf:
         return loaded
 
 
-def get_shelf(connection: HTTPConnection) -> Shelf:
+async def get_shelf(connection: HTTPConnection) -> Shelf:
     """The app's."""
     state = connection.app.state
     if not hasattr(state, "suggestion_shelf"):

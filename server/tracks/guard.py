@@ -20,7 +20,7 @@ SightGuard = Callable[[Session, Account, uuid.UUID], None]
 """Raises when the account must not see what was tracked in a recording."""
 
 
-def get_sight_guards(connection: HTTPConnection) -> tuple[SightGuard, ...]:
+async def get_sight_guards(connection: HTTPConnection) -> tuple[SightGuard, ...]:
     """Those the app was put together with."""
     return connection.app.state.sight_guards
 

@@ -32,7 +32,7 @@ router = APIRouter(tags=["tracks"], responses=error_responses())
 IMMUTABLE = "private, max-age=31536000, immutable"
 
 
-def get_overlays(connection: HTTPConnection) -> Overlays:
+async def get_overlays(connection: HTTPConnection) -> Overlays:
     """The app's cache of overlays."""
     state = connection.app.state
     if not hasattr(state, "overlays"):

@@ -35,7 +35,7 @@ async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         await run_in_threadpool(app.state.viewer_sessions.stop)
 
 
-def get_sessions(connection: HTTPConnection) -> ViewerSessions:
+async def get_sessions(connection: HTTPConnection) -> ViewerSessions:
     """The app's viewer sessions."""
     return connection.app.state.viewer_sessions
 

@@ -1,0 +1,57 @@
+"""A hand that the networks found in an image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.landmarks.square import Square, angle_of
+
+Array = npt.NDArray[np.float64]
+
+STEADY = (0, 1, 2, 3, 5, 6, 9, 10, 13, 14, 17, 18)
+"""Joints around which the next square lies: not the fingers' ends, which move most. MediaPipe's own."""
+
+SHIFT, SCALE = 0.1, 2.0
+"""From the box of these joints to the square: shares of the box. MediaPipe's own."""
+
+
+SAME = 0.15
+"""Two finds of one hand differ by less of its square; two hands that touch by more."""
+
+
+@dataclass(frozen=True)
+class DetectedHand:
+    """21 joints in the order of `HAND_JOINTS`.
+
+    Attributes:
+        points: (21, 2) px of the image.
+        points_3d: (21, 3) along the axes of the image and away from the viewer, m, as a hand of the networks' own size,
+            around its middle.
+        presence: 0 to 1, that there is a hand. It says nothing of single joints: those that something hides are
+            invented.
+        right: 0 to 1, that it is a right one; of a hand that was followed, the mean of the frames before weighs in.
+    """
+
+    points: Array
+    points_3d: Array
+    presence: float
+    right: float
+
+    @property
+    def side(self) -> str:
+        return "right" if self.right >= 0.5 else "left"
+
+    @property
+    def next_square(self) -> Square:
+        """Where to look for the hand in the next frame."""
+        wrist, (index, middle, ring) = self.points[0], self.points[[5, 9, 13]]
+        angle = angle_of(wrist, 0.5 * (0.5 * (index + ring) + middle))
+        return Square.around(self.points[list(STEADY)], angle, SHIFT, SCALE)
+
+    def is_same(self, other: DetectedHand) -> bool:
+        """Whether two finds are of one hand: their joints are apart by little of its size."""
+        apart = float(np.linalg.norm(self.points - other.points, axis=1).mean())
+        return apart < SAME * min(self.next_square.size, other.next_square.size)

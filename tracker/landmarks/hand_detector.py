@@ -1,0 +1,100 @@
+"""Find the hands of an image, and follow them from image to image."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.landmarks.detected_hand import DetectedHand
+from tracker.landmarks.network import Run, load_network
+from tracker.landmarks.palms import find_palms, load_palm_network
+from tracker.landmarks.square import Square
+
+PIXELS = 224
+"""Side of the landmark network's image."""
+
+MIN_PRESENCE = 0.5
+"""MediaPipe's own."""
+
+SIDE_MEMORY = 0.8
+"""Share of the side that is remembered: hands that cross look like each other for some frames."""
+
+MIN_SIZE, MAX_SIZE = 4.0, 4.0
+"""A square smaller than this, px, or larger than this many images, is of no hand."""
+
+
+class HandDetector:
+    """Both networks; they are read when first needed.
+
+    Args:
+        threads: For onnxruntime.
+    """
+
+    def __init__(self, threads: int = 1) -> None:
+        self._threads = threads
+
+    def find(
+        self, image: npt.NDArray[np.uint8], hands: int = 2, before: Sequence[DetectedHand] = ()
+    ) -> list[DetectedHand]:
+        """The hands of an image.
+
+        The same images in the same order give the same hands: the detector itself remembers nothing.
+
+        Args:
+            image: (H, W, 3) red green blue, or (H, W) grey.
+            hands: At most so many. Palms are looked for only when fewer were followed.
+            before: What was found in the image before.
+
+        Returns:
+            Those that were followed first, in their order.
+        """
+        image = as_color(image)
+        found: list[DetectedHand] = []
+        for hand in before:
+            self._add(found, self._look(image, hand.next_square), hand)
+        if len(found) < hands:
+            for square in find_palms(self._palms, image):
+                if len(found) < hands:
+                    self._add(found, self._look(image, square))
+        return found
+
+    def _add(self, found: list[DetectedHand], hand: DetectedHand | None, before: DetectedHand | None = None) -> None:
+        if hand is None or any(hand.is_same(other) for other in found):
+            return
+        if before is not None:
+            hand = replace(hand, right=SIDE_MEMORY * before.right + (1.0 - SIDE_MEMORY) * hand.right)
+        found.append(hand)
+
+    def _look(self, image: npt.NDArray[np.uint8], square: Square) -> DetectedHand | None:
+        """The hand in a square; None where there is none."""
+        if not MIN_SIZE <= square.size <= MAX_SIZE * max(image.shape[:2]):
+            return None
+        told = self._landmarks(square.cut(image, PIXELS))
+        presence = float(told["presence"].reshape(-1)[0])
+        if presence < MIN_PRESENCE:
+            return None
+        points = told["points"].reshape(21, 3).astype(np.float64)
+        return DetectedHand(
+            points=square.to_image(points[:, :2] - 0.5, PIXELS),
+            points_3d=square.turn_back(told["points_3d"].reshape(21, 3).astype(np.float64)),
+            presence=presence,
+            right=float(told["side"].reshape(-1)[0]),
+        )
+
+    @cached_property
+    def _palms(self) -> Run:
+        return load_palm_network(self._threads)
+
+    @cached_property
+    def _landmarks(self) -> Run:
+        return load_network("landmarks", ("points", "presence", "side", "points_3d"), self._threads)
+
+
+def as_color(image: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+    """(H, W, 3) of an image in colour or grey."""
+    assert image.dtype == np.uint8 and image.ndim in (2, 3)
+    return np.repeat(image[..., None], 3, axis=2) if image.ndim == 2 else image

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +18,9 @@ from sqlalchemy.pool import ConnectionPoolEntry
 
 BUSY_TIMEOUT = 15.0
 """s that a writer waits for another one on SQLite before it gives up."""
+
+SWITCH_PAUSE = 0.01
+"""s between tries to switch a new file to WAL."""
 
 
 class Database:
@@ -85,9 +89,23 @@ def _configure_sqlite(connection: DBAPIConnection, _entry: ConnectionPoolEntry) 
     the price of one fsync a commit (NORMAL may lose the last commits). Foreign keys are off unless asked for."""
     assert isinstance(connection, sqlite3.Connection)
     cursor: Any = connection.cursor()
-    for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON"):
+    _switch_to_wal(cursor)
+    for pragma in ("synchronous = FULL", "foreign_keys = ON"):
         cursor.execute(f"PRAGMA {pragma}")
     cursor.close()
+
+
+def _switch_to_wal(cursor: Any) -> None:
+    """Several processes may meet a new file at once. SQLite makes none of them wait for the others here, it refuses."""
+    give_up_at = time.monotonic() + BUSY_TIMEOUT
+    while True:
+        try:
+            cursor.execute("PRAGMA journal_mode = WAL")
+            return
+        except sqlite3.OperationalError as error:
+            if error.sqlite_errorcode != sqlite3.SQLITE_BUSY or time.monotonic() > give_up_at:
+                raise
+        time.sleep(SWITCH_PAUSE)
 
 
 def _begin_sqlite(connection: Connection) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sqlite3
 import threading
 import uuid
 from concurrent.futures import ThreadPoolExecutor
@@ -77,3 +78,16 @@ def test_a_reference_to_nothing_is_refused(database: Database) -> None:
             text("INSERT INTO annotation_revisions VALUES (:a, :b, 1, :c, 'put', NULL, :d, NULL, NULL)"),
             {"a": uuid.uuid4().hex, "b": uuid.uuid4().hex, "c": uuid.uuid4().hex, "d": datetime.now(UTC).isoformat()},
         )
+
+
+def test_a_new_file_in_which_another_process_writes_is_waited_for(tmp_path: Path) -> None:
+    other = sqlite3.connect(tmp_path / "new.sqlite3", isolation_level=None, check_same_thread=False)
+    other.execute("BEGIN IMMEDIATE")  # SQLite refuses to switch the file to WAL now, at once
+    database = Database(f"sqlite:///{tmp_path / 'new.sqlite3'}")
+    release = threading.Timer(0.3, other.execute, ("ROLLBACK",))
+    release.start()
+    with database.reading() as session:
+        assert session.scalar(text("PRAGMA journal_mode")) == "wal"
+    release.join()
+    database.close()
+    other.close()

@@ -7,8 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 ROOT = Path(__file__).resolve().parents[1]
+
+settings.register_profile("handloom", deadline=None)  # how long an example takes says how busy the machine is
+settings.load_profile("handloom")
 
 
 @pytest.fixture(scope="session")

@@ -17,9 +17,11 @@ class Frame:
         camera: Id of the camera.
         color: (H, W, 3) uint8 RGB, or None.
         depth: (H, W) float32, m along the optical axis, 0 where there is no value, or None.
+        is_hand: (H, W) pixels known to be of a hand's own colour, or None where nobody has looked.
     """
 
     index: int
     camera: str
     color: npt.NDArray[np.uint8] | None
     depth: npt.NDArray[np.float32] | None
+    is_hand: npt.NDArray[np.bool_] | None = None

@@ -6,6 +6,6 @@ Apache-2.0), converted by `scripts/build_hand_networks.py`.
 """
 
 from tracker.landmarks.detected_hand import DetectedHand
-from tracker.landmarks.hand_detector import HandDetector
+from tracker.landmarks.hand_detector import HandDetector, default_hand_detector
 
-__all__ = ["DetectedHand", "HandDetector"]
+__all__ = ["DetectedHand", "HandDetector", "default_hand_detector"]

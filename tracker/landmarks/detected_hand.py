@@ -21,6 +21,9 @@ SHIFT, SCALE = 0.1, 2.0
 SAME = 0.15
 """Two finds of one hand differ by less of its square; two hands that touch by more."""
 
+ROW = 107
+"""Numbers in a stored hand."""
+
 
 @dataclass(frozen=True)
 class DetectedHand:
@@ -50,6 +53,15 @@ class DetectedHand:
         wrist, (index, middle, ring) = self.points[0], self.points[[5, 9, 13]]
         angle = angle_of(wrist, 0.5 * (0.5 * (index + ring) + middle))
         return Square.around(self.points[list(STEADY)], angle, SHIFT, SCALE)
+
+    def to_row(self) -> Array:
+        """(ROW,) all of it, to be stored."""
+        return np.concatenate([self.points.ravel(), self.points_3d.ravel(), [self.presence, self.right]])
+
+    @classmethod
+    def from_row(cls, row: Array) -> DetectedHand:
+        """What `to_row` gave."""
+        return cls(row[:42].reshape(21, 2), row[42:105].reshape(21, 3), float(row[105]), float(row[106]))
 
     def is_same(self, other: DetectedHand) -> bool:
         """Whether two finds are of one hand: their joints are apart by little of its size."""

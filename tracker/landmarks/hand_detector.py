@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property
+from threading import Lock
 
 import numpy as np
 import numpy.typing as npt
@@ -36,6 +37,7 @@ class HandDetector:
 
     def __init__(self, threads: int = 1) -> None:
         self._threads = threads
+        self._lock = Lock()
 
     def find(
         self, image: npt.NDArray[np.uint8], hands: int = 2, before: Sequence[DetectedHand] = ()
@@ -57,7 +59,9 @@ class HandDetector:
         for hand in before:
             self._add(found, self._look(image, hand.next_square), hand)
         if len(found) < hands:
-            for square in find_palms(self._palms, image):
+            with self._lock:
+                squares = find_palms(self._palms, image)
+            for square in squares:
                 if len(found) < hands:
                     self._add(found, self._look(image, square))
         return found
@@ -73,7 +77,9 @@ class HandDetector:
         """The hand in a square; None where there is none."""
         if not MIN_SIZE <= square.size <= MAX_SIZE * max(image.shape[:2]):
             return None
-        told = self._landmarks(square.cut(image, PIXELS))
+        crop = square.cut(image, PIXELS)
+        with self._lock:  # OpenCV's networks hold one image at a time
+            told = self._landmarks(crop)
         presence = float(told["presence"].reshape(-1)[0])
         if presence < MIN_PRESENCE:
             return None
@@ -92,6 +98,12 @@ class HandDetector:
     @cached_property
     def _landmarks(self) -> Run:
         return load_network("landmarks", ("points", "presence", "side", "points_3d"), self._threads)
+
+
+@cache
+def default_hand_detector() -> HandDetector:
+    """One for the whole process."""
+    return HandDetector()
 
 
 def as_color(image: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:

@@ -141,6 +141,8 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, st
     K[:2] /= stride
     color = None if frame.color is None or not how.use_skin else frame.color[rows, columns]
     labels, is_skin = _label(inside, color, how.skin_threshold)
+    if frame.is_hand is not None:
+        labels = np.where(inside, np.where(frame.is_hand[rows, columns], np.uint8(HAND), np.uint8(OTHER)), np.uint8(0))
     points = np.zeros((*depth.shape, 3), dtype=np.float32)
     normals = np.zeros_like(points)
     compute_points_and_normals_into(points, normals, depth, K, camera.T_world_camera)

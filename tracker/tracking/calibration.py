@@ -15,11 +15,11 @@ from tracker.model.local_directions import local_directions, mark_directions
 from tracker.model.scene import PosedScene, Scene
 from tracker.observation import Observation
 from tracker.solver.elimination import solve_definite
+from tracker.terms.marked_joints import MarkedJoints
 from tracker.terms.residual import MILLIMETRES
 from tracker.tracking.frame_fit import FitOptions, fit_frame
 from tracker.tracking.objective import Objective
 from tracker.tracking.shape_equations import SceneDirections, ShapeEquations, reduce_equations
-from tracker.tracking.start_annotated import MarkedJoints
 
 Array = npt.NDArray[np.float64]
 

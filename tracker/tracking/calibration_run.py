@@ -11,12 +11,13 @@ import numpy.typing as npt
 
 from tracker.capture.sequence import Sequence
 from tracker.observation import observe
+from tracker.terms.marked_joints import mark_joints
 from tracker.tracking.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
 from tracker.tracking.follow import follow_frame
 from tracker.tracking.objective import Objective
 from tracker.tracking.region import region_around
 from tracker.tracking.setup import TrackSetup
-from tracker.tracking.start_annotated import mark_joints
+from tracker.tracking.sighting import find_sightings
 from tracker.tracking.state import TrackState
 from tracker.tracking.tools import Tools
 
@@ -143,6 +144,7 @@ def _choose(setup: TrackSetup, poses: dict[int, Array], count: int) -> list[int]
 
 def _look(sequence: Sequence, setup: TrackSetup, frames: range, place: int, pose: Array) -> CalibrationFrame | None:
     frame, camera = setup.read(sequence, frames[place])
+    frame = find_sightings(setup.hand_detector, frame, camera, setup.hand_names, {}).frame
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
         return None

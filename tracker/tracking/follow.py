@@ -16,7 +16,7 @@ from tracker.capture.sequence import Sequence
 from tracker.observation import Observation
 from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look, try_again
 from tracker.tracking.chunk import TrackChunk
-from tracker.tracking.find_again import find_again
+from tracker.tracking.find_again import find_again, find_seen
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.frame_result import FrameResult
 from tracker.tracking.hold import hold_object
@@ -25,7 +25,9 @@ from tracker.tracking.objective import Objective
 from tracker.tracking.part import Part
 from tracker.tracking.quality import Quality
 from tracker.tracking.region import is_outgrown, region_around
+from tracker.tracking.seen_hands import try_where_seen
 from tracker.tracking.setup import TrackSetup
+from tracker.tracking.sighting import Sightings, find_sightings
 from tracker.tracking.start_annotated import with_marks
 from tracker.tracking.state import TrackState
 from tracker.tracking.tools import Tools, make_tools
@@ -55,6 +57,9 @@ SCORE_MEMORY = 0.9
 
 Rest = tuple[int, int, int, int]
 
+
+SEEN_ITERATIONS = 1.5
+"""Fits from the detector's joints take so many times the iterations of others: they start farther off."""
 
 WIDER = 3
 """So often at most the region follows a fit that went beyond it."""
@@ -96,16 +101,19 @@ def follow_frame(
     frame, camera = setup.read(sequence, state.next_frame)
     started = perf_counter()
     lost = _lost_before(setup, state)
-    attempt, rest, stages = _follow(frame, camera, Part.without(setup, lost), tools, state)
+    sightings = find_sightings(setup.hand_detector, frame, camera, setup.hand_names, state.detected)
+    frame, detected_at = sightings.frame, perf_counter()
+    attempt, rest, stages = _follow(sightings, camera, Part.without(setup, lost), tools, state)
+    stages["detecting hands"] = detected_at - started
     falling = _fallen(setup, attempt, lost)
     status = "ok"
     if falling or attempt is None:
         searched_at = perf_counter()
-        attempt, status, falling = _catch(frame, camera, setup, tools, state, attempt, falling, recover)
+        attempt, status, falling = _catch(sightings, camera, setup, tools, state, attempt, falling, recover)
         stages["searching the image"] = perf_counter() - searched_at
-    elif recover and rest[1] == 0 and _is_doubtful(attempt.quality, state):
+    elif recover and not _is_detecting(setup, sightings) and rest[1] == 0 and _is_doubtful(attempt.quality, state):
         searched_at = perf_counter()
-        found = find_again(frame, camera, setup, tools, attempt.pose, (attempt.worst,))
+        found = find_again(sightings, camera, setup, tools, attempt.pose, (attempt.worst,))
         is_better = found is not None and not found[1] and found[0].worth > attempt.worth + SCORE_GAIN
         attempt, status = (found[0], "recovered") if found and is_better else (attempt, "ok")
         longer = 0 if is_better else min(max(FIRST_IMAGE_REST, 2 * rest[2]), LAST_IMAGE_REST)
@@ -127,6 +135,7 @@ def follow_frame(
         bool(falling),
         rest,
         falling,
+        {name: sighting.hand for name, sighting in sightings.hands.items()},
     )
     return next_state, FrameResult(
         state.next_frame,
@@ -138,6 +147,11 @@ def follow_frame(
         stages,
         tuple(objects),
     )
+
+
+def _is_detecting(setup: TrackSetup, sightings: Sightings) -> bool:
+    """Whether the hand detector can see the frame; then nothing is searched in the depth image, which takes seconds."""
+    return setup.hand_detector is not None and sightings.frame.color is not None
 
 
 def _hands(setup: TrackSetup) -> tuple[int, ...]:
@@ -155,7 +169,7 @@ def _fallen(setup: TrackSetup, attempt: Attempt | None, lost: tuple[int, ...]) -
 
 
 def _catch(
-    frame: Frame,
+    sightings: Sightings,
     camera: Camera,
     setup: TrackSetup,
     tools: Tools,
@@ -164,13 +178,18 @@ def _catch(
     falling: tuple[int, ...],
     recover: bool,
 ) -> tuple[Attempt | None, str, tuple[int, ...]]:
-    """Follow the rest of the scene without hands that are lost, and look for them: attempt, status, still lost."""
+    """Follow the rest of the scene without hands that are lost, and look for them: attempt, status, still lost.
+
+    Where the detector looks, the depth image is not searched: that takes seconds.
+    """
     if attempt is not None and attempt.gone:  # a hand that is not there has pulled at the others
-        attempt = _follow(frame, camera, Part.without(setup, falling), tools, state)[0]
+        attempt = _follow(sightings, camera, Part.without(setup, falling), tools, state)[0]
         falling = _fallen(setup, attempt, falling)
     if recover:
         pose = state.pose if attempt is None else attempt.pose
-        found = find_again(frame, camera, setup, tools, pose, falling)
+        found = find_seen(sightings, camera, setup, tools, pose, falling)
+        if found is None and not _is_detecting(setup, sightings):
+            found = find_again(sightings, camera, setup, tools, pose, falling)
         if found is not None:
             return found[0], "lost" if found[1] else "recovered", found[1]
     return attempt, "lost", falling
@@ -204,7 +223,7 @@ def _running_score(state: TrackState, attempt: Attempt | None, status: str) -> f
 
 
 def _follow(
-    frame: Frame, camera: Camera, part: Part, tools: Tools, state: TrackState
+    sightings: Sightings, camera: Camera, part: Part, tools: Tools, state: TrackState
 ) -> tuple[Attempt | None, Rest, dict[str, float]]:
     """Fit a part of the scene from the predicted pose, and try again if that left something unexplained."""
     stages: dict[str, float] = {}
@@ -214,6 +233,7 @@ def _follow(
     setup, previous = part.setup, part.take(state.pose)
     predicted = replace(state, pose=previous, earlier_pose=part.take(state.earlier_pose)).predict(setup.scene)
     started = perf_counter()
+    frame = sightings.frame
     seen = look(frame, camera, setup, predicted, MIN_PIXELS if part.has_hand else 0)
     stages["observing"] = perf_counter() - started
     if seen is None:
@@ -224,16 +244,28 @@ def _follow(
         iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm, threads=min(setup.options.threads, 2)
     )
     objective = tools.objective
+    if sightings.is_covered and not setup.object_names:
+        objective = sightings.add_to(objective, setup.scene, setup.names, camera)
     if is_first:
         objective = with_marks(objective, setup.scene, setup.names, setup.marks, camera)
     best = attempt_fit(setup, seen, predicted, previous, objective, options)
     stages |= best.fit.stages
     seen, best = _look_wider(frame, camera, setup, seen, best, previous, objective, options)
     is_whole = setup is part.whole  # otherwise what nobody explains may be of a hand that is left out
+    if best.qualities and sightings.hands:
+        started = perf_counter()
+        again = replace(options, iterations=round(SEEN_ITERATIONS * setup.options.iterations))
+        best = try_where_seen(setup, camera, sightings, best, objective, again)
+        stages["second try"] = perf_counter() - started
     if best.qualities:
         is_falling = bool(best.lost if is_whole else best.gone) or best.quality.score < state.score - SCORE_DROP
         is_unsettled = is_whole and (best.quality.explained < 1.0 - UNEXPLAINED or best.misfit > UNSETTLED)
-        if is_falling or (is_unsettled and rest[0] == 0):
+        may_search = rest[0] == 0
+        if _is_detecting(setup, sightings):
+            is_unsettled |= is_falling
+            is_falling = False
+            may_search &= not all(setup.names[hand] in sightings.hands for hand in best.qualities)
+        if is_falling or (is_unsettled and may_search):
             started = perf_counter()
             first = best
             guided, again = tools.with_fingertips(seen), replace(options, iterations=setup.options.iterations)

@@ -77,6 +77,11 @@ class TrackOptions:
     use_skin: bool = _option(
         True, "Tell hand from other things by skin colour, where there is colour.", label="Use skin colour"
     )
+    use_detector: bool = _option(
+        True,
+        "Find the hands' joints in colour images by a neural network; depth alone decides where there is no colour.",
+        label="Use the hand detector",
+    )
     recover: bool = _option(True, "Look for a lost hand in the whole image.", label="Recover a lost hand")
     stop_below_mm: float = _option(
         0.0,

@@ -149,7 +149,7 @@ def _compare(inverse_depth, face, is_model, depth, labels, points, wrist, forwar
             if f >= 0 and not is_drawn and abs(depth[row, column] - 1.0 / inverse_depth[row, column]) < ALIKE:
                 continue  # another model explains this pixel
             z = 1.0 / inverse_depth[row, column] if is_drawn else 0.0
-            hidden = labels[row, column] != 0 and depth[row, column] < z - ALIKE
+            hidden = labels[row, column] != 0 and depth[row, column] < (z - ALIKE if is_hand else z + ALIKE)
             difference = abs(depth[row, column] - z)
             counts_seen = is_hand and (is_drawn or _belongs(points[row, column], wrist, forward, palm, arm))
             if is_hand and _is_near(points[row, column], palm):

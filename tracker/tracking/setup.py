@@ -14,6 +14,7 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
 from tracker.errors import TrackingError, reading
+from tracker.landmarks import HandDetector, default_hand_detector
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.joints import HAND_JOINTS
 from tracker.model.npz_files import load_npz_model, save_npz_model
@@ -59,6 +60,15 @@ class TrackSetup:
             elif model.skeleton.num_bones > 1:
                 names += [f"{name}:{bone}" for bone in model.skeleton.bone_names]
         return tuple(names)
+
+    @property
+    def hand_names(self) -> tuple[str, ...]:
+        return tuple(name for name, model in zip(self.names, self.models, strict=True) if model.hand)
+
+    @property
+    def hand_detector(self) -> HandDetector | None:
+        """Finds the hands in colour images; None where the user does without."""
+        return default_hand_detector() if self.options.use_detector else None
 
     @property
     def object_names(self) -> tuple[str, ...]:

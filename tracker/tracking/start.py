@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from tracker.capture.annotations import Annotations
 from tracker.capture.camera import Camera
-from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.default_hand import default_hand
@@ -27,7 +26,9 @@ from tracker.tracking.objective import Objective
 from tracker.tracking.options import TrackOptions
 from tracker.tracking.quality import measure_quality
 from tracker.tracking.region import region_around, whole_image
+from tracker.tracking.seen_hands import place_where_seen
 from tracker.tracking.setup import TrackSetup, choose_camera
+from tracker.tracking.sighting import Sightings, find_sightings
 from tracker.tracking.start_annotated import start_hand, undistort_points, with_marks
 from tracker.tracking.start_automatic import find_hand
 from tracker.tracking.start_object import start_object
@@ -70,13 +71,16 @@ def start_tracking(
     hands = {name: given.get(name) or default_hand(name) for name in names}
     marks = _find_marks(sequence, annotations, frames[0], camera_id)
     placed: dict[str, tuple[ArticulatedModel, Array]] = {}
+    bare = TrackSetup((), (), camera_id, options, marks)
+    frame, camera = bare.read(sequence, frames[0])
+    sightings = find_sightings(bare.hand_detector, frame, camera, names, {})
     first = sorted(names, key=lambda hand: hand not in marks)  # those that somebody marked come first
     tell = plan_start(sequence, options, first).share(progress or (lambda stage, share: None))
     for name in first:
         tell(f"placing the {name} hand", 0.0)
         own = {name: marks[name]} if name in marks else {}
         setup = TrackSetup((name,), (hands[name],), camera_id, options, own)
-        placed[name] = _begin(sequence, setup, frames[0], list(placed.values()))
+        placed[name] = _begin(sightings, camera, setup, list(placed.values()))
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
         model = given.get(item.name) or load_model(sequence.object_path(item.name))
@@ -88,7 +92,7 @@ def start_tracking(
     is_lost = any(not np.any(placed[name][1]) for name in names)
     if options.calibrate:
         there = tuple(name for name in order if name not in names or np.any(placed[name][1]))
-        placed |= _calibrate(sequence, there, placed, TrackSetup((), (), camera_id, options, marks), frames, tell)
+        placed |= _calibrate(sequence, there, placed, bare, frames, tell)
     setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks)
     pose = np.concatenate([placed[name][1] for name in order])
     return setup, TrackState(frames[0], pose, pose, is_lost=is_lost)
@@ -105,14 +109,14 @@ def _find_marks(sequence: Sequence, annotations: Annotations | None, index: int,
 
 
 def _begin(
-    sequence: Sequence, setup: TrackSetup, index: int, others: list[tuple[ArticulatedModel, Array]]
+    sightings: Sightings, camera: Camera, setup: TrackSetup, others: list[tuple[ArticulatedModel, Array]]
 ) -> tuple[ArticulatedModel, Array]:
     """One hand of about the right size, and its pose in the first frame: zeros if nothing like a hand is there.
 
     `others` are hands that were placed before, with their poses; what they explain is not looked at.
     """
     base = setup.models[0]
-    merit, pose = _place(sequence, setup, index, others)
+    merit, pose = _place(sightings, camera, setup, others)
     if pose is None:
         return base, np.zeros(base.num_dofs)
     if base.shape is None or not setup.options.calibrate:
@@ -120,7 +124,7 @@ def _begin(
     model = base
     for shape in propose_shapes(base):
         sized = replace(setup, models=(with_shape(base, shape),))
-        other_merit, other_pose = _settle(sequence, sized, index, pose)
+        other_merit, other_pose = _settle(sightings, camera, sized, pose)
         if other_merit > merit + SIZE_GAIN:
             model, pose, merit = sized.models[0], other_pose, other_merit
     return model, pose
@@ -145,46 +149,32 @@ def _calibrate(
     return {name: (model, pose[where]) for name, model, where in parts}
 
 
-def _settle(sequence: Sequence, setup: TrackSetup, index: int, pose: Array) -> tuple[float, Array]:
-    """Merit and pose of a hand of another size that starts at a pose."""
-    frame, camera = setup.read(sequence, index)
+def _settle(sightings: Sightings, camera: Camera, setup: TrackSetup, pose: Array) -> tuple[float, Array]:
+    """Merit and pose of one hand, fitted from a pose to the depth and to the joints that were marked or seen."""
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
         return -1.0, pose
-    seen = observe(frame, camera, region, setup.preprocessing)
+    seen = observe(sightings.frame, camera, region, setup.preprocessing)
     options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
-    objective = with_marks(Objective(), setup.scene, setup.names, setup.marks, camera)
+    objective = sightings.add_to(Objective(), setup.scene, setup.names, camera)
+    objective = with_marks(objective, setup.scene, setup.names, setup.marks, camera)
     pose = fit_frame(setup.scene, seen, pose, pose, objective, options).pose
     return measure_quality(draw(setup.scene.pose_at(pose), seen), seen).merit, pose
 
 
 def _place(
-    sequence: Sequence,
-    setup: TrackSetup,
-    index: int,
-    others: list[tuple[ArticulatedModel, Array]],
+    sightings: Sightings, camera: Camera, setup: TrackSetup, others: list[tuple[ArticulatedModel, Array]]
 ) -> tuple[float, Array | None]:
-    """Merit and pose of one hand in one frame; no pose if nothing like a hand is there."""
-    frame, camera = setup.read(sequence, index)
-    near, far = depth_range(frame)
-    if setup.marks:
-        return _place_marked(frame, camera, setup, (near, far))
+    """Merit and pose of one hand in the first frame; no pose if nothing like a hand is there."""
+    frame, name = sightings.frame, setup.names[0]
+    depths = depth_range(frame)
+    if name in setup.marks:
+        whole = observe(frame, camera, whole_image(camera, *depths), setup.preprocessing)
+        return _settle(sightings, camera, setup, start_hand(setup.models[0], setup.marks[name], camera, whole))
+    if name in sightings.hands:
+        nowhere = np.zeros(setup.scene.num_dofs)
+        return _settle(sightings, camera, setup, place_where_seen(setup, nowhere, [0], sightings, camera))
     for other, pose in others:
         frame = leave_out(frame, camera, Scene((other,)), pose, [0])
-    found = find_hand(frame, camera, setup.models[0], setup.preprocessing, near, far)
+    found = find_hand(frame, camera, setup.models[0], setup.preprocessing, *depths)
     return (-1.0, None) if found is None else (found.quality.merit, found.pose)
-
-
-def _place_marked(frame: Frame, camera: Camera, setup: TrackSetup, depths: tuple[float, float]) -> tuple[float, Array]:
-    """Merit and pose from marked joints (21, 3), fitted to the depth with the joints kept where they were marked."""
-    whole = observe(frame, camera, whole_image(camera, *depths), setup.preprocessing)
-    pose = start_hand(setup.models[0], setup.marks[setup.names[0]], camera, whole)
-    scene = setup.scene
-    region = region_around(scene.pose_at(pose).vertices, camera)
-    if region is None:
-        return -1.0, pose
-    seen = observe(frame, camera, region, setup.preprocessing)
-    objective = with_marks(Objective(), scene, setup.names, setup.marks, camera)
-    options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
-    pose = fit_frame(scene, seen, pose, pose, objective, options).pose
-    return measure_quality(draw(scene.pose_at(pose), seen), seen).merit, pose

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -11,13 +11,13 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
-from tracker.model.scene import PosedScene, Scene
+from tracker.model.scene import Scene
 from tracker.observation import HAND, Observation
 from tracker.solver.damped_step import compute_damped_step
 from tracker.terms.joint_prior import AnatomicalLimits, Regularization
-from tracker.terms.point_line import PointToLine
+from tracker.terms.marked_joints import MarkedJoints, mark_joints
 from tracker.terms.point_point import PointToPoint
-from tracker.terms.residual import FrameContext, Residual
+from tracker.terms.residual import Residual
 from tracker.tracking.finger_search import curl_fingers
 from tracker.tracking.objective import Objective
 
@@ -25,45 +25,6 @@ Array = npt.NDArray[np.float64]
 
 FLESH = 0.009
 """A joint lies about this far behind the skin that is seen before it, m."""
-
-
-@dataclass(frozen=True)
-class MarkedJoints:
-    """Keep landmarks on the viewing rays of marked pixels: E = Σ |v × d − m|², as [T16] Eq. 8 measures it.
-
-    Attributes:
-        ids: (N,) vertices of the scene.
-        directions: (N, 3) unit, world.
-        moments: (N, 3) world, m.
-        weight: Of each joint; an annotator's pixel is about a millimetre.
-    """
-
-    ids: npt.NDArray[np.int32]
-    directions: Array
-    moments: Array
-    weight: float = 1.0
-
-    def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToLine:
-        """The same rays whatever the pose."""
-        corners = np.repeat(self.ids[:, None], 3, axis=1).astype(np.int32)
-        shares = np.tile([1.0, 0.0, 0.0], (len(self.ids), 1))
-        return PointToLine(corners, shares, self.directions, self.moments, np.full(len(self.ids), self.weight))
-
-
-def mark_joints(scene: Scene, model: int, points: Array, camera: Camera) -> MarkedJoints:
-    """Rays of the marked joints of one hand.
-
-    Args:
-        scene: The scene.
-        model: Which of its models is the hand.
-        points: (21, 3) x, y px and v (0 absent, 1 occluded, 2 visible).
-        camera: Undistorted camera.
-    """
-    marked = np.flatnonzero(points[:, 2] > 0)
-    rays = _rays(points[marked], camera)
-    origin = camera.T_world_camera[:3, 3]
-    ids = np.arange(scene.landmark_slices[model].start, scene.landmark_slices[model].stop, dtype=np.int32)[marked]
-    return MarkedJoints(ids, rays, np.cross(np.broadcast_to(origin, rays.shape), rays))
 
 
 def with_marks(objective: Objective, scene: Scene, names: tuple[str, ...], marks: dict, camera: Camera) -> Objective:
@@ -85,7 +46,13 @@ def undistort_points(points: Array, camera: Camera) -> Array:
 
 
 def start_hand(
-    model: ArticulatedModel, points: Array, camera: Camera, observation: Observation | None, iterations: int = 40
+    model: ArticulatedModel,
+    points: Array,
+    camera: Camera,
+    observation: Observation | None,
+    iterations: int = 40,
+    relative: Array | None = None,
+    bent: Array | None = None,
 ) -> Array:
     """(D,) pose of one hand whose joints lie on the marked pixels and, where visible, at the depth seen there.
 
@@ -94,7 +61,9 @@ def start_hand(
         points: (21, 3) x, y px of the image and v.
         camera: Undistorted camera.
         observation: Of the whole image or of a region with the marked joints; None where there is no depth.
-        iterations: Gauss-Newton steps from each of three bends.
+        iterations: Gauss-Newton steps from each bend.
+        relative: (21,) depth of the joints, m, each against the others, if it is known.
+        bent: (A,) angles to start from; three bends of all fingers are tried when left out.
     """
     scene = Scene((model,))
     marked = np.flatnonzero(points[:, 2] > 0)
@@ -102,11 +71,11 @@ def start_hand(
     if observation is None:
         lifted, seen = _lift_by_size(points, camera, scene.pose_at(scene.rest_pose()).landmarks(0))
     else:
-        lifted, seen = _lift(points, camera, observation)
+        lifted, seen = _lift(points, camera, observation, np.zeros(21) if relative is None else relative)
     best, best_cost = scene.rest_pose(), np.inf
-    for curl in (0.0, 0.35, 0.7):
+    for angles in [bent] if bent is not None else [curl_fingers(model, curl) for curl in (0.0, 0.35, 0.7)]:
         rest = scene.rest_pose()
-        rest[6:] = curl_fingers(model, curl)
+        rest[6:] = angles
         T = _align(scene.pose_at(rest).landmarks(0)[marked], lifted[marked])
         rest[:6] = se3.log(T)
         pose, cost = _descend(scene, rest, joints, lifted, seen, iterations)
@@ -135,17 +104,12 @@ def _descend(
     return pose, cost
 
 
-def _rays(points: Array, camera: Camera) -> Array:
-    """(N, 3) unit viewing rays of pixels, world."""
-    x, y = (points[:, 0] - camera.K[0, 2]) / camera.K[0, 0], (points[:, 1] - camera.K[1, 2]) / camera.K[1, 1]
-    rays = np.stack([x, y, np.ones_like(x)], axis=1) @ camera.T_world_camera[:3, :3].T
-    return rays / np.linalg.norm(rays, axis=1, keepdims=True)
-
-
-def _lift(points: Array, camera: Camera, observation: Observation) -> tuple[Array, npt.NDArray[np.bool_]]:
+def _lift(
+    points: Array, camera: Camera, observation: Observation, relative: Array
+) -> tuple[Array, npt.NDArray[np.bool_]]:
     """Marked joints in space: (21, 3) world, m, and (21,) whether the depth there was seen.
 
-    A joint without depth of its own gets the median depth of the others.
+    A joint without depth of its own gets the median depth of the others, and what is known of its own against theirs.
     """
     depths = np.zeros(21)
     seen = np.zeros(21, dtype=bool)
@@ -160,9 +124,13 @@ def _lift(points: Array, camera: Camera, observation: Observation) -> tuple[Arra
             seen[joint] = True
     everywhere = observation.depth[(observation.labels & HAND) > 0]
     fallback = (
-        float(np.median(depths[seen])) if seen.any() else float(np.median(everywhere)) if everywhere.size else 0.5
+        float(np.median(depths[seen] - relative[seen]))
+        if seen.any()
+        else float(np.median(everywhere))
+        if everywhere.size
+        else 0.5
     )
-    depths[~seen] = fallback
+    depths[~seen] = fallback + relative[~seen]
     return _at_depths(points, camera, depths), seen
 
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from tracker.geometry import se3
+from tracker.landmarks import DetectedHand
+from tracker.landmarks.detected_hand import ROW
 from tracker.model.scene import Scene
 from tracker.tracking.arrays_file import load_arrays, save_arrays
 
@@ -28,6 +31,7 @@ class TrackState:
         lost_hands: Which, indices of the scene's models; none though one is lost means all.
         rest: Frames until fingers, and until the whole image, are searched again after a search in vain, how long the
             last rest from searching the image was, and the last from searching fingers.
+        detected: Hands that the detector saw in the last frame, by name.
     """
 
     next_frame: int
@@ -37,6 +41,7 @@ class TrackState:
     is_lost: bool = False
     rest: tuple[int, int, int, int] = (0, 0, 0, 0)
     lost_hands: tuple[int, ...] = ()
+    detected: Mapping[str, DetectedHand] = field(default_factory=dict)
 
     def predict(self, scene: Scene) -> Array:
         """(D,) the pose if roots go on as they moved last; joint angles are kept.
@@ -66,6 +71,8 @@ class TrackState:
                 "is_lost": np.array(self.is_lost),
                 "rest": np.array(self.rest),
                 "lost_hands": np.array(self.lost_hands, dtype=np.int64),
+                "detected_names": np.array(list(self.detected), dtype=np.str_),
+                "detected": np.array([hand.to_row() for hand in self.detected.values()]).reshape(-1, ROW),
             },
         )
 
@@ -73,7 +80,7 @@ class TrackState:
     def load(cls, path: Path) -> TrackState:
         """Read what `save` wrote."""
         names = ("next_frame", "pose", "earlier_pose", "score", "is_lost", "rest")
-        arrays = load_arrays(path, names, optional=("lost_hands",))
+        arrays = load_arrays(path, names, optional=("lost_hands", "detected_names", "detected"))
         rest = [int(frames) for frames in arrays["rest"]]
         return cls(
             int(arrays["next_frame"]),
@@ -83,4 +90,8 @@ class TrackState:
             bool(arrays["is_lost"]),
             (rest[0], rest[1], rest[2], rest[3] if len(rest) > 3 else 0),
             tuple(int(hand) for hand in arrays.get("lost_hands", ())),
+            {
+                str(name): DetectedHand.from_row(row)
+                for name, row in zip(arrays.get("detected_names", ()), arrays.get("detected", ()), strict=True)
+            },
         )

@@ -18,6 +18,7 @@ from tracker.observation import Preprocessing, observe
 from tracker.physics import PhysicsWorld, find_down, find_support
 from tracker.rendering import render_depth
 from tracker.terms.collision import Collision
+from tracker.terms.marked_joints import mark_joints
 from tracker.terms.physics import Physics
 from tracker.terms.salient import Salient
 from tracker.tracking.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
@@ -26,7 +27,6 @@ from tracker.tracking.frame_fit import FitOptions, draw, fit_frame
 from tracker.tracking.object_quality import measure_object_quality
 from tracker.tracking.objective import Objective
 from tracker.tracking.region import region_around
-from tracker.tracking.start_annotated import mark_joints
 from tracker.tracking.start_automatic import Search, find_hand
 
 

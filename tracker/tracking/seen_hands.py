@@ -1,0 +1,118 @@
+"""Hands where the detector saw them: fits that start there, and how well a fit agrees with what was seen."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.observation import Observation, Region, observe
+from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look
+from tracker.tracking.frame_fit import FitOptions
+from tracker.tracking.objective import Objective
+from tracker.tracking.setup import TrackSetup
+from tracker.tracking.sighting import Sighting, Sightings
+from tracker.tracking.start_annotated import start_hand
+
+Array = npt.NDArray[np.float64]
+
+DESCENT = 14
+"""Steps from the detected joints to a pose, before the depth has its say."""
+
+AGREES = 0.4
+"""A fit whose joints are this near to the detected ones, `Sighting.measure`, needs no other start."""
+
+DISTANCE_LOSS = 0.5
+"""Worth lost by a hand none of whose joints is where it was detected."""
+
+MARGIN = 0.08
+"""Room around detected joints, m."""
+
+REACH = 0.20
+"""Depth before and behind the hand, m."""
+
+
+def measure_agreement(setup: TrackSetup, attempt: Attempt, sightings: Sightings, camera: Camera) -> dict[int, float]:
+    """`Sighting.measure` of each hand that was seen: 0 where all joints are where they were detected, at most 1."""
+    posed = setup.scene.pose_at(attempt.pose)
+    return {
+        index: sightings.hands[name].measure(camera.project(posed.landmarks(index)))
+        for index, name in enumerate(setup.names)
+        if name in sightings.hands
+    }
+
+
+def measure_worth(setup: TrackSetup, attempt: Attempt, sightings: Sightings, camera: Camera) -> float:
+    """To compare attempts by: what they explain of the depth image, less what is away from the detected joints."""
+    return attempt.worth - DISTANCE_LOSS * sum(measure_agreement(setup, attempt, sightings, camera).values())
+
+
+def try_where_seen(
+    setup: TrackSetup, camera: Camera, sightings: Sightings, best: Attempt, objective: Objective, options: FitOptions
+) -> Attempt:
+    """The attempt, or a better one with the joints that the detector saw, where the attempt leaves a doubt.
+
+    A hand that the depth image settles needs no joints from a detector: they are wrong by some pixels. Where there is a
+    doubt, the fit goes on with them from where it is, and if that does not help, from where they are.
+    """
+    doubtful = _find_doubtful(setup, best, sightings, camera)
+    if not doubtful:
+        return best
+    guided = sightings.add_to(objective, setup.scene, setup.names, camera)
+    for start in (best.pose, place_where_seen(setup, best.pose, doubtful, sightings, camera)):
+        seen = look(sightings.frame, camera, setup, start)
+        if seen is None:
+            continue
+        other = attempt_fit(setup, seen, start, start, guided, options)
+        worths = [measure_worth(setup, attempt, sightings, camera) for attempt in (best, other)]
+        best = other if worths[1] > worths[0] else best
+        if not _find_doubtful(setup, best, sightings, camera):
+            break
+    return best
+
+
+def _find_doubtful(setup: TrackSetup, attempt: Attempt, sightings: Sightings, camera: Camera) -> list[int]:
+    """Hands that were seen elsewhere, or that the depth image does not settle."""
+    apart = measure_agreement(setup, attempt, sightings, camera)
+    return [
+        index
+        for index, quality in attempt.qualities.items()
+        if index in apart and (apart[index] > AGREES or quality.is_lost or quality.misfit > UNSETTLED)
+    ]
+
+
+def place_where_seen(setup: TrackSetup, pose: Array, hands: list[int], sightings: Sightings, camera: Camera) -> Array:
+    """The pose (D,) with some hands (indices) where the detector saw them."""
+    pose = pose.copy()
+    for index in hands:
+        sighting = sightings.hands[setup.names[index]]
+        seen = _look_at(sighting, sightings.frame, camera, setup)
+        pose[setup.scene.pose_slices[index]] = start_hand(
+            setup.models[index], sighting.points, camera, seen, DESCENT, sighting.hand.points_3d[:, 2]
+        )
+    return pose
+
+
+def _look_at(sighting: Sighting, frame: Frame, camera: Camera, setup: TrackSetup) -> Observation | None:
+    """What is seen around detected joints; None where too little is."""
+    assert frame.depth is not None
+    points = sighting.hand.points
+    columns = np.clip(np.rint(points[:, 0]), 0, camera.width - 1).astype(int)
+    rows = np.clip(np.rint(points[:, 1]), 0, camera.height - 1).astype(int)
+    depths = frame.depth[rows, columns]
+    depths = depths[depths > 0]
+    if not depths.size:
+        return None
+    distance = float(np.median(depths))
+    room = MARGIN * camera.K[0, 0] / distance
+    left, top = np.maximum(points.min(axis=0) - room, 0).astype(int)
+    right, bottom = (np.minimum(points.max(axis=0) + room, (camera.width, camera.height)) + 1).astype(int)
+    right, bottom = min(int(right), camera.width), min(int(bottom), camera.height)
+    if right - left < 16 or bottom - top < 16:
+        return None
+    region = Region(
+        int(top), int(left), bottom - int(top), right - int(left), max(0.05, distance - REACH), distance + REACH
+    )
+    seen = observe(frame, camera, region, setup.preprocessing)
+    return seen if seen.hand_count >= MIN_PIXELS else None

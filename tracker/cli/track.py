@@ -19,7 +19,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "track",
         help="fit hands to every frame of a recording",
         description="Fit hands to every frame of a recording folder and write track.npz and summary.json. The start is "
-        "the annotation of the first frame where there is one, and is found in the depth image otherwise.",
+        "the annotation of the first frame where there is one, else what the hand detector sees in the colour image; "
+        "without colour the depth image is searched.",
     )
     parser.add_argument("recording", type=Path, metavar="PATH", help="a recording folder, with its sequence.json")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the track goes")
@@ -59,6 +60,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--camera", metavar="ID", help="the depth camera to track in (the first)")
     parser.add_argument("--no-calibration", action="store_true", help="keep the models' size and shape as they are")
+    parser.add_argument("--no-detector", action="store_true", help="do not look for hands in the colour images")
     parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
     parser.add_argument("--no-recovery", action="store_true", help="do not look for a lost hand")
     parser.add_argument(
@@ -87,6 +89,7 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         "last_frame": frames.stop - 1,
         "camera": args.camera,
         "calibrate": not args.no_calibration,
+        "use_detector": not args.no_detector,
         "use_skin": not args.no_skin,
         "recover": not args.no_recovery,
         "stop_below_mm": args.stop_below,

@@ -77,6 +77,14 @@ def test_a_preset_stands_for_its_options_and_what_is_given_besides_wins(recordin
         assert main([*arguments, *given, "--out", str(tmp_path / name)]) == 0
         options = json.loads((tmp_path / name / "setup.json").read_text())["options"]
         assert (options["terms"], options["iterations"]) == wanted
+        assert options["use_detector"]
+
+
+def test_a_run_can_do_without_the_hand_detector(recording, tmp_path):
+    hand = f"right={recording / 'models' / 'right.npz'}"
+    arguments = ["track", str(recording), "--hand", hand, "--frames", "0:2", "--no-calibration", "--no-detector"]
+    assert main([*arguments, "--out", str(tmp_path / "track")]) == 0
+    assert not json.loads((tmp_path / "track" / "setup.json").read_text())["options"]["use_detector"]
 
 
 @pytest.mark.slow

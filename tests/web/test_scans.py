@@ -227,6 +227,8 @@ def test_a_stroke_that_is_taken_back_while_the_crop_is_on_its_way_is_the_next_th
     save_button = page.get_by_role("button", name="Save")
     page.keyboard.press("Control+s")
     save_button.locator(".mantine-Loader-root").wait_for()
+    while not held:  # the page has sent it; word of it may come later
+        page.wait_for_timeout(20)
     if leaves:
         page.keyboard.press("ArrowLeft")
         page.get_by_role("heading", name=scans[1]["name"]).wait_for()

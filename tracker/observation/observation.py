@@ -141,7 +141,7 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, st
     K[:2] /= stride
     color = None if frame.color is None or not how.use_skin else frame.color[rows, columns]
     labels, is_skin = _label(inside, color, how.skin_threshold)
-    if frame.is_hand is not None:
+    if frame.is_hand is not None and how.use_skin:
         labels = np.where(inside, np.where(frame.is_hand[rows, columns], np.uint8(HAND), np.uint8(OTHER)), np.uint8(0))
     points = np.zeros((*depth.shape, 3), dtype=np.float32)
     normals = np.zeros_like(points)

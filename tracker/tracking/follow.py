@@ -109,7 +109,12 @@ def follow_frame(
     status = "ok"
     if falling or attempt is None:
         searched_at = perf_counter()
-        attempt, status, falling = _catch(sightings, camera, setup, tools, state, attempt, falling, recover)
+        is_detecting = _is_detecting(setup, sightings)
+        may_search = not is_detecting or (rest[1] == 0 and rest[2] > 0)
+        attempt, status, falling = _catch(sightings, camera, setup, tools, state, attempt, falling, recover, may_search)
+        if is_detecting and rest[1] == 0:  # the detector may see the hand again soon: wait, search, wait longer
+            longer = 0 if status == "recovered" else min(max(FIRST_IMAGE_REST, 2 * rest[2]), LAST_IMAGE_REST)
+            rest = (rest[0], longer, longer, rest[3])
         stages["searching the image"] = perf_counter() - searched_at
     elif recover and not _is_detecting(setup, sightings) and rest[1] == 0 and _is_doubtful(attempt.quality, state):
         searched_at = perf_counter()
@@ -150,7 +155,7 @@ def follow_frame(
 
 
 def _is_detecting(setup: TrackSetup, sightings: Sightings) -> bool:
-    """Whether the hand detector can see the frame; then nothing is searched in the depth image, which takes seconds."""
+    """Whether the hand detector can see the frame; then the depth image is searched seldom: it takes seconds."""
     return setup.hand_detector is not None and sightings.frame.color is not None
 
 
@@ -177,10 +182,11 @@ def _catch(
     attempt: Attempt | None,
     falling: tuple[int, ...],
     recover: bool,
+    may_search: bool,
 ) -> tuple[Attempt | None, str, tuple[int, ...]]:
     """Follow the rest of the scene without hands that are lost, and look for them: attempt, status, still lost.
 
-    Where the detector looks, the depth image is not searched: that takes seconds.
+    The whole depth image is searched for what the detector does not see, if that may take its seconds.
     """
     if attempt is not None and attempt.gone:  # a hand that is not there has pulled at the others
         attempt = _follow(sightings, camera, Part.without(setup, falling), tools, state)[0]
@@ -188,7 +194,7 @@ def _catch(
     if recover:
         pose = state.pose if attempt is None else attempt.pose
         found = find_seen(sightings, camera, setup, tools, pose, falling)
-        if found is None and not _is_detecting(setup, sightings):
+        if found is None and may_search:
             found = find_again(sightings, camera, setup, tools, pose, falling)
         if found is not None:
             return found[0], "lost" if found[1] else "recovered", found[1]

@@ -57,3 +57,14 @@ def test_where_no_depth_is_nothing_is_of_the_hand(scene):
 def test_joints_beside_the_image_find_nothing(scene, place):
     color, depth, joints, _, _ = scene
     assert not find_own_color(color, depth, joints + place, FOCAL).any()
+
+
+def test_in_an_image_without_colours_a_hand_is_what_lies_about_its_joints(scene):
+    color, depth, joints, truth, _ = scene
+    grey = np.repeat(color.mean(axis=2, keepdims=True).astype(np.uint8), 3, axis=2)
+    far_away = np.zeros_like(truth)
+    far_away[:40, :40] = True
+    depth[far_away] = 0.5
+    found = find_own_color(grey, depth, joints, FOCAL)
+    assert found[truth].mean() > 0.9
+    assert not found[far_away].any()

@@ -20,6 +20,7 @@ from tracker.tracking.objective import Objective
 from tracker.tracking.quality import Quality, measure_quality
 from tracker.tracking.region import region_around
 from tracker.tracking.setup import TrackSetup
+from tracker.tracking.sighting import Sightings
 
 Array = npt.NDArray[np.float64]
 
@@ -41,6 +42,9 @@ UNSETTLED = 1.2e-5
 
 MISFIT_LOSS = 1000.0
 """Worth lost per m² of misfit: a finger on another's place may agree with more pixels and leave its own."""
+
+DISTANCE_LOSS = 0.5
+"""Worth lost by a hand none of whose joints is where the detector saw it."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +85,11 @@ class Attempt:
 
     @property
     def worth(self) -> float:
-        """To compare attempts at the same scene by: the score of all hands, less for what is misfit."""
-        return sum(quality.score - MISFIT_LOSS * quality.misfit for quality in self.qualities.values())
+        """To compare attempts by: the score of all hands, less for misfit and for joints that were seen elsewhere."""
+        return sum(
+            quality.score - MISFIT_LOSS * quality.misfit - DISTANCE_LOSS * (quality.apart or 0.0)
+            for quality in self.qualities.values()
+        )
 
     @property
     def misfit(self) -> float:
@@ -91,7 +98,13 @@ class Attempt:
 
 
 def try_again(
-    setup: TrackSetup, seen: Observation, start: Array, objective: Objective, guided: Objective, options: FitOptions
+    setup: TrackSetup,
+    seen: Observation,
+    start: Array,
+    objective: Objective,
+    guided: Objective,
+    options: FitOptions,
+    sightings: Sightings | None = None,
 ) -> Attempt:
     """Fits with longer reach, stiff and then with fingers; if that leaves something, other places of fingers.
 
@@ -102,17 +115,18 @@ def try_again(
         objective: For the last fit.
         guided: The same with the frame's fingertips, for the fits with longer reach.
         options: Of the last fit.
+        sightings: What the hand detector saw, to judge by.
     """
     far = FitOptions(iterations=options.iterations, damping=1e-2, max_turn=0.25, max_shift=0.02)
     stiff = replace(_reaching(guided, FAR_REACH), regularization=Regularization(2.0))
     pose = fit_frame(setup.scene, seen, start, start, stiff, far).pose
     pose = fit_frame(setup.scene, seen, pose, pose, _reaching(guided, FAR_REACH), far).pose
-    best = attempt_fit(setup, seen, pose, pose, objective, options)
+    best = attempt_fit(setup, seen, pose, pose, objective, options, sightings)
     wide = _reaching(guided, WIDE_REACH)
 
     def try_from(pose: Array) -> Attempt:
         pose = fit_frame(setup.scene, seen, pose, pose, wide, far).pose
-        other = attempt_fit(setup, seen, pose, pose, objective, options)
+        other = attempt_fit(setup, seen, pose, pose, objective, options, sightings)
         return other if other.worth > best.worth else best
 
     for _ in range(FINGER_ROUNDS):
@@ -160,13 +174,27 @@ def _bend_fingers(setup: TrackSetup, seen: Observation, pose: Array) -> Array:
 
 
 def attempt_fit(
-    setup: TrackSetup, seen: Observation, start: Array, previous: Array, objective: Objective, options: FitOptions
+    setup: TrackSetup,
+    seen: Observation,
+    start: Array,
+    previous: Array,
+    objective: Objective,
+    options: FitOptions,
+    sightings: Sightings | None = None,
 ) -> Attempt:
+    """Fit a scene from a pose (D,), and judge each hand and each object; hands also by where the detector saw them."""
     fit = fit_frame(setup.scene, seen, start, previous, objective, options)
     view = draw(setup.scene.pose_at(fit.pose), seen)
     hands = [index for index, model in enumerate(setup.models) if model.hand]
     objects = {i: measure_object_quality(view, seen, i) for i in range(len(setup.models)) if i not in hands}
-    return Attempt(fit.pose, {index: measure_quality(view, seen, index) for index in hands}, fit, objects)
+    qualities = {index: measure_quality(view, seen, index) for index in hands}
+    if sightings is not None:
+        for index in hands:
+            if setup.names[index] in sightings.hands:
+                joints = sightings.camera.project(view.posed.landmarks(index))
+                apart, worst = sightings.hands[setup.names[index]].measure(joints)
+                qualities[index] = replace(qualities[index], apart=apart, worst_finger=worst)
+    return Attempt(fit.pose, qualities, fit, objects)
 
 
 def look(

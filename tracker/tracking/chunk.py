@@ -36,6 +36,7 @@ class TrackChunk:
         iteration_costs: (T, I, N) float32, cost of each term at every iteration of the fit that was kept, mm²; NaN
             after a frame's last iteration and where a term had no part. I is 0 in tracks made before it was recorded.
         object_status: (T, O) index into OBJECT_STATUSES. O is 0 in tracks made before it was recorded.
+        hand_status: (T, H) index into STATUSES. H is 0 in tracks made before it was recorded.
         object_score: (T, O) how well each object's pose explains what is in sight of it, 0 to 1.
     """
 
@@ -54,6 +55,7 @@ class TrackChunk:
     iteration_costs: npt.NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0, 0), dtype=np.float32))
     object_status: npt.NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), dtype=np.int8))
     object_score: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    hand_status: npt.NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), dtype=np.int8))
 
     @classmethod
     def of(cls, results: Several[FrameResult]) -> TrackChunk:
@@ -80,6 +82,9 @@ class TrackChunk:
             object_status=np.array(
                 [[OBJECT_STATUSES.index(one.status) for one in result.objects] for result in results], dtype=np.int8
             ).reshape(len(results), -1),
+            hand_status=np.array(
+                [[STATUSES.index(status) for status in result.hand_status] for result in results], dtype=np.int8
+            ).reshape(len(results), -1),
             object_score=np.array([[one.quality.score for one in result.objects] for result in results]).reshape(
                 len(results), -1
             ),
@@ -92,7 +97,7 @@ class TrackChunk:
         cost_names = sorted({str(name) for chunk in chunks for name in chunk.cost_names})
         stage_names = sorted({str(name) for chunk in chunks for name in chunk.stage_names})
         plain = ("frame", "pose", "status", "seconds", "depth_residual_mm", "silhouette_iou", "score", "iterations")
-        plain = (*plain, "object_status", "object_score")
+        plain = (*plain, "object_status", "object_score", "hand_status")
         return cls(
             **{name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in plain},
             cost_names=np.array(cost_names, dtype=np.str_),
@@ -109,13 +114,14 @@ class TrackChunk:
     @classmethod
     def load(cls, path: Path) -> TrackChunk:
         """Read what `save` wrote, or what it wrote before the costs of iterations and the objects were recorded."""
-        later = ("iteration_costs", "object_status", "object_score")
+        later = ("iteration_costs", "object_status", "object_score", "hand_status")
         arrays = load_arrays(path, tuple(f.name for f in fields(cls) if f.name not in later), optional=later)
         frames = len(arrays["frame"])
         nothing = {
             "iteration_costs": np.zeros((frames, 0, len(arrays["cost_names"])), dtype=np.float32),
             "object_status": np.zeros((frames, 0), dtype=np.int8),
             "object_score": np.zeros((frames, 0)),
+            "hand_status": np.zeros((frames, 0), dtype=np.int8),
         }
         return cls(**{**nothing, **arrays})
 

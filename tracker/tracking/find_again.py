@@ -32,44 +32,43 @@ MIN_AREA = 1e-3
 
 
 def find_seen(
-    sightings: Sightings, camera: Camera, setup: TrackSetup, tools: Tools, pose: Array, lost: tuple[int, ...]
+    sightings: Sightings, setup: TrackSetup, tools: Tools, pose: Array, lost: tuple[int, ...]
 ) -> tuple[Attempt, tuple[int, ...]] | None:
     """As `find_again`, of those lost hands that the detector sees, where it sees them."""
     there = [index for index in lost if setup.names[index] in sightings.hands]
     if not there:
         return None
-    start = place_where_seen(setup, pose, there, sightings, camera)
+    start = place_where_seen(setup, pose, there, sightings)
     still = tuple(index for index in lost if index not in there)
-    attempt = _settle(sightings, camera, setup, tools, start, still)
+    attempt = _settle(sightings, setup, tools, start, still)
     if attempt is None or set(attempt.gone) & set(there):
         return None
     return attempt, still
 
 
 def find_again(
-    sightings: Sightings, camera: Camera, setup: TrackSetup, tools: Tools, pose: Array, lost: tuple[int, ...]
+    sightings: Sightings, setup: TrackSetup, tools: Tools, pose: Array, lost: tuple[int, ...]
 ) -> tuple[Attempt, tuple[int, ...]] | None:
     """The scene with lost hands where they were found, and the hands still lost; None if none was found.
 
     Args:
         sightings: The frame, undistorted, and what the detector sees in it.
-        camera: Its camera.
         setup: Models and options.
         tools: Of the run.
         pose: (D,) of the other models; of the lost hands where they were last.
         lost: Indices of the hands.
     """
-    frame = sightings.frame
+    frame, camera = sightings.frame, sightings.camera
     if not _is_hand_left(frame, camera, setup, pose, lost):
         return None
-    near_by = _settle(sightings, camera, setup, tools, pose, ())
+    near_by = _settle(sightings, setup, tools, pose, ())
     if near_by is not None and not near_by.lost:
         return near_by, ()
     found_pose, missing = _search(frame, camera, setup, pose, lost)
     for still in dict.fromkeys((missing, *((*missing, index) for index in lost if index not in missing))):
         if len(still) == len(lost):
             break
-        attempt = _settle(sightings, camera, setup, tools, found_pose, still)
+        attempt = _settle(sightings, setup, tools, found_pose, still)
         if attempt is not None and not (attempt.gone if still else attempt.lost):
             return attempt, still
     return None
@@ -111,20 +110,20 @@ def _search(
 
 
 def _settle(
-    sightings: Sightings, camera: Camera, setup: TrackSetup, tools: Tools, pose: Array, missing: tuple[int, ...]
+    sightings: Sightings, setup: TrackSetup, tools: Tools, pose: Array, missing: tuple[int, ...]
 ) -> Attempt | None:
     """Fit the scene without the missing hands from a pose (D,), and once more where that leaves something."""
     part = Part.without(setup, missing)
     start = part.take(pose)
-    seen = look(sightings.frame, camera, part.setup, start)
+    seen = look(sightings.frame, sightings.camera, part.setup, start)
     if seen is None:
         return None
     options = FitOptions(iterations=setup.options.iterations)
-    objective = sightings.add_to(tools.objective, part.setup.scene, part.setup.names, camera)
-    attempt = attempt_fit(part.setup, seen, start, start, objective, options)
+    objective = sightings.add_to(tools.objective, part.setup.scene, part.setup.names)
+    attempt = attempt_fit(part.setup, seen, start, start, objective, options, sightings)
     if attempt.misfit > UNSETTLED and not sightings.hands:
         guided = tools.with_fingertips(seen)
         for again in (start, attempt.pose):
-            other = try_again(part.setup, seen, again, tools.objective, guided, options)
+            other = try_again(part.setup, seen, again, tools.objective, guided, options, sightings)
             attempt = other if other.worth > attempt.worth else attempt
     return part.widen(attempt, pose)

@@ -26,6 +26,7 @@ class FrameResult:
         costs: One per iteration, cost of each term, mm².
         stages: Seconds by stage, "reading" among them though not in `seconds`.
         objects: What became of each object, in the order of `TrackSetup.object_names`.
+        hand_status: One of STATUSES for each hand, in the order of `TrackSetup.hand_names`; `status` is the worst.
     """
 
     frame: int
@@ -36,3 +37,4 @@ class FrameResult:
     costs: tuple[dict[str, float], ...]
     stages: dict[str, float]
     objects: tuple[WatchedObject, ...] = ()
+    hand_status: tuple[str, ...] = ()

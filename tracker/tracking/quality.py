@@ -27,6 +27,9 @@ RIM = 0.0023
 """Misfit this near to the border of an area that does not agree is left out, m: noise and a model slightly too thin or
 too thick make rims, a finger that is elsewhere makes an area."""
 
+ELSEWHERE = 0.6
+"""A finger whose joints are this far from where the hand detector saw them, `Sighting.measure`, is elsewhere."""
+
 MISFIT = 1.1e-4
 """More than this area, m², where drawn and seen disagree means that some finger is elsewhere."""
 
@@ -56,6 +59,9 @@ class Quality:
             shadow that none covers, and of drawn pixels before the wrist where something farther away, or free space,
             is seen.
         area: Of the drawn pixels whose depth agrees with a hand pixel, m², across the viewing rays.
+        apart: Mean distance of the joints from where the hand detector saw them, 0 to 1 (`Sighting.measure`); None
+            where it did not see the hand.
+        worst_finger: The same of the finger that is farthest off.
     """
 
     depth_residual: float
@@ -66,6 +72,8 @@ class Quality:
     coverage: float
     misfit: float
     area: float
+    apart: float | None = None
+    worst_finger: float | None = None
 
     @property
     def merit(self) -> float:
@@ -84,8 +92,14 @@ class Quality:
 
     @property
     def is_lost(self) -> bool:
-        """Whether no one should believe this pose."""
-        return self.is_gone or self.misfit > MISFIT
+        """Whether no one should believe this pose.
+
+        A real hand of another shape leaves some misfit with every finger in its place; where the detector saw the hand,
+        it says whether one is not.
+        """
+        if self.is_gone or self.worst_finger is None:
+            return self.is_gone or self.misfit > MISFIT
+        return self.misfit > MISFIT and self.worst_finger > ELSEWHERE
 
 
 def measure_quality(view: View, observation: Observation, model: int = 0) -> Quality:

@@ -21,10 +21,7 @@ DESCENT = 14
 """Steps from the detected joints to a pose, before the depth has its say."""
 
 AGREES = 0.4
-"""A fit whose joints are this near to the detected ones, `Sighting.measure`, needs no other start."""
-
-DISTANCE_LOSS = 0.5
-"""Worth lost by a hand none of whose joints is where it was detected."""
+"""A fit whose joints are this near to the detected ones, `Quality.apart`, needs no other start."""
 
 MARGIN = 0.08
 """Room around detected joints, m."""
@@ -33,63 +30,46 @@ REACH = 0.20
 """Depth before and behind the hand, m."""
 
 
-def measure_agreement(setup: TrackSetup, attempt: Attempt, sightings: Sightings, camera: Camera) -> dict[int, float]:
-    """`Sighting.measure` of each hand that was seen: 0 where all joints are where they were detected, at most 1."""
-    posed = setup.scene.pose_at(attempt.pose)
-    return {
-        index: sightings.hands[name].measure(camera.project(posed.landmarks(index)))
-        for index, name in enumerate(setup.names)
-        if name in sightings.hands
-    }
-
-
-def measure_worth(setup: TrackSetup, attempt: Attempt, sightings: Sightings, camera: Camera) -> float:
-    """To compare attempts by: what they explain of the depth image, less what is away from the detected joints."""
-    return attempt.worth - DISTANCE_LOSS * sum(measure_agreement(setup, attempt, sightings, camera).values())
-
-
 def try_where_seen(
-    setup: TrackSetup, camera: Camera, sightings: Sightings, best: Attempt, objective: Objective, options: FitOptions
+    setup: TrackSetup, sightings: Sightings, best: Attempt, objective: Objective, options: FitOptions
 ) -> Attempt:
     """The attempt, or a better one with the joints that the detector saw, where the attempt leaves a doubt.
 
     A hand that the depth image settles needs no joints from a detector: they are wrong by some pixels. Where there is a
     doubt, the fit goes on with them from where it is, and if that does not help, from where they are.
     """
-    doubtful = _find_doubtful(setup, best, sightings, camera)
+    doubtful = _find_doubtful(best)
     if not doubtful:
         return best
-    guided = sightings.add_to(objective, setup.scene, setup.names, camera)
-    for start in (best.pose, place_where_seen(setup, best.pose, doubtful, sightings, camera)):
-        seen = look(sightings.frame, camera, setup, start)
+    guided = sightings.add_to(objective, setup.scene, setup.names)
+    for start in (best.pose, place_where_seen(setup, best.pose, doubtful, sightings)):
+        seen = look(sightings.frame, sightings.camera, setup, start)
         if seen is None:
             continue
-        other = attempt_fit(setup, seen, start, start, guided, options)
-        worths = [measure_worth(setup, attempt, sightings, camera) for attempt in (best, other)]
-        best = other if worths[1] > worths[0] else best
-        if not _find_doubtful(setup, best, sightings, camera):
+        other = attempt_fit(setup, seen, start, start, guided, options, sightings)
+        best = other if other.worth > best.worth else best
+        if not _find_doubtful(best):
             break
     return best
 
 
-def _find_doubtful(setup: TrackSetup, attempt: Attempt, sightings: Sightings, camera: Camera) -> list[int]:
+def _find_doubtful(attempt: Attempt) -> list[int]:
     """Hands that were seen elsewhere, or that the depth image does not settle."""
-    apart = measure_agreement(setup, attempt, sightings, camera)
     return [
         index
         for index, quality in attempt.qualities.items()
-        if index in apart and (apart[index] > AGREES or quality.is_lost or quality.misfit > UNSETTLED)
+        if quality.apart is not None and (quality.apart > AGREES or quality.is_lost or quality.misfit > UNSETTLED)
     ]
 
 
-def place_where_seen(setup: TrackSetup, pose: Array, hands: list[int], sightings: Sightings, camera: Camera) -> Array:
+def place_where_seen(setup: TrackSetup, pose: Array, hands: list[int], sightings: Sightings) -> Array:
     """The pose (D,) with some hands (indices) where the detector saw them."""
     pose = pose.copy()
     for index in hands:
         sighting = sightings.hands[setup.names[index]]
-        seen = _look_at(sighting, sightings.frame, camera, setup)
+        seen = _look_at(sighting, sightings.frame, sightings.camera, setup)
         pose[setup.scene.pose_slices[index]] = start_hand(
-            setup.models[index], sighting.points, camera, seen, DESCENT, sighting.hand.points_3d[:, 2]
+            setup.models[index], sighting.points, sightings.camera, seen, DESCENT, sighting.hand.points_3d[:, 2]
         )
     return pose
 

@@ -53,14 +53,18 @@ class Sighting:
         """(21, 3) px and v: 2 where the hand is seen at the joint, 1 elsewhere."""
         return np.column_stack([self.hand.points, np.where(self.beliefs >= SEEN, 2.0, 1.0)])
 
-    def measure(self, joints: Array) -> float:
-        """Mean distance of joints (21, 2) px from these, in quarters of the palm's length.
+    def measure(self, joints: Array) -> tuple[float, float]:
+        """Mean distance of joints (21, 2) px from these, in quarters of the palm's length: of all, of the worst finger.
 
-        Each joint counts as it is believed, and at most 1.
+        Each joint counts as it is believed, and at most 1. A finger of which less than two joints are believed is none
+        to judge by.
         """
         apart = np.linalg.norm(joints - self.hand.points, axis=1)
         cut = 0.25 * float(np.linalg.norm(self.hand.points[9] - self.hand.points[0]))
-        return float(np.sum(self.beliefs * np.minimum(apart / max(cut, 1e-9), 1.0)) / np.sum(self.beliefs))
+        apart = self.beliefs * np.minimum(apart / max(cut, 1e-9), 1.0)
+        fingers, beliefs = apart[1:].reshape(5, 4).sum(axis=1), self.beliefs[1:].reshape(5, 4).sum(axis=1)
+        worst = np.max(fingers[beliefs >= 2.0] / beliefs[beliefs >= 2.0], initial=0.0)
+        return float(apart.sum() / self.beliefs.sum()), float(worst)
 
 
 @dataclass(frozen=True)
@@ -69,18 +73,22 @@ class Sightings:
 
     Attributes:
         frame: The frame, with the pixels that have the hands' own colour if every hand was seen.
+        camera: Its camera, undistorted.
         hands: By the name of the hand; those that were not seen are missing.
+        is_looked_at: Whether a detector looked at the frame; without colour or without a detector none does.
     """
 
     frame: Frame
+    camera: Camera
     hands: Mapping[str, Sighting]
+    is_looked_at: bool = True
 
     @property
     def is_covered(self) -> bool:
         """Whether something stands before a hand."""
         return any(np.count_nonzero(hand.beliefs == COVERED) >= FEW for hand in self.hands.values())
 
-    def add_to(self, objective: Objective, scene: Scene, names: tuple[str, ...], camera: Camera) -> Objective:
+    def add_to(self, objective: Objective, scene: Scene, names: tuple[str, ...]) -> Objective:
         """The objective with the joints that were seen, the S of [T16] Eq. 5.
 
         Differs from the paper: joints in place of fingertips, from a network in place of a forest, on viewing rays in
@@ -90,7 +98,7 @@ class Sightings:
         for model, name in enumerate(names):
             if name in self.hands:
                 sighting = self.hands[name]
-                joints = mark_joints(scene, model, sighting.points, camera, sighting.beliefs, REACH)
+                joints = mark_joints(scene, model, sighting.points, self.camera, sighting.beliefs, REACH)
                 terms[f"joints_{name}"] = replace(joints, weight=WEIGHT)
         return replace(objective, terms=terms)
 
@@ -113,7 +121,7 @@ def find_sightings(
     """
     depth = frame.depth
     if detector is None or frame.color is None or depth is None or not names:
-        return Sightings(frame, {})
+        return Sightings(frame, camera, {}, is_looked_at=False)
     known = [name for name in names if name in before]
     found = detector.find(frame.color, len(names), [before[name] for name in known])
     fitting = [hand for hand in found if _has_size_of(hand, depth, camera)]
@@ -122,13 +130,14 @@ def find_sightings(
         fitting = [hand for hand in found if _has_size_of(hand, depth, camera)]
     hands = _name(fitting, names)
     if not hands:
-        return Sightings(frame, {})
+        return Sightings(frame, camera, {})
     focal = float(camera.K[0, 0])
     masks = [find_own_color(frame.color, depth, hand.points, focal) for hand in hands.values()]
     is_hand = np.logical_or.reduce(masks)
     if len(hands) == len(names):  # of a hand that was not seen nobody knows the pixels
         frame = replace(frame, is_hand=is_hand)
-    return Sightings(frame, {name: Sighting(hand, _believe(hand, depth, is_hand)) for name, hand in hands.items()})
+    sightings = {name: Sighting(hand, _believe(hand, depth, is_hand)) for name, hand in hands.items()}
+    return Sightings(frame, camera, sightings)
 
 
 def _has_size_of(hand: DetectedHand, depth: npt.NDArray[np.float32], camera: Camera) -> bool:

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.annotations import Annotations
-from tracker.capture.camera import Camera
 from tracker.capture.sequence import Sequence
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.default_hand import default_hand
@@ -80,7 +79,7 @@ def start_tracking(
         tell(f"placing the {name} hand", 0.0)
         own = {name: marks[name]} if name in marks else {}
         setup = TrackSetup((name,), (hands[name],), camera_id, options, own)
-        placed[name] = _begin(sightings, camera, setup, list(placed.values()))
+        placed[name] = _begin(sightings, setup, list(placed.values()))
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
         model = given.get(item.name) or load_model(sequence.object_path(item.name))
@@ -109,14 +108,14 @@ def _find_marks(sequence: Sequence, annotations: Annotations | None, index: int,
 
 
 def _begin(
-    sightings: Sightings, camera: Camera, setup: TrackSetup, others: list[tuple[ArticulatedModel, Array]]
+    sightings: Sightings, setup: TrackSetup, others: list[tuple[ArticulatedModel, Array]]
 ) -> tuple[ArticulatedModel, Array]:
     """One hand of about the right size, and its pose in the first frame: zeros if nothing like a hand is there.
 
     `others` are hands that were placed before, with their poses; what they explain is not looked at.
     """
     base = setup.models[0]
-    merit, pose = _place(sightings, camera, setup, others)
+    merit, pose = _place(sightings, setup, others)
     if pose is None:
         return base, np.zeros(base.num_dofs)
     if base.shape is None or not setup.options.calibrate:
@@ -124,7 +123,7 @@ def _begin(
     model = base
     for shape in propose_shapes(base):
         sized = replace(setup, models=(with_shape(base, shape),))
-        other_merit, other_pose = _settle(sightings, camera, sized, pose)
+        other_merit, other_pose = _settle(sightings, sized, pose)
         if other_merit > merit + SIZE_GAIN:
             model, pose, merit = sized.models[0], other_pose, other_merit
     return model, pose
@@ -149,31 +148,32 @@ def _calibrate(
     return {name: (model, pose[where]) for name, model, where in parts}
 
 
-def _settle(sightings: Sightings, camera: Camera, setup: TrackSetup, pose: Array) -> tuple[float, Array]:
+def _settle(sightings: Sightings, setup: TrackSetup, pose: Array) -> tuple[float, Array]:
     """Merit and pose of one hand, fitted from a pose to the depth and to the joints that were marked or seen."""
+    camera = sightings.camera
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
         return -1.0, pose
     seen = observe(sightings.frame, camera, region, setup.preprocessing)
     options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
-    objective = sightings.add_to(Objective(), setup.scene, setup.names, camera)
+    objective = sightings.add_to(Objective(), setup.scene, setup.names)
     objective = with_marks(objective, setup.scene, setup.names, setup.marks, camera)
     pose = fit_frame(setup.scene, seen, pose, pose, objective, options).pose
     return measure_quality(draw(setup.scene.pose_at(pose), seen), seen).merit, pose
 
 
 def _place(
-    sightings: Sightings, camera: Camera, setup: TrackSetup, others: list[tuple[ArticulatedModel, Array]]
+    sightings: Sightings, setup: TrackSetup, others: list[tuple[ArticulatedModel, Array]]
 ) -> tuple[float, Array | None]:
     """Merit and pose of one hand in the first frame; no pose if nothing like a hand is there."""
-    frame, name = sightings.frame, setup.names[0]
+    frame, camera, name = sightings.frame, sightings.camera, setup.names[0]
     depths = depth_range(frame)
     if name in setup.marks:
         whole = observe(frame, camera, whole_image(camera, *depths), setup.preprocessing)
-        return _settle(sightings, camera, setup, start_hand(setup.models[0], setup.marks[name], camera, whole))
+        return _settle(sightings, setup, start_hand(setup.models[0], setup.marks[name], camera, whole))
     if name in sightings.hands:
         nowhere = np.zeros(setup.scene.num_dofs)
-        return _settle(sightings, camera, setup, place_where_seen(setup, nowhere, [0], sightings, camera))
+        return _settle(sightings, setup, place_where_seen(setup, nowhere, [0], sightings))
     for other, pose in others:
         frame = leave_out(frame, camera, Scene((other,)), pose, [0])
     found = find_hand(frame, camera, setup.models[0], setup.preprocessing, *depths)

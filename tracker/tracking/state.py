@@ -14,6 +14,8 @@ from tracker.landmarks import DetectedHand
 from tracker.landmarks.detected_hand import ROW
 from tracker.model.scene import Scene
 from tracker.tracking.arrays_file import load_arrays, save_arrays
+from tracker.tracking.patience import Patience
+from tracker.tracking.setup import TrackSetup
 
 Array = npt.NDArray[np.float64]
 
@@ -29,8 +31,8 @@ class TrackState:
         score: Running quality score of good frames.
         is_lost: Whether a hand was nowhere in the last frame.
         lost_hands: Which, indices of the scene's models; none though one is lost means all.
-        rest: Frames until fingers, and until the whole image, are searched again after a search in vain, how long the
-            last rest from searching the image was, and the last from searching fingers.
+        fingers: When fingers are searched again after a search in vain.
+        image: When the whole image is.
         detected: Hands that the detector saw in the last frame, by name.
     """
 
@@ -39,9 +41,16 @@ class TrackState:
     earlier_pose: Array
     score: float = 0.0
     is_lost: bool = False
-    rest: tuple[int, int, int, int] = (0, 0, 0, 0)
+    fingers: Patience = field(default_factory=Patience)
+    image: Patience = field(default_factory=Patience)
     lost_hands: tuple[int, ...] = ()
     detected: Mapping[str, DetectedHand] = field(default_factory=dict)
+
+    def gone_hands(self, setup: TrackSetup) -> tuple[int, ...]:
+        """Indices of the hands that were nowhere in the last frame."""
+        if not self.is_lost:
+            return ()
+        return self.lost_hands or tuple(index for index, model in enumerate(setup.models) if model.hand is not None)
 
     def predict(self, scene: Scene) -> Array:
         """(D,) the pose if roots go on as they moved last; joint angles are kept.
@@ -69,7 +78,7 @@ class TrackState:
                 "earlier_pose": self.earlier_pose,
                 "score": np.array(self.score),
                 "is_lost": np.array(self.is_lost),
-                "rest": np.array(self.rest),
+                "rest": np.array([self.fingers.wait, self.image.wait, self.image.last, self.fingers.last]),
                 "lost_hands": np.array(self.lost_hands, dtype=np.int64),
                 "detected_names": np.array(list(self.detected), dtype=np.str_),
                 "detected": np.array([hand.to_row() for hand in self.detected.values()]).reshape(-1, ROW),
@@ -88,7 +97,8 @@ class TrackState:
             arrays["earlier_pose"],
             float(arrays["score"]),
             bool(arrays["is_lost"]),
-            (rest[0], rest[1], rest[2], rest[3] if len(rest) > 3 else 0),
+            Patience(rest[0], rest[3] if len(rest) > 3 else 0),
+            Patience(rest[1], rest[2]),
             tuple(int(hand) for hand in arrays.get("lost_hands", ())),
             {
                 str(name): DetectedHand.from_row(row)

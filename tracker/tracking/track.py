@@ -67,6 +67,11 @@ class Track:
         return np.array(STATUSES, dtype=np.str_)[self.chunk.status]
 
     @property
+    def hand_status(self) -> npt.NDArray[np.str_]:
+        """(T, H) the same of each hand; H is 0 in tracks made before it was recorded."""
+        return np.array(STATUSES, dtype=np.str_)[self.chunk.hand_status]
+
+    @property
     def object_status(self) -> npt.NDArray[np.str_]:
         """(T, O) of `ok`, `lost`, `recovered`, `hidden`; O is 0 in tracks made before it was recorded."""
         return np.array(OBJECT_STATUSES, dtype=np.str_)[self.chunk.object_status]
@@ -109,6 +114,8 @@ class Track:
             "object_status": self.object_status,
             "pose": self.pose,
             "status": self.status,
+            "hand_names": np.array(self.setup.hand_names, dtype=np.str_),
+            "hand_status": self.hand_status,
             "seconds": self.seconds,
         }
 

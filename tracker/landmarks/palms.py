@@ -34,10 +34,10 @@ def load_palm_network(threads: int = 1) -> Run:
     return load_network("palms", ("boxes", "scores"), threads)
 
 
-def find_palms(network: Run, image: npt.NDArray[np.uint8]) -> list[Square]:
-    """Squares around the hands of an image (H, W, 3), the most certain first."""
+def find_palms(network: Run, image: npt.NDArray[np.uint8], turn: int = 0) -> list[Square]:
+    """Squares around the hands of an image (H, W, 3), seen turned by so many quarters; the most certain first."""
     height, width = image.shape[:2]
-    whole = Square(np.array([0.5 * (width - 1), 0.5 * (height - 1)]), float(max(height, width)))
+    whole = Square(np.array([0.5 * (width - 1), 0.5 * (height - 1)]), float(max(height, width)), 0.5 * np.pi * turn)
     told = network(whole.cut(image, PIXELS))
     scores = told["scores"].reshape(-1).astype(np.float64)
     likely = np.flatnonzero(scores > np.log(MIN_SCORE / (1.0 - MIN_SCORE)))
@@ -60,10 +60,10 @@ def _square_of(whole: Square, box: Array, points: Array) -> Square:
     scale = whole.size / PIXELS
     wrist, middle = whole.to_image(points[[WRIST, MIDDLE]] - 0.5, PIXELS)
     angle = angle_of(wrist, middle)
-    low, high = whole.to_image(box.reshape(2, 2) - 0.5, PIXELS)
-    height = scale * (box[3] - box[1])
+    width, height = scale * (box[2:] - box[:2])
     up = np.array([np.sin(angle), -np.cos(angle)])
-    return Square(0.5 * (low + high) + SHIFT * height * up, SCALE * float(np.max(high - low)), angle)
+    middle_of_box = whole.to_image(0.5 * (box[:2] + box[2:])[None] - 0.5, PIXELS)[0]
+    return Square(middle_of_box + SHIFT * height * up, SCALE * float(max(width, height)), angle)
 
 
 def _gather(corners: Array) -> list[npt.NDArray[np.int64]]:

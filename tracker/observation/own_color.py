@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from tracker.capture.grey import is_grey
 from tracker.observation.skin import compute_skin_log_ratio
 
 Array = npt.NDArray[np.float64]
@@ -32,9 +33,6 @@ LIGHTS, TINTS, TINT_STEP = 6, 32, 2
 
 HOLE = 0.66
 """A pixel with this share of the hand's around it is of the hand too: nails, shadows, lights."""
-
-GREY = 3.0
-"""Mean difference of the channels below which an image tells no colours, of 255."""
 
 RARE = 2e-4
 """Share of the pixels below which a colour tells little."""
@@ -65,12 +63,6 @@ def find_own_color(color: npt.NDArray[np.uint8], depth: npt.NDArray[np.float32],
     place, seen = _place(joints - low, zone.shape, pixels), np.ascontiguousarray(color[window])
     mask[window] = zone & (place > FAR) if is_grey(seen) else _separate(seen, zone, place)
     return mask
-
-
-def is_grey(color: npt.NDArray[np.uint8]) -> bool:
-    """Whether an image (H, W, 3) tells no colours, as an infrared one."""
-    few = color[::4, ::4].astype(np.int16)
-    return bool(np.mean(few.max(axis=2) - few.min(axis=2)) < GREY)
 
 
 def _distance_of(depth: npt.NDArray[np.float32], joints: Array) -> float | None:

@@ -18,7 +18,7 @@ from tracker.tracking.frame_fit import Fit, FitOptions, draw, fit_frame
 from tracker.tracking.object_quality import ObjectQuality, measure_object_quality
 from tracker.tracking.objective import Objective
 from tracker.tracking.quality import Quality, measure_quality
-from tracker.tracking.region import region_around
+from tracker.tracking.region import choose_stride, region_around
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.sighting import Sightings
 
@@ -204,5 +204,5 @@ def look(
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
         return None
-    seen = observe(frame, camera, region, setup.preprocessing)
+    seen = observe(frame, camera, region, setup.preprocessing, choose_stride(region, camera))
     return seen if seen.hand_count >= min_pixels else None

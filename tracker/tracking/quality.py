@@ -27,10 +27,13 @@ RIM = 0.0023
 """Misfit this near to the border of an area that does not agree is left out, m: noise and a model slightly too thin or
 too thick make rims, a finger that is elsewhere makes an area."""
 
+BROAD_RIM = 0.0045
+"""The same for the verdict: real sensors make such fringes."""
+
 ELSEWHERE = 0.6
 """A finger whose joints are this far from where the hand detector saw them, `Sighting.measure`, is elsewhere."""
 
-MISFIT = 1.1e-4
+BROAD_MISFIT = 6e-5
 """More than this area, m², where drawn and seen disagree means that some finger is elsewhere."""
 
 SHOWN = 1.2e-3
@@ -58,6 +61,8 @@ class Quality:
         misfit: Area, m², without its rim, of hand pixels before the wrist that no model explains, of skin in a depth
             shadow that none covers, and of drawn pixels before the wrist where something farther away, or free space,
             is seen.
+        broad_misfit: The same without a wider rim: half of a finger's width is left of a finger that is elsewhere, and
+            nothing of the fringe around a hand that is thinner, or is seen fatter, than its model.
         area: Of the drawn pixels whose depth agrees with a hand pixel, m², across the viewing rays.
         apart: Mean distance of the joints from where the hand detector saw them, 0 to 1 (`Sighting.measure`); None
             where it did not see the hand.
@@ -71,6 +76,7 @@ class Quality:
     score: float
     coverage: float
     misfit: float
+    broad_misfit: float
     area: float
     apart: float | None = None
     worst_finger: float | None = None
@@ -97,9 +103,8 @@ class Quality:
         A real hand of another shape leaves some misfit with every finger in its place; where the detector saw the hand,
         it says whether one is not.
         """
-        if self.is_gone or self.worst_finger is None:
-            return self.is_gone or self.misfit > MISFIT
-        return self.misfit > MISFIT and self.worst_finger > ELSEWHERE
+        is_elsewhere = self.worst_finger is None or self.worst_finger > ELSEWHERE
+        return self.is_gone or (self.broad_misfit > BROAD_MISFIT and is_elsewhere)
 
 
 def measure_quality(view: View, observation: Observation, model: int = 0) -> Quality:
@@ -108,7 +113,7 @@ def measure_quality(view: View, observation: Observation, model: int = 0) -> Qua
     wrist = joints[HAND_JOINTS.index("wrist")]
     middle = joints[HAND_JOINTS.index("middle_mcp")]
     forward = (middle - wrist) / max(float(np.linalg.norm(middle - wrist)), 1e-9)
-    misfit = _measure_misfit(
+    misfit, broad = _measure_misfit(
         view.inverse_depth,
         view.face,
         view.posed.scene.face_models == model,
@@ -142,6 +147,7 @@ def measure_quality(view: View, observation: Observation, model: int = 0) -> Qua
         silhouette_iou=both / union,
         coverage=seen_alike / max(reachable, 1.0),
         misfit=misfit,
+        broad_misfit=broad,
         area=float(area) / (observation.K[0, 0] * observation.K[1, 1]),
         score=1.0 - (float(np.minimum(residuals / CUT, 1.0).sum()) + union - both) / union,
     )
@@ -215,7 +221,7 @@ def _measure_misfit(inverse_depth, face, is_model, depth, labels, nearest, point
                     before += forward[i] * (T[i, 0] * x + T[i, 1] * y + T[i, 2] * z + T[i, 3] - wrist[i])
                 if before > 0.0:
                     kind[row, column] |= 2
-    area = 0.0
+    area, broad = 0.0, 0.0
     for row in range(height):
         for column in range(width):
             if kind[row, column] == 0:
@@ -225,10 +231,11 @@ def _measure_misfit(inverse_depth, face, is_model, depth, labels, nearest, point
                 z = depth[row, column]
             elif face[row, column] >= 0:
                 z = 1.0 / inverse_depth[row, column]
-            rim = max(1, round(RIM * f / z))
-            if _is_inner(kind, row, column, rim):
+            if _is_inner(kind, row, column, max(1, round(RIM * f / z))):
                 area += z * z / (K[0, 0] * K[1, 1])
-    return area
+                if _is_inner(kind, row, column, max(1, round(BROAD_RIM * f / z))):
+                    broad += z * z / (K[0, 0] * K[1, 1])
+    return area, broad
 
 
 @njit(cache=True, nogil=True)

@@ -12,6 +12,9 @@ from tracker.observation import Region
 MARGIN = 0.040
 """Room left around the scene in the image, m at its depth."""
 
+FINENESS = 0.0012
+"""Pixels need not be closer on the hand than this, m; on the recordings of [T16] they are 1.5 mm apart."""
+
 DEPTH_MARGIN = 0.060
 """Room left before and behind the scene, m."""
 
@@ -53,6 +56,11 @@ def is_outgrown(region: Region, needed: Region, camera: Camera) -> bool:
         needed.column + needed.width - region.column - region.width,
     )
     return max(missing) > room or max(region.near - needed.near, needed.far - region.far) > 0.5 * DEPTH_MARGIN
+
+
+def choose_stride(region: Region, camera: Camera) -> int:
+    """Of how many pixels one is enough to see a hand by in a region: cameras near by show more than a fit can use."""
+    return max(1, round(FINENESS * float(camera.K[0, 0]) * 2.0 / (region.near + region.far)))
 
 
 def whole_image(camera: Camera, near: float, far: float) -> Region:

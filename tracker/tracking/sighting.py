@@ -123,7 +123,8 @@ def find_sightings(
     if detector is None or frame.color is None or depth is None or not names:
         return Sightings(frame, camera, {}, is_looked_at=False)
     known = [name for name in names if name in before]
-    found = detector.find(frame.color, len(names), [before[name] for name in known])
+    turns = (0, 1 + frame.index % 3) if before else (0, 1, 2, 3)
+    found = detector.find(frame.color, len(names), [before[name] for name in known], turns)
     fitting = [hand for hand in found if _has_size_of(hand, depth, camera)]
     if len(fitting) < len(found):  # a thumb, taken for a hand, would be followed on
         found = detector.find(frame.color, len(names), fitting)

@@ -24,7 +24,7 @@ from tracker.tracking.leave_out import leave_out
 from tracker.tracking.objective import Objective
 from tracker.tracking.options import TrackOptions
 from tracker.tracking.quality import measure_quality
-from tracker.tracking.region import region_around, whole_image
+from tracker.tracking.region import choose_stride, region_around, whole_image
 from tracker.tracking.seen_hands import place_where_seen
 from tracker.tracking.setup import TrackSetup, choose_camera
 from tracker.tracking.sighting import Sightings, find_sightings
@@ -154,7 +154,7 @@ def _settle(sightings: Sightings, setup: TrackSetup, pose: Array) -> tuple[float
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
         return -1.0, pose
-    seen = observe(sightings.frame, camera, region, setup.preprocessing)
+    seen = observe(sightings.frame, camera, region, setup.preprocessing, choose_stride(region, camera))
     options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
     objective = sightings.add_to(Objective(), setup.scene, setup.names)
     objective = with_marks(objective, setup.scene, setup.names, setup.marks, camera)

@@ -19,9 +19,10 @@ from tracker.tracking.finger_search import swap_fingers
 from tracker.tracking.follow import follow_frame
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.objective import Objective
+from tracker.tracking.patience import Patience
 from tracker.tracking.options import TrackOptions
 from tracker.tracking.part import Part
-from tracker.tracking.quality import MISFIT
+from tracker.tracking.quality import BROAD_MISFIT
 from tracker.tracking.start import start_tracking
 from tracker.tracking.state import TrackState
 from tracker.tracking.tools import Tools
@@ -65,7 +66,7 @@ def test_a_finger_that_is_elsewhere_is_a_lost_hand(recorded, run):
     wrong[6:] = np.clip(wrong[6:] + 0.7, setup.scene.lower[6:], setup.scene.upper[6:])
     seen = look(frame, camera, setup, wrong)
     attempt = attempt_fit(setup, seen, wrong, wrong, Objective(), FitOptions(iterations=0))
-    assert attempt.misfit > MISFIT
+    assert attempt.quality.broad_misfit > BROAD_MISFIT
     assert attempt.lost == (0,)
 
 
@@ -124,10 +125,10 @@ def test_one_hand_goes_and_the_other_is_followed(two_hands, monkeypatch, gone: i
 
 def test_the_state_remembers_which_hand_is_lost(two_hands, tmp_path):
     _, _, _, state = two_hands
-    lost = replace(state, is_lost=True, lost_hands=(1,), rest=(1, 2, 3, 4))
+    lost = replace(state, is_lost=True, lost_hands=(1,), fingers=Patience(1, 4), image=Patience(2, 3))
     lost.save(tmp_path / "state.npz")
     again = TrackState.load(tmp_path / "state.npz")
-    assert (again.is_lost, again.lost_hands, again.rest) == (True, (1,), (1, 2, 3, 4))
+    assert (again.is_lost, again.lost_hands, again.fingers, again.image) == (True, (1,), Patience(1, 4), Patience(2, 3))
 
 
 @pytest.mark.parametrize("shift", [-0.12, -0.08, -0.05, 0.05, 0.08, 0.12])

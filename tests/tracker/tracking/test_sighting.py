@@ -27,7 +27,7 @@ class Told:
         self.hands = list(hands)
         self.asked: list[list[DetectedHand]] = []
 
-    def find(self, image, hands, before):
+    def find(self, image, hands, before, turns=(0,)):
         self.asked.append(list(before))
         return self.hands[:hands]
 

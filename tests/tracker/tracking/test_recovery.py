@@ -19,9 +19,9 @@ from tracker.tracking.finger_search import swap_fingers
 from tracker.tracking.follow import follow_frame
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.objective import Objective
-from tracker.tracking.patience import Patience
 from tracker.tracking.options import TrackOptions
 from tracker.tracking.part import Part
+from tracker.tracking.patience import Patience
 from tracker.tracking.quality import BROAD_MISFIT
 from tracker.tracking.start import start_tracking
 from tracker.tracking.state import TrackState

@@ -42,7 +42,8 @@ class MarkedJoints:
         """The same rays whatever the pose, with less weight where the joint is far from its own."""
         corners = np.repeat(self.ids[:, None], 3, axis=1).astype(np.int32)
         shares = np.tile([1.0, 0.0, 0.0], (len(self.ids), 1))
-        away = np.linalg.norm(np.cross(posed.vertices[self.ids], self.directions) - self.moments, axis=1)
+        (x, y, z), (u, v, w) = posed.vertices[self.ids].T, self.directions.T
+        away = np.linalg.norm(np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1) - self.moments, axis=1)
         weights = self.weight * self.beliefs / (1.0 + (MILLIMETRES * away / self.reach) ** 2) ** 2
         return PointToLine(corners, shares, self.directions, self.moments, weights)
 

@@ -113,11 +113,16 @@ def _find_into(
 ):
     height, width = labels.shape
     fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
+    wanted = 0
+    for f in range(len(face_labels)):
+        wanted |= face_labels[f]
     count = 0
     for row in range(stride // 2, height, stride):
         for column in range(stride // 2, width, stride):
             label = labels[row, column]
-            if label == 0 or _covers(face, face_labels, inverse_depth, row, column, label, depth[row, column], within):
+            if label & wanted == 0 or _covers(
+                face, face_labels, inverse_depth, row, column, label, depth[row, column], within
+            ):
                 continue
             z = depth[row, column]
             to_row, to_column = -1, -1

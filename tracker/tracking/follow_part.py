@@ -39,6 +39,9 @@ LEAST_REST, LONGEST_REST = 4, 64
 SEEN_ITERATIONS = 1.5
 """Fits from the detector's joints take so many times the iterations of others: they start farther off."""
 
+SETTLED = 2e-4
+"""They stop when the mean joint moves less, m; [T16] §4.1.1."""
+
 WIDER = 3
 """So often at most the region follows a fit that went beyond it."""
 
@@ -87,7 +90,7 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
     seen, best = _look_wider(sightings, part, seen, best, previous, objective, options)
     if best.qualities:
         started = perf_counter()
-        again = replace(options, iterations=round(SEEN_ITERATIONS * setup.options.iterations))
+        again = replace(options, iterations=round(SEEN_ITERATIONS * setup.options.iterations), stop_below=SETTLED)
         best = try_where_seen(setup, sightings, best, objective, again)
         starts = _find_finger_starts(sightings, part, state, fingers, best)
         if starts:

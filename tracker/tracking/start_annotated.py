@@ -23,6 +23,9 @@ from tracker.tracking.objective import Objective
 
 Array = npt.NDArray[np.float64]
 
+FEW_STEPS = 5
+"""So many steps from each bend of the fingers tell which of them leads to the joints."""
+
 FLESH = 0.009
 """A joint lies about this far behind the skin that is seen before it, m."""
 
@@ -72,22 +75,27 @@ def start_hand(
         lifted, seen = _lift_by_size(points, camera, scene.pose_at(scene.rest_pose()).landmarks(0))
     else:
         lifted, seen = _lift(points, camera, observation, np.zeros(21) if relative is None else relative)
-    best, best_cost = scene.rest_pose(), np.inf
+    ways = []
     for angles in [bent] if bent is not None else [curl_fingers(model, curl) for curl in (0.0, 0.35, 0.7)]:
         rest = scene.rest_pose()
         rest[6:] = angles
         T = _align(scene.pose_at(rest).landmarks(0)[marked], lifted[marked])
         rest[:6] = se3.log(T)
-        pose, cost = _descend(scene, rest, joints, lifted, seen, iterations)
-        if cost < best_cost:
-            best, best_cost = pose, cost
-    return best
+        ways.append((rest, *_descend(scene, rest, rest, joints, lifted, seen, min(FEW_STEPS, iterations))))
+    rest, pose, _ = min(ways, key=lambda way: way[2])
+    return _descend(scene, pose, rest, joints, lifted, seen, max(0, iterations - FEW_STEPS))[0]
 
 
 def _descend(
-    scene: Scene, start: Array, joints: MarkedJoints, lifted: Array, seen: npt.NDArray[np.bool_], iterations: int
+    scene: Scene,
+    start: Array,
+    rest: Array,
+    joints: MarkedJoints,
+    lifted: Array,
+    seen: npt.NDArray[np.bool_],
+    iterations: int,
 ) -> tuple[Array, float]:
-    """Gauss-Newton on rays, depths, limits and nearness to the start; the pose and its cost."""
+    """Gauss-Newton on rays, depths, limits and nearness to a pose at rest; the pose and its cost."""
     objective = Objective(terms={}, anatomy=AnatomicalLimits(0.05), regularization=Regularization(2.0))
     corners = np.repeat(np.arange(21, dtype=np.int32)[seen, None] + scene.landmark_slices[0].start, 3, axis=1)
     shares = np.tile([1.0, 0.0, 0.0], (len(corners), 1))
@@ -98,7 +106,7 @@ def _descend(
     for _ in range(iterations):
         posed = scene.pose_at(pose)
         residuals: dict[str, Residual] = {"joints": joints.find(posed), "depths": depths}
-        JtJ, Jtr, costs = objective.linearize(posed, residuals, start)
+        JtJ, Jtr, costs = objective.linearize(posed, residuals, rest)
         cost = sum(costs.values())
         pose = scene.retract(pose, compute_damped_step(JtJ, Jtr, 1e-3, limits))
     return pose, cost

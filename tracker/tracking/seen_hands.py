@@ -8,7 +8,7 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.observation import Observation, Region, observe
-from tracker.tracking.attempt import MIN_PIXELS, Attempt, attempt_fit, look
+from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.objective import Objective
 from tracker.tracking.quality import BROAD_MISFIT, ELSEWHERE, Quality
@@ -57,8 +57,8 @@ def try_where_seen(
 def _is_doubtful(quality: Quality) -> bool:
     """Whether a hand, or a finger, was seen elsewhere, or the depth image shows a good part of a finger elsewhere."""
     assert quality.apart is not None and quality.worst_finger is not None
-    is_elsewhere = quality.apart > AGREES or quality.worst_finger > ELSEWHERE
-    return is_elsewhere or quality.broad_misfit > 0.5 * BROAD_MISFIT
+    is_elsewhere = quality.worst_finger > ELSEWHERE and quality.misfit > UNSETTLED
+    return is_elsewhere or quality.apart > AGREES or quality.broad_misfit > 0.5 * BROAD_MISFIT
 
 
 def _find_doubtful(attempt: Attempt) -> list[int]:

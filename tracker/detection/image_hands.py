@@ -18,7 +18,8 @@ from tracker.landmarks import DetectedHand, HandDetector
 SIDES = ("right", "left")
 OCCLUDED, VISIBLE = 1, 2
 
-SOURCE = JointSource("detector", "Hand detector")
+DETECTOR_LABEL = "Hand detector"
+SOURCE = JointSource("detector", DETECTOR_LABEL)
 """What is noted beside a label that a person makes of a detected joint."""
 
 

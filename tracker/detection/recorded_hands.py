@@ -131,7 +131,7 @@ def detect_hands(
     return RecordedHands(tuple(cameras), frames, Annotations(tuple(items)), scores, tuple(seconds)), latest
 
 
-def join_hands(parts: Iterable[RecordedHands]) -> RecordedHands:
+def join_recorded_hands(parts: Iterable[RecordedHands]) -> RecordedHands:
     """Those of frames that follow each other."""
     parts = list(parts)
     frames = range(parts[0].frames.start, parts[-1].frames.stop)
@@ -140,7 +140,7 @@ def join_hands(parts: Iterable[RecordedHands]) -> RecordedHands:
     return RecordedHands(parts[0].cameras, frames, hands, scores, tuple(s for part in parts for s in part.seconds))
 
 
-def load_hands(path: Path) -> RecordedHands:
+def load_recorded_hands(path: Path) -> RecordedHands:
     """From what `RecordedHands.save` wrote, checked as if it were foreign."""
     node = load_json(path, MAX_BYTES, AnnotationError)
     hands = parse_annotations(node)

@@ -15,7 +15,7 @@ from tracker.capture.sequence import Sequence as Recording
 from tracker.capture.sequence import load_sequence
 from tracker.cli.__main__ import main
 from tracker.detection.image_hands import SOURCE, name_hands
-from tracker.detection.recorded_hands import choose_views, detect_hands, join_hands, load_hands
+from tracker.detection.recorded_hands import choose_views, detect_hands, join_recorded_hands, load_recorded_hands
 from tracker.errors import AnnotationError, SequenceError
 from tracker.landmarks import DetectedHand, HandDetector
 
@@ -58,7 +58,7 @@ def test_a_recording_cut_into_parts_gives_the_same_hands(
     first, before = detect_hands(recording, detector, ("cam0",), range(5), {})
     rest, _ = detect_hands(recording, detector, ("cam0",), range(5, len(FRAMES)), before)
     whole.save(tmp_path / "whole.json")
-    join_hands([first, rest]).save(tmp_path / "parts.json")
+    join_recorded_hands([first, rest]).save(tmp_path / "parts.json")
     assert (tmp_path / "whole.json").read_bytes() == (tmp_path / "parts.json").read_bytes()
 
 
@@ -67,7 +67,7 @@ def test_the_file_comes_back_and_is_an_annotation_file_too(
 ) -> None:
     found, _ = detect_hands(recording, detector, ("cam0",), range(3, 6), {})
     found.save(tmp_path / "hands.json")
-    back = load_hands(tmp_path / "hands.json")
+    back = load_recorded_hands(tmp_path / "hands.json")
     assert (back.cameras, back.frames, back.scores) == (found.cameras, found.frames, found.scores)
     assert back.hands.to_json() == found.hands.to_json() == load_annotations(tmp_path / "hands.json").to_json()
     assert back.covers(5, "cam0") and not back.covers(6, "cam0") and not back.covers(5, "cam1")
@@ -91,7 +91,7 @@ def test_a_file_that_somebody_changed_is_refused_with_what_is_needed(
     document = json.loads((tmp_path / "hands.json").read_text()) | change
     (tmp_path / "hands.json").write_text(json.dumps(document))
     with pytest.raises(AnnotationError, match=said):
-        load_hands(tmp_path / "hands.json")
+        load_recorded_hands(tmp_path / "hands.json")
 
 
 def test_views_without_colour_are_left_out_and_refused_when_asked_for(recording: Recording) -> None:

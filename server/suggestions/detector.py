@@ -59,5 +59,5 @@ def _look(shelf: Shelf, recorded: Recorded, place: Place) -> tuple[Annotation, .
     if not camera.has_color:
         return ()
     frame = shelf.frame(recorded.id, recorded.content_key, place.camera, place.frame)
-    found = find_image_hands(default_hand_detector(), frame, float(camera.K[0, 0]), recording.hands, {})
+    found = find_image_hands(default_hand_detector(), frame, float(camera.K[0, 0]), recording.hands)
     return tuple(hand.annotate(frame) for hand in found)

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.frame import Frame
+from tracker.capture.grey import is_grey
 from tracker.landmarks import DetectedHand
 from tracker.observation.own_color import find_own_color
 
@@ -39,12 +40,6 @@ def find_hidden_joints(hand: DetectedHand, frame: Frame, focal: float) -> Mask:
     is_own = find_own_color(frame.color, frame.depth, hand.points, focal)
     is_hand = np.array([is_own[around].any() for around in _around(hand.points)])
     return ~is_hand & (nearer > -BEHIND)
-
-
-def is_grey(image: npt.NDArray[np.uint8]) -> bool:
-    """Whether an image (H, W, 3) has no colours, as infrared ones have none."""
-    sample = image[::4, ::4]
-    return bool((sample[..., :1] == sample[..., 1:]).all())
 
 
 def _expect(hand: DetectedHand, seen: Array, focal: float) -> Array:

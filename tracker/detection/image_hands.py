@@ -54,7 +54,11 @@ class ImageHand:
 
 
 def find_image_hands(
-    detector: HandDetector, frame: Frame, focal: float, names: Sequence[str], before: Mapping[str, DetectedHand]
+    detector: HandDetector,
+    frame: Frame,
+    focal: float,
+    names: Sequence[str],
+    before: Mapping[str, DetectedHand] | None = None,
 ) -> list[ImageHand]:
     """Look for the hands of a recording in the colour or infrared image of a frame.
 
@@ -63,11 +67,14 @@ def find_image_hands(
         frame: As recorded, with `color`.
         focal: Of its camera, px.
         names: Of the recording's hands, `right` or `left`; both when it names none.
-        before: The hands that were found in the frame before, by side.
+        before: The hands that were found in the frame before, by side; None of an image that is looked at by itself,
+            which is turned all ways to find them.
     """
     assert frame.color is not None, "nothing to look at"
     names = tuple(names) or SIDES
-    found = detector.find(frame.color, len(names), [before[name] for name in names if name in before])
+    turns = (0, 1, 2, 3) if before is None else (0, 1 + frame.index % 3)
+    followed = [before[name] for name in names if name in before] if before else []
+    found = detector.find(frame.color, len(names), followed, turns)
     named = name_hands(found, names)
     return [
         ImageHand(name, named[name], find_hidden_joints(named[name], frame, focal)) for name in names if name in named

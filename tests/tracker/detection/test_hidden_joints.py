@@ -12,9 +12,10 @@ import numpy.typing as npt
 import pytest
 
 from tracker.capture.frame import Frame
+from tracker.capture.grey import is_grey
 from tracker.capture.sequence import Sequence, load_sequence
 from tracker.cli.__main__ import main
-from tracker.detection.hidden_joints import find_hidden_joints, is_grey
+from tracker.detection.hidden_joints import find_hidden_joints
 from tracker.landmarks import DetectedHand, HandDetector
 
 BOX = (5, 6, 7, 8)

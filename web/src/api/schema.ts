@@ -4087,7 +4087,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+            kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
             /** Labels */
             labels: number;
             /**
@@ -4702,7 +4702,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+            kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
             /**
              * Points
              * @description The label as it was looked at.
@@ -21200,7 +21200,7 @@ export interface operations {
         parameters: {
             query?: {
                 /** @description Only these. */
-                kind?: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+                kind?: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
                 /** @description Those that were put away instead of the open ones. */
                 dismissed?: boolean;
                 /** @description `next_cursor` of the page before. */
@@ -21298,7 +21298,7 @@ export interface operations {
             };
             header?: never;
             path: {
-                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
                 camera: string;
                 frame: number;
                 hand: "right" | "left";
@@ -21402,7 +21402,7 @@ export interface operations {
             };
             header?: never;
             path: {
-                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
                 camera: string;
                 frame: number;
                 hand: "right" | "left";

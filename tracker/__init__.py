@@ -50,6 +50,14 @@ if TYPE_CHECKING:
     )
     from tracker.capture.triangulation import Triangulation, triangulate
     from tracker.cli import add_commands
+    from tracker.detection.image_hands import DETECTOR_LABEL, find_image_hands
+    from tracker.detection.recorded_hands import (
+        RecordedHands,
+        choose_views,
+        detect_hands,
+        join_recorded_hands,
+        load_recorded_hands,
+    )
     from tracker.errors import (
         AnnotationError,
         FrameError,
@@ -77,6 +85,7 @@ if TYPE_CHECKING:
     from tracker.label_formats.label_files import pack_files, read_label_files, save_label_files
     from tracker.label_formats.label_set import ExportedLabels, ImportedLabels, ImportHints, LabelSet
     from tracker.label_formats.orders import JOINT_ORDERS
+    from tracker.landmarks import DetectedHand, default_hand_detector
     from tracker.model.articulated import ArticulatedModel
     from tracker.model.blend_articulated import articulated_of
     from tracker.model.blend_files import load_blend_model, save_blend_model
@@ -120,6 +129,15 @@ if TYPE_CHECKING:
     from tracker.training.training_set import TrainingSet, load_training_set, make_training_set
 
 _HOMES = {
+    "DETECTOR_LABEL": "tracker.detection.image_hands",
+    "find_image_hands": "tracker.detection.image_hands",
+    "choose_views": "tracker.detection.recorded_hands",
+    "detect_hands": "tracker.detection.recorded_hands",
+    "join_recorded_hands": "tracker.detection.recorded_hands",
+    "load_recorded_hands": "tracker.detection.recorded_hands",
+    "RecordedHands": "tracker.detection.recorded_hands",
+    "DetectedHand": "tracker.landmarks",
+    "default_hand_detector": "tracker.landmarks",
     "plan_start": "tracker.tracking.start_plan",
     "find_tracking_faults": "tracker.tracking.tracking_faults",
     "find_training_faults": "tracker.training.training_faults",
@@ -273,6 +291,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "DETECTOR_LABEL",
     "EXPORT_KINDS",
     "HAND_EDGES",
     "HAND_JOINTS",
@@ -298,6 +317,7 @@ __all__ = [
     "BlendModel",
     "Camera",
     "Checkpoints",
+    "DetectedHand",
     "Evaluation",
     "ExportedLabels",
     "Frame",
@@ -317,6 +337,7 @@ __all__ = [
     "LabelSet",
     "ModelView",
     "QuickFit",
+    "RecordedHands",
     "Registration",
     "RegistrationError",
     "RegistrationOptions",
@@ -347,11 +368,14 @@ __all__ = [
     "check_import",
     "choose_held_out",
     "choose_sources",
+    "choose_views",
     "compare_tracks",
     "count_origins",
     "default_hand",
+    "default_hand_detector",
     "describe_frame",
     "describe_origin",
+    "detect_hands",
     "draw_item",
     "encode_jpeg",
     "evaluate_track",
@@ -361,6 +385,7 @@ __all__ = [
     "find_bend_fault",
     "find_counted",
     "find_hand_points",
+    "find_image_hands",
     "find_origin",
     "find_path_fault",
     "find_possible_units",
@@ -374,11 +399,13 @@ __all__ = [
     "is_certain",
     "is_independent",
     "join_chunks",
+    "join_recorded_hands",
     "keep_joints",
     "list_image_names",
     "load_annotations",
     "load_blend_model",
     "load_mano",
+    "load_recorded_hands",
     "load_registration",
     "load_scan",
     "load_sequence",

@@ -35,19 +35,29 @@ class JointSourceOut(BaseModel):
 
     model_config = ConfigDict(title="JointSource", extra="forbid")
 
-    kind: Literal["track", "fit", "triangulation", "interpolation", "copy", "import"]
+    kind: Literal["track", "fit", "detector", "triangulation", "interpolation", "copy", "import"]
     label: LongLabel = Field(default="", description="For people.", examples=["Track 2", "model fit of 7 joints"])
     track_id: uuid.UUID | None = None
     model: LongLabel = Field(default="", description="The hand model behind it.")
     is_independent: bool = Field(
         default=False,
-        description="Of a triangulation, an interpolation or a copy: no track and no model fit had a part in any joint "
-        "that it was made of. Only such joints judge a track, unless others are asked for.",
+        description="Of a triangulation, an interpolation or a copy: no track, no model fit and no detector had a "
+        "part in any joint that it was made of. Only such joints judge a track, unless others are asked for.",
     )
 
 
 SourceChoice = Literal[
-    "independent", "all", "hand", "unknown", "track", "fit", "triangulation", "interpolation", "copy", "import"
+    "independent",
+    "all",
+    "hand",
+    "unknown",
+    "track",
+    "fit",
+    "detector",
+    "triangulation",
+    "interpolation",
+    "copy",
+    "import",
 ]
 """Which joints are meant, by where they came from; a test holds it equal to the tracker's SOURCE_CHOICES."""
 
@@ -65,7 +75,7 @@ SOURCES_HELP = (
     "Joints that count, by where they came from; given several times, a joint counts that is one of them. "
     "`independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: "
     "whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, "
-    "`copy`, `fit`, `track`."
+    "`copy`, `fit`, `detector`, `track`."
 )
 
 Sources = Annotated[

@@ -35,7 +35,7 @@ class JobRow(Base):
     kind: Mapped[str] = mapped_column(String(20))
     state: Mapped[str] = mapped_column(String(10), default="queued")
     sequence_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(SequenceRow.id))
-    """Of a tracking job."""
+    """Of a job that tracks or detects."""
     track_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(TrackRow.id))
     """What a tracking job produced."""
     hand_model_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(HandModelRow.id))

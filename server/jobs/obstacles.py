@@ -45,6 +45,15 @@ def find_track_obstacles(session: Session, sequence_id: uuid.UUID, params: dict[
     return []
 
 
+def find_detect_obstacles(session: Session, sequence_id: uuid.UUID) -> list[str]:
+    """Why the hand detector cannot look at a recording; empty when it can."""
+    try:
+        service.check_detection(session, sequence_id)
+    except StudioError as error:
+        return [error.detail]
+    return []
+
+
 def find_register_obstacles(session: Session, storage: Storage, asked: RegisterCreate) -> list[str]:
     """Why no scan can be registered so; empty when some can be."""
     obstacles = find_model_obstacles(session, storage, asked.model_id)

@@ -43,14 +43,14 @@ class JobProgress:
         """Name what is being done after the tracking."""
         self._publish_stage(name, TRACKING_ENDS)
 
-    def frames(self, done: int, total: int, begins: float) -> None:
-        """Say that `done` of `total` frames are tracked; `begins` is the share of the bar at the first of them."""
-        self._publish_frames(done, total, begins, at_once=False)
+    def frames(self, done: int, total: int, begins: float, stage: str = "tracking") -> None:
+        """Say that `done` of `total` frames are done; `begins` is the share of the bar at the first of them."""
+        self._publish_frames(done, total, begins, at_once=False, stage=stage)
 
-    def chunk_done(self, done: int, total: int, begins: float, message: str) -> None:
+    def chunk_done(self, done: int, total: int, begins: float, message: str, stage: str = "tracking") -> None:
         """Say that the frames so far are safe on disk."""
         self.log("info", message)
-        self._publish_frames(done, total, begins, at_once=True, crashes=0)
+        self._publish_frames(done, total, begins, at_once=True, stage=stage, crashes=0)
 
     def part(self, span: tuple[float, float], name: str, share: float) -> None:
         """Name what is being done in one part of the bar, and how much of it is done, 0 to 1."""
@@ -86,7 +86,7 @@ class JobProgress:
 
     def _publish_frames(self, done: int, total: int, begins: float, *, at_once: bool, **values: object) -> None:
         share = begins + (TRACKING_ENDS - begins) * done / max(total, 1)
-        self._publish(at_once, stage="tracking", progress=share, frames_done=done, frames_total=total, **values)
+        self._publish(at_once, progress=share, frames_done=done, frames_total=total, **values)
 
     def _publish(self, at_once: bool, progress: float | None = None, **values: object) -> None:
         now = time.monotonic()

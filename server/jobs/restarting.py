@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 from server.jobs.files import JobFiles
 from server.jobs.making import list_job_scans
 from server.jobs.models import JobRow
-from server.jobs.obstacles import find_model_obstacles, find_track_obstacles, make_check
+from server.jobs.obstacles import find_detect_obstacles, find_model_obstacles, find_track_obstacles, make_check
 from server.jobs.schemas import LoopCreate, RestartCheck, TrainCreate
 from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles
 from server.storage import Storage
@@ -28,6 +28,9 @@ def find_restart_obstacles(session: Session, storage: Storage, job: JobRow) -> l
     if job.kind == "track":
         assert job.sequence_id is not None, "a tracking job has a recording"
         return find_track_obstacles(session, job.sequence_id, job.params)
+    if job.kind == "detect":
+        assert job.sequence_id is not None, "a detecting job has a recording"
+        return find_detect_obstacles(session, job.sequence_id)
     if job.kind == "register":
         return find_model_obstacles(session, storage, uuid.UUID(job.params["model_id"]), deleted_too=True)
     if job.kind == "train":
@@ -45,6 +48,8 @@ def list_kept(storage: Storage, job: JobRow) -> list[str]:
     """What a job has done so far, for people; a step that was broken off does not count."""
     if job.kind == "track":
         return _list_kept_of_tracking(storage, job)
+    if job.kind == "detect":
+        return _list_kept_frames(JobFiles(storage.folder("jobs", job.id), storage.remote_folder("jobs", job.id)))
     kept = []
     if job.frames_done > 0:
         kept.append("1 registration" if job.frames_done == 1 else f"{job.frames_done} registrations")
@@ -59,11 +64,13 @@ def _list_kept_of_tracking(storage: Storage, job: JobRow) -> list[str]:
     files = JobFiles(storage.folder("jobs", job.id), storage.remote_folder("jobs", job.id))
     if not files.is_done("start"):
         return []
-    kept = ["the shape of the hands, fitted" if job.params.get("calibrate", True) else "the first pose"]
+    start = "the shape of the hands, fitted" if job.params.get("calibrate", True) else "the first pose"
+    return [start, *_list_kept_frames(files)]
+
+
+def _list_kept_frames(files: JobFiles) -> list[str]:
     manifest = files.read_manifest("start") or {"chunks": []}
     done = 0
     while done < len(manifest["chunks"]) and files.is_done(f"chunk-{done:04d}"):
         done += 1
-    if done:
-        kept.append(f"frames {manifest['chunks'][0][0]} to {manifest['chunks'][done - 1][1] - 1}")
-    return kept
+    return [f"frames {manifest['chunks'][0][0]} to {manifest['chunks'][done - 1][1] - 1}"] if done else []

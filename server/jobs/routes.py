@@ -19,7 +19,13 @@ from server.jobs import batches, events, making, restarting, service, workers
 from server.jobs.describe import describe_job, describe_jobs
 from server.jobs.form import track_form
 from server.jobs.models import ENDED_STATES, JobRow, WorkerRow
-from server.jobs.obstacles import find_register_obstacles, find_track_obstacles, make_check, refuse_at
+from server.jobs.obstacles import (
+    find_detect_obstacles,
+    find_register_obstacles,
+    find_track_obstacles,
+    make_check,
+    refuse_at,
+)
 from server.jobs.scan_choice import list_loop_scans
 from server.jobs.schemas import (
     BatchCheck,
@@ -29,6 +35,7 @@ from server.jobs.schemas import (
     BulkAct,
     BulkDone,
     BulkRefusal,
+    DetectCreate,
     JobCheck,
     JobCreate,
     JobForm,
@@ -65,6 +72,21 @@ def create_job(body: JobCreate, session: SessionDep, account: ReviewerAccount) -
 def check_job(body: JobCreate, session: SessionDep, account: ReviewerAccount) -> JobCheck:
     """Whether a recording can be tracked so, and why not. Nothing is started."""
     return make_check(session, find_track_obstacles(session, body.sequence_id, body.params))
+
+
+@router.post("/jobs/detect/check", responses=error_responses(404))
+def check_detect_job(body: DetectCreate, session: SessionDep, account: ReviewerAccount) -> JobCheck:
+    """Whether the hand detector can look at a recording, and why not. Nothing is started."""
+    return make_check(session, find_detect_obstacles(session, body.sequence_id))
+
+
+@router.post("/jobs/detect", status_code=201, responses=error_responses(404))
+def create_detect_job(body: DetectCreate, session: SessionDep, account: ReviewerAccount) -> JobOut:
+    """Find the hands in every image of a recording; what is found is suggested to whoever annotates it."""
+    service.check_detection(session, body.sequence_id)
+    job = service.create_job(session, "detect", body.sequence_id, {}, created_by=account.id)
+    record_act(session, account.id, "job.start", "job", job.id)
+    return describe_job(session, job)
 
 
 @router.post("/jobs/register/check", responses=error_responses(404))

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, model_
 from server.database.texts import Label, Name
 from server.training_sets.schemas import TrainingRule
 
-JobKind = Literal["track", "register", "train", "loop"]
+JobKind = Literal["track", "detect", "register", "train", "loop"]
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
@@ -23,6 +23,14 @@ class JobCreate(BaseModel):
     params: dict[str, Any] = Field(
         default_factory=dict, description="Options of the tracker; `GET /jobs/form` lists them."
     )
+
+
+class DetectCreate(BaseModel):
+    """A recording whose hands are to be found."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    sequence_id: uuid.UUID
 
 
 class RegisterCreate(BaseModel):
@@ -157,7 +165,7 @@ class JobOut(BaseModel):
     kind: str
     state: JobState
     title: str = Field(description="The recording as it is called now, or what else it is about.")
-    sequence_id: uuid.UUID | None = Field(description="The recording of a tracking job.")
+    sequence_id: uuid.UUID | None = Field(description="The recording of a job that tracks or detects.")
     track_id: uuid.UUID | None = Field(description="What a tracking job produced.")
     hand_model_id: uuid.UUID | None = Field(description="What training produced, the last model of a loop.")
     params: dict[str, Any]

@@ -18,7 +18,9 @@ from server.jobs.models import ENDED_STATES, JobLogRow, JobRow, WorkerRow
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
 
-KINDS = ("track", "register", "train", "loop")
+KINDS = ("track", "detect", "register", "train", "loop")
+FRAME_KINDS = ("track", "detect")
+"""Those that go through the frames of a recording."""
 
 HAND_MODEL = "hand_model_id"
 TRAINED_HAND = "trained"
@@ -141,6 +143,15 @@ def check_track_params(session: Session, sequence_id: UUID, params: dict[str, An
     return options.to_json() | _check_hand_model(session, params.get(HAND_MODEL))
 
 
+def check_detection(session: Session, sequence_id: UUID) -> SequenceRow:
+    """The recording, if the hand detector can look at it."""
+    row = get_sequence(session, sequence_id)
+    if not any(camera["has_color"] for camera in row.cameras):
+        fault = f"{row.name} has only depth images; the hand detector needs colour or infrared ones."
+        raise CannotStartError(fault, obstacles=[fault])
+    return row
+
+
 def _check_hand_model(session: Session, value: Any) -> dict[str, str]:
     """The id of a stored hand model as a param; none for the default hand."""
     if value in ("", None):
@@ -247,7 +258,7 @@ def update_running(session: Session, job_id: UUID, attempt: int, worker_id: UUID
     if "progress" in values:
         values["progress"] = case((JobRow.progress > values["progress"], JobRow.progress), else_=values["progress"])
     if "frames_done" in values:
-        is_behind = (JobRow.kind == "track") & (JobRow.frames_done > values["frames_done"])
+        is_behind = JobRow.kind.in_(FRAME_KINDS) & (JobRow.frames_done > values["frames_done"])
         values["frames_done"] = case((is_behind, JobRow.frames_done), else_=values["frames_done"])
     is_ours = (JobRow.state == "running") & (JobRow.attempt == attempt) & (JobRow.worker_id == worker_id)
     return _change(session, job_id, is_ours, **values)

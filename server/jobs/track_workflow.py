@@ -85,7 +85,10 @@ class _TrackRun(JobRun):
         """Jobs of the recording that ended without success, the newest first: their files are kept."""
         storage = self.context.storage
         query = select(JobRow).where(
-            JobRow.sequence_id == self._sequence_id, JobRow.id != self.job_id, JobRow.state.in_(("cancelled", "failed"))
+            JobRow.kind == "track",
+            JobRow.sequence_id == self._sequence_id,
+            JobRow.id != self.job_id,
+            JobRow.state.in_(("cancelled", "failed")),
         )
         with self.context.database.reading() as session:
             rows = session.scalars(query.order_by(JobRow.ended_at.desc()).limit(MOST_OTHERS)).all()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from uuid import UUID
 
+from server.jobs.detect_workflow import register_detect_workflow
 from server.jobs.run import WorkerContext
 from server.jobs.scan_workflow import register_scan_workflows
 from server.jobs.track_workflow import register_track_workflow
@@ -25,4 +26,8 @@ def workflow_id(job_id: UUID, attempt: int) -> str:
 
 def register_workflows(context: WorkerContext) -> dict[str, Workflow]:
     """Make the workflow of each kind of job known to DBOS, before it is launched."""
-    return {"track": register_track_workflow(context), **register_scan_workflows(context)}
+    return {
+        "track": register_track_workflow(context),
+        "detect": register_detect_workflow(context),
+        **register_scan_workflows(context),
+    }

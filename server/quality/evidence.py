@@ -1,7 +1,8 @@
-"""Checks of a label against what else is known: other cameras, a track."""
+"""Checks of a label against what else is known: other cameras, a track, the hand detector."""
 
 from __future__ import annotations
 
+import uuid
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from server.quality.finding import Finding, Looked
+from server.quality.finding import Finding, Kind, Looked
 from server.quality.hand import joint_name
 from server.quality.labels import Label, find_median
 
@@ -91,3 +92,33 @@ def check_residuals(
             usually = f"usually it is {usual[joint]:.1f} px"
             reason = f"The {joint_name(joint)} is {distance[joint]:.0f} px from the track; {usually}."
             yield Finding(label, "residual", min(10.0, float(off[joint])), joints, reason)
+
+
+DETECTOR_PX, DETECTOR_SHARE = 12.0, 0.15
+"""A label and the hand detector of which half the joints are farther apart than this, and than this share of the hand,
+are not of the same pose. The detector is 5 to 7 px off on hands of 200 px, 11 at its worst tenth."""
+
+OTHERS: tuple[Kind, ...] = ("residual", "handedness", "jump")
+"""Checks that know more of where a hand is than the detector does."""
+
+
+def check_detected(
+    labels: Sequence[Label], detected: dict[tuple[str, int, str], Array], looked: Looked
+) -> Iterator[Finding]:
+    """Labels that are not where the hand detector sees the hand, where neither a track nor neighbours speak.
+
+    `detected` holds (21, 2) px by place, NaN where a joint is outside the image.
+    """
+    spoken_of = frozenset[uuid.UUID]().union(*(looked.find(kind) for kind in OTHERS))
+    for label in labels:
+        joints = detected.get((label.camera, label.frame, label.hand))
+        if joints is None or label.id in spoken_of:
+            continue
+        distances = np.where(label.is_independent, np.linalg.norm(label.pixels - joints, axis=1), np.nan)
+        if np.isfinite(distances).sum() < LEAST_JOINTS:
+            continue
+        looked.at("detector", label)
+        apart, limit = float(np.nanmedian(distances)), max(DETECTOR_PX, DETECTOR_SHARE * label.size_px)
+        if apart > limit:
+            reason = f"The label and the hand detector are {apart:.0f} px apart: one of the two is wrong."
+            yield Finding(label, "detector", min(10.0, apart / limit), (), reason)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from server.quality.background import check_background
 from server.quality.bones import check_bone_lengths
-from server.quality.evidence import check_reprojection, check_residuals
+from server.quality.evidence import check_detected, check_reprojection, check_residuals
 from server.quality.finding import KINDS, Finding, Kind, Looked
 from server.quality.labels import Label
 from server.quality.neighbours import check_handedness, check_jumps
@@ -31,6 +31,7 @@ class Setting:
         cameras: By id.
         has_depth: Any camera has depth images.
         tracked: (21, 2) px of a track by camera, frame and hand.
+        detected: (21, 2) px of what the hand detector found in the whole recording, likewise.
         track_missing: Why a label may have no track to be compared with.
     """
 
@@ -38,6 +39,7 @@ class Setting:
     cameras: dict[str, Camera]
     has_depth: bool = True
     tracked: dict[tuple[str, int, str], npt.NDArray[np.float64]] = field(default_factory=dict)
+    detected: dict[tuple[str, int, str], npt.NDArray[np.float64]] = field(default_factory=dict)
     track_missing: str = "there is no track"
 
 
@@ -84,6 +86,7 @@ def check_labels(labels: Sequence[Label], setting: Setting) -> LabelCheck:
         *check_jumps(labels, looked),
         *check_reprojection(labels, setting.cameras, looked),
         *check_residuals(labels, setting.tracked, looked),
+        *check_detected(labels, setting.detected, looked),
     ):
         key = finding.label.id, finding.kind
         if key not in worst or finding.score > worst[key].score:
@@ -118,4 +121,5 @@ MISSING: dict[Kind, str] = {
     "jump": "needs the same hand labelled within 15 frames",
     "reprojection": "needs the same joint marked in another camera",
     "residual": "",
+    "detector": "a track or neighbouring labels say more, or the hand detector has not looked through this recording",
 }

@@ -10,7 +10,16 @@ from typing import Literal, get_args
 from server.quality.labels import Label
 
 Kind = Literal[
-    "outside", "finger_order", "handedness", "jump", "bone_length", "depth", "background", "reprojection", "residual"
+    "outside",
+    "finger_order",
+    "handedness",
+    "jump",
+    "bone_length",
+    "depth",
+    "background",
+    "reprojection",
+    "residual",
+    "detector",
 ]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 

@@ -25,6 +25,7 @@ from server.annotations.models import AnnotationRow
 from server.annotations.service import Place, find_revisions, get_annotation, list_annotations
 from server.database import Database
 from server.errors import ConflictError
+from server.jobs.detections import AREA, find_detections
 from server.quality.find import Coverage, LabelCheck, Setting, check_labels
 from server.quality.finding import Finding
 from server.quality.labels import Label, LabelReader
@@ -101,14 +102,16 @@ class FlagFinder:
         track: Compared | None,
     ) -> Flagged:
         """What the checks of the labels found and looked at; `track` is the one they are compared with, if any."""
-        key = (sequence_id, content_key, tuple(hands), track)
+        with database.reading() as session:
+            job_id = find_detections(session, sequence_id)
+        key = (sequence_id, content_key, tuple(hands), track, job_id)
         with self._lock:  # one at a time: several people open the same page
             with database.reading() as session:
                 revisions = find_revisions(session, sequence_id)
             known = self._known.get(key)
             spent = 0.0 if known is None else max(0.0, known.spent - SHARE * (time.monotonic() - known.done_at))
             if known is None or (known.revisions != revisions and spent < CREDIT_SECONDS):
-                known = self._known[key] = self._check(database, sequence_id, hands, track, spent)
+                known = self._known[key] = self._check(database, key, spent)
                 revisions = known.revisions
                 while len(self._known) > KEPT:
                     self._known.popitem(last=False)
@@ -116,17 +119,24 @@ class FlagFinder:
         return known.see(revisions)
 
     def _check(
-        self, database: Database, sequence_id: uuid.UUID, hands: Many[str], track: Compared | None, spent: float
+        self,
+        database: Database,
+        about: tuple[uuid.UUID, str, Many[str], Compared | None, uuid.UUID | None],
+        spent: float,
     ) -> _Known:
         from tracker import load_sequence
 
+        sequence_id, _, hands, track, job_id = about
         began = time.monotonic()
         with database.reading() as session:
             rows, _ = list_annotations(session, sequence_id)
             session.expunge_all()
         recording = load_sequence(self._storage.folder("sequences", sequence_id))
         labels = self._read(recording, rows)
-        check = check_labels(labels, self._describe(recording, hands, track))
+        setting = self._describe(recording, hands, track)
+        if job_id is not None:
+            setting = replace(setting, detected=_read_detections(self._storage.document(AREA, job_id)))
+        check = check_labels(labels, setting)
         now = time.monotonic()
         return _Known(labels, check, {row.id: row.revision for row in rows}, now, spent + now - began)
 
@@ -167,6 +177,16 @@ def _read_track(folder: Path) -> dict[tuple[str, int, str], npt.NDArray[np.float
                 for index, camera in enumerate(cameras):
                     found[camera, frame, hand] = joints[row, index, columns]
     return found
+
+
+def _read_detections(path: Path) -> dict[tuple[str, int, str], npt.NDArray[np.float64]]:
+    """(21, 2) px of detected hands by camera, frame and hand; NaN where a joint is outside the image."""
+    from tracker import load_recorded_hands
+
+    return {
+        (item.camera, item.frame, item.hand): np.where(item.points[:, 2:] > 0, item.points[:, :2], np.nan)
+        for item in load_recorded_hands(path).hands.items
+    }
 
 
 def find_dismissed(session: Session, sequence_id: uuid.UUID) -> set[tuple[uuid.UUID, int, str]]:

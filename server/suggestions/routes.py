@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Annotated
 
@@ -12,12 +13,14 @@ from server.accounts.service import CurrentAccount
 from server.annotations.guards import GuardsDep, check_read, find_hidden
 from server.annotations.routes import CameraPath, get_annotated_sequence
 from server.annotations.schemas import Hand
-from server.annotations.service import check_place, check_points
+from server.annotations.service import HiddenPlaces, Place, check_place, check_points
 from server.database import DatabaseDep
 from server.database.frames import FramePath
 from server.database.paging import Page
 from server.errors import error_responses
+from server.jobs.detections import find_detections
 from server.suggestions import service
+from server.suggestions.detector import suggest_detected
 from server.suggestions.schemas import FitRequest, Suggestion
 from server.suggestions.shelf import ShelfDep
 
@@ -53,8 +56,36 @@ def list_suggestions(
         hidden = find_hidden(guards, session, account, sequence_id)
     later.add_task(service.warm_up, shelf, recorded, place)
     items = [] if chosen is None else service.suggest_from_track(shelf, recorded, chosen, place)
-    blind = [item for item in items if any(replace(place, hand=item.hand) in places for places in hidden)]
-    return Page(items=[item for item in items if item not in blind], next_cursor=None)
+    return _show(items, place, hidden)
+
+
+@router.get("/detector")
+def list_detected(
+    sequence_id: uuid.UUID,
+    camera: CameraPath,
+    frame: FramePath,
+    database: DatabaseDep,
+    shelf: ShelfDep,
+    account: CurrentAccount,
+    guards: GuardsDep,
+) -> Page[Suggestion]:
+    """The hands of an image as the hand detector sees them; empty where it sees none, or where one marks blindly.
+
+    They come from the last job that looked at the whole recording; where there is none the image is looked at now.
+    """
+    with database.reading() as session:
+        sequence = get_annotated_sequence(sequence_id, session)
+        place = check_place(sequence, camera, frame, "right")
+        recorded = service.Recorded.of(sequence)
+        job_id = find_detections(session, sequence_id)
+        hidden = find_hidden(guards, session, account, sequence_id)
+    return _show(suggest_detected(shelf, recorded, job_id, place), place, hidden)
+
+
+def _show(items: Sequence[Suggestion], place: Place, hidden: Sequence[HiddenPlaces]) -> Page[Suggestion]:
+    """Those that whoever asks may see."""
+    seen = [item for item in items if not any(replace(place, hand=item.hand) in places for places in hidden)]
+    return Page(items=seen, next_cursor=None)
 
 
 @router.post("/{hand}/fit")

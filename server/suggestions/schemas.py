@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from server.annotations.schemas import Hand, Points
 
-Source = Literal["triangulation", "interpolation", "fit", "track"]
+Source = Literal["triangulation", "interpolation", "fit", "track", "detector"]
 
 
 class SuggestedJoint(BaseModel):

@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
+from server.jobs.detections import AREA
 from server.storage import Storage
 
 if TYPE_CHECKING:
-    from tracker import Frame, Sequence, Track
+    from tracker import Frame, RecordedHands, Sequence, Track
 
 Thing = TypeVar("Thing")
 
 KEPT = 8
-"""Recordings, tracks and frames together."""
+"""Recordings, tracks, frames and what the hand detector found, together."""
 
 
 class Shelf:
@@ -44,6 +45,12 @@ class Shelf:
     def track(self, track_id: uuid.UUID) -> tuple[Track, dict[int, int]]:
         """A track and the row of each of its frames."""
         return self._get(track_id, lambda: self._load_track(track_id))
+
+    def detections(self, job_id: uuid.UUID) -> RecordedHands:
+        """What a job of the hand detector found."""
+        from tracker import load_recorded_hands
+
+        return self._get(("detections", job_id), lambda: load_recorded_hands(self._storage.document(AREA, job_id)))
 
     def _load_track(self, track_id: uuid.UUID) -> tuple[Track, dict[int, int]]:
         from tracker import load_track

@@ -168,3 +168,40 @@ def test_an_answer_to_older_joints_never_shows(recording, truth, open_page, pict
     expect(line).to_contain_text("model fit of 7 joints")
     assert asked[0] == 4
     assert asked[-1] == 7
+
+
+def test_the_hand_detector_suggests_in_the_moment_and_for_the_whole_recording(
+    studio, recording, truth, open_page, picture_of, screenshots
+):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    picture = open_annotator(page, recording, picture_of)
+    line = page.get_by_test_id("suggested-by")
+    expect(line).to_contain_text("Suggested by Hand detector", timeout=30_000)
+    page.get_by_label("Suggestions", exact=True).click()
+    group = page.get_by_role("group", name="Hand detector, whole recording")
+    expect(group).to_contain_text("looks at each image by itself")
+    screenshots.take(page, "42-detector")
+    group.get_by_role("button", name="Look through the whole recording").click()
+    expect(group).to_contain_text("looked through the whole recording", timeout=90_000)
+    [job] = studio.get(f"/jobs?kind=detect&sequence_id={recording['id']}")["items"]
+    assert (job["state"], job["frames_done"]) == ("succeeded", recording["frame_count"])
+    screenshots.take(page, "43-detector-done")
+    page.keyboard.press("Escape")
+    expect(line).to_contain_text("Suggested by Hand detector")
+    assert find_annotations(studio, recording) == [], "a suggestion is no annotation"
+
+    page.keyboard.press("Shift+A")
+    picture.wait_until_saved()
+    [item] = find_annotations(studio, recording)
+    assert np.linalg.norm(np.array(item["points"])[:, :2] - truth, axis=1).mean() < 8.0
+    assert item["sources"] == [{"kind": "detector", "label": "Hand detector"}] * 21
+
+    page.route(
+        re.compile("/detector$"), lambda route: route.fulfill(status=503, json={"error": "x", "detail": "Busy."})
+    )
+    page.goto(f"/recordings/{recording['id']}/annotate?frame=9")
+    page.get_by_label("Suggestions", exact=True).click()
+    expect(page.get_by_text("The hand detector suggests nothing: Busy. Your joints are safe.")).to_be_visible()
+    screenshots.take(page, "44-detector-fails")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tracker.capture.document import Node
 
-SOURCE_KINDS = ("track", "fit", "triangulation", "interpolation", "copy", "import")
+SOURCE_KINDS = ("track", "fit", "detector", "triangulation", "interpolation", "copy", "import")
 
 
 @dataclass(frozen=True)
@@ -15,13 +15,14 @@ class JointSource:
     """What a person accepted for a joint instead of placing it.
 
     Attributes:
-        kind: `track`, `fit` (a model fitted to other joints), `triangulation` (from other cameras), `interpolation`
-            (between key frames), `copy` (of another frame's pose) or `import` (with a file).
+        kind: `track`, `fit` (a model fitted to other joints), `detector` (the hand detector's own), `triangulation`
+            (from other cameras), `interpolation` (between key frames), `copy` (of another frame's pose) or `import`
+            (with a file).
         label: For people, after "from": "Track 2", "model fit of 7 joints".
         track_id: The track it is of.
         model: Name of the hand model behind it.
-        is_independent: Of a triangulation, an interpolation or a copy: no track and no fit had a part in any joint
-            that it was made of. False also where nobody noted it.
+        is_independent: Of a triangulation, an interpolation or a copy: no track, no fit and no detector had a part
+            in any joint that it was made of. False also where nobody noted it.
     """
 
     kind: str

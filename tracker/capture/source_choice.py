@@ -2,7 +2,8 @@
 
 A joint is *independent* when no track had a part in it: placed or moved by hand, imported, never noted, or
 triangulated, interpolated or copied from such joints alone. What somebody accepted from a track is not, nor what was
-made of that; nor a model fit, which uses the tracker's own hand model and its own objective.
+made of that; nor a model fit, which uses the tracker's own hand model and its own objective; nor a joint of the hand
+detector, by which the tracker starts and is guided.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ ORIGINS = ("hand", "unknown", *SOURCE_KINDS)
 """Where a joint may have come from; `unknown`: nobody noted it."""
 SOURCE_CHOICES = (INDEPENDENT, ALL, *ORIGINS)
 """What can be chosen; of several, a joint counts that is among any."""
+MADE = ("track", "fit", "detector")
+"""Kinds that the tracker itself, or what guides it, has a part in."""
 JUDGING = (INDEPENDENT,)
 """What judges when nobody chose."""
 
@@ -34,6 +37,7 @@ ORIGIN_WORDS = {
     "unknown": "of unknown origin",
     "track": "accepted from a track",
     "fit": "accepted from a model fit",
+    "detector": "accepted from the hand detector",
     "triangulation": "triangulated from other cameras",
     "interpolation": "interpolated between key frames",
     "copy": "copied from another frame",
@@ -43,7 +47,7 @@ ORIGIN_WORDS = {
 
 def is_independent(source: JointSource | None) -> bool:
     """Whether no track had a part in a joint that has this source; None: placed by hand."""
-    return source is None or source.kind == "import" or (source.kind not in ("track", "fit") and source.is_independent)
+    return source is None or source.kind == "import" or (source.kind not in MADE and source.is_independent)
 
 
 def find_counted(sources: JointSources | None, chosen: Sequence[str]) -> npt.NDArray[np.bool_]:

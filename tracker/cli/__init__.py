@@ -7,6 +7,7 @@ import argparse
 from tracker.cli import (
     bench,
     calibrate,
+    detect,
     evaluate,
     model_loop,
     register,
@@ -22,6 +23,7 @@ COMMANDS = (
     track,
     register,
     calibrate,
+    detect,
     evaluate,
     synthesize,
     synthesize_scans,

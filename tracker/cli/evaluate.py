@@ -34,8 +34,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         default="independent",
         metavar="WORDS",
         help="annotations: which joints judge, by where they came from: independent (no track had a part in them), "
-        "all, or some of hand, unknown, import, triangulation, interpolation, copy, fit, track with commas between; "
-        "default: independent",
+        "all, or some of hand, unknown, import, triangulation, interpolation, copy, fit, detector, track with commas "
+        "between; default: independent",
     )
     parser.add_argument("--truth", type=Path, metavar="FILE", help="a truth.npz of `handloom synthesize`")
     parser.add_argument(

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
+from tracker.detection import Forest, default_detector, load_forest, save_forest
 from tracker.errors import TrackingError, reading
 from tracker.landmarks import HandDetector, default_hand_detector
 from tracker.model.articulated import ArticulatedModel
@@ -22,6 +23,8 @@ from tracker.model.scene import Scene
 from tracker.observation import Preprocessing, undistort
 from tracker.tracking.options import TrackOptions
 from tracker.tracking.tracking_faults import find_tracking_faults
+
+FINGERTIPS = "fingertips.npz"
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,7 @@ class TrackSetup:
         camera_id: The depth camera.
         options: What the user chose.
         marks: Name of a hand to its joints (21, 3) as marked in the first frame, px of an ideal lens and v.
+        fingertips: Finds fingertips for the S of [T16] Eq. 5; None for the detector that comes along.
     """
 
     names: tuple[str, ...]
@@ -41,6 +45,7 @@ class TrackSetup:
     camera_id: str
     options: TrackOptions
     marks: dict[str, npt.NDArray[np.float64]] = field(default_factory=dict)
+    fingertips: Forest | None = None
 
     @cached_property
     def scene(self) -> Scene:
@@ -71,6 +76,11 @@ class TrackSetup:
         return default_hand_detector() if self.options.use_detector else None
 
     @property
+    def fingertip_detector(self) -> Forest:
+        """The one that was given, or the one that comes along."""
+        return self.fingertips or default_detector()
+
+    @property
     def object_names(self) -> tuple[str, ...]:
         return tuple(name for name, model in zip(self.names, self.models, strict=True) if not model.hand)
 
@@ -79,11 +89,13 @@ class TrackSetup:
         return undistort(sequence.frame(index, self.camera_id), sequence.camera(self.camera_id))
 
     def save(self, folder: Path) -> None:
-        """Write `setup.json` and `models/<name>.npz`."""
+        """Write `setup.json`, `models/<name>.npz`, and `fingertips.npz` where a detector was given."""
         folder = Path(folder)
         (folder / "models").mkdir(parents=True, exist_ok=True)
         for name, model in zip(self.names, self.models, strict=True):
             save_npz_model(model, folder / "models" / f"{name}.npz")
+        if self.fingertips is not None:
+            save_forest(self.fingertips, folder / FINGERTIPS)
         document = {
             "version": 1,
             "names": list(self.names),
@@ -105,7 +117,8 @@ class TrackSetup:
             camera, options = str(document["camera"]), TrackOptions.from_json(document["options"])
             marks = {str(n): np.array(p, dtype=np.float64).reshape(21, 3) for n, p in document["marks"].items()}
         models = tuple(load_npz_model(folder / "models" / f"{name}.npz") for name in names)
-        return cls(names, models, camera, options, marks)
+        fingertips = load_forest(folder / FINGERTIPS) if (folder / FINGERTIPS).exists() else None
+        return cls(names, models, camera, options, marks, fingertips)
 
 
 def choose_camera(sequence: Sequence, options: TrackOptions) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from tracker.detection import Forest, default_detector, find_fingertips
+from tracker.detection import Forest, find_fingertips
 from tracker.observation import Observation
 from tracker.physics import PhysicsWorld, find_down
 from tracker.terms.collision import Collision
@@ -53,7 +53,7 @@ def make_tools(setup: TrackSetup, T_world_camera: npt.NDArray[np.float64]) -> It
     if "C" in letters:
         terms["collision"] = Collision()
     has_object = any(not model.hand for model in setup.models)
-    detector = default_detector() if "S" in letters else None
+    detector = setup.fingertip_detector if "S" in letters else None
     if "P" not in letters or not has_object:
         yield Tools(Objective(terms=terms), detector, None)
         return

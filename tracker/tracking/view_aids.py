@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from tracker.detection import Forest, default_detector
+from tracker.detection import Forest
 from tracker.model.scene import PosedScene
 from tracker.physics import PhysicsWorld, find_down
 from tracker.tracking.setup import TrackSetup
@@ -30,7 +30,7 @@ class ViewAids:
 
     @cached_property
     def detector(self) -> Forest:
-        return default_detector()
+        return self.setup.fingertip_detector
 
     @cached_property
     def part_names(self) -> tuple[str, ...]:

@@ -10,9 +10,13 @@ import numpy as np
 import pytest
 
 from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.database import utc_now
 from server.imports.service import ImportDesk, import_recording
+from server.jobs.detections import AREA
+from server.jobs.service import create_job
 from server.quality import service
 from tests.server.quality.errors import Item, inject
+from tracker import default_hand_detector, detect_hands, load_sequence
 
 
 @pytest.fixture
@@ -118,6 +122,34 @@ def test_what_came_from_the_track_is_not_compared_with_it(client, tracked):
     flags = find(client, sequence, kind="residual")["items"]
     assert sorted(flag["frame"] for flag in flags) == list(range(6, 12))
     assert "as in 6 of 6 hands" in flags[0]["reason"]
+
+
+def test_a_lonely_label_is_compared_with_what_the_hand_detector_sees(studio, client, labelled):
+    """All but one label are gone: nobody but the detector, which has looked through the recording, speaks about it."""
+    sequence_id = uuid.UUID(labelled.rpartition("/")[2])
+    storage = studio.app.state.storage
+    recording = load_sequence(storage.folder("sequences", sequence_id))
+    for frame in range(recording.frame_count):
+        if frame != 5:
+            address = f"{labelled}/annotations/cam0/{frame}/right"
+            client.delete(address, headers={"If-Match": client.get(address).headers["etag"]})
+    stored = client.get(f"{labelled}/annotations/cam0/5/right").json()["points"]
+    mirrored = [[2 * stored[9][0] - x, y, v] for x, y, v in stored]
+    found, _ = detect_hands(recording, default_hand_detector(), ("cam0",), range(8), {})
+
+    def look():
+        checks = {one["kind"]: one["labels"] for one in find(client, labelled)["checked"]["checks"]}
+        return checks["detector"], [flag["frame"] for flag in find(client, labelled, kind="detector")["items"]]
+
+    assert look() == (0, []), "nobody has looked through the recording"
+    with studio.database.writing() as session:
+        job = create_job(session, "detect", sequence_id, {})
+        job.state, job.ended_at = "succeeded", utc_now()
+        storage.document(AREA, job.id)
+        found.save(storage.root / AREA / f"{job.id}.json")
+    assert look() == (1, []), "a right label agrees with it"
+    relabel(client, labelled, 5, mirrored)
+    assert look() == (1, [5])
 
 
 def test_a_hand_of_another_frame_is_told_from_its_neighbours(client, labelled):

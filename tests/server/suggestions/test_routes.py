@@ -112,3 +112,45 @@ def test_without_depth_the_marks_alone_are_fitted(client, add_recording):
     answer = client.post(f"/api/v1/sequences/{recording['id']}/suggestions/cam0/0/right/fit", json={"points": points})
     assert answer.status_code == 200, answer.text
     assert sum(joint is not None for joint in answer.json()["joints"]) > 15
+
+
+def test_the_hand_detector_suggests_the_hand_of_one_image_on_the_spot(client, tracked, rendered):
+    before = client.get(f"/api/v1/sequences/{tracked.sequence_id}/annotations.json").json()
+    [suggestion] = client.get(f"/api/v1/sequences/{tracked.sequence_id}/suggestions/cam0/5/detector").json()["items"]
+    told = suggestion["source"], suggestion["label"], suggestion["hand"], suggestion["frame"], suggestion["track_id"]
+    assert told == ("detector", "Hand detector", "right", 5, None)
+    assert measure(suggestion, find_truth(rendered, 5)).mean() < 8.0
+    assert {joint["guess"] for joint in suggestion["joints"]} == {"visible"}
+    assert client.get(f"/api/v1/sequences/{tracked.sequence_id}/annotations.json").json() == before
+
+
+def test_an_image_without_a_hand_and_one_without_colour_have_no_detected_hand(client, add_recording):
+    for name, more in (("noise", {}), ("depth alone", {"color": None})):
+        sequence = add_recording(name, **more)["id"]
+        answer = client.get(f"/api/v1/sequences/{sequence}/suggestions/cam0/0/detector")
+        assert (answer.status_code, answer.json()["items"]) == (200, [])
+        assert client.get(f"/api/v1/sequences/{sequence}/suggestions/cam9/0/detector").status_code == 404
+        assert client.get(f"/api/v1/sequences/{sequence}/suggestions/cam0/99/detector").status_code == 404
+
+
+def test_an_accepted_detected_joint_stays_known_as_one_and_judges_no_track(client, tracked):
+    [suggestion] = client.get(f"/api/v1/sequences/{tracked.sequence_id}/suggestions/cam0/5/detector").json()["items"]
+    place = f"/api/v1/sequences/{tracked.sequence_id}/annotations/cam0/5/right"
+    source = {"kind": suggestion["source"], "label": suggestion["label"]}
+    answer = client.put(
+        place,
+        json={
+            "points": [[*joint["px"], 2] for joint in suggestion["joints"]],
+            "sources": [source] * 21,
+            "operation_id": str(uuid.uuid4()),
+        },
+        headers={"If-Match": client.get(place).headers["etag"]},
+    )
+    assert answer.status_code == 200, answer.text
+    items = client.get(f"/api/v1/sequences/{tracked.sequence_id}/annotations.json").json()["items"]
+    [kept] = [item for item in items if item["frame"] == 5]
+    assert kept["sources"] == [source] * 21
+    found = client.get(f"/api/v1/tracks/{tracked.track_id}/evaluation").json()
+    [left_out] = [one for one in found["sources"] if not one["is_counted"]]
+    assert (left_out["words"], left_out["joints"]) == ("accepted from the hand detector", 21)
+    assert 5 not in [item["frame"] for item in found["items"] if item["joints"]]

@@ -66,7 +66,9 @@ def test_machines_do_not_suggest_to_who_marks_blindly(lead, ann, bob, tracked) -
     body = {"name": "Blind", "sequence_id": sequence, "frames": [2], "cameras": ["cam0"], "hands": ["right"]}
     lead.make(f"/projects/{project['id']}/replica-sets", **body, account_ids=[ann.id, bob.id])
     assert len(lead.get(f"/sequences/{sequence}/suggestions/cam0/2")["items"]) == 1
+    assert len(lead.get(f"/sequences/{sequence}/suggestions/cam0/2/detector")["items"]) == 1
     assert ann.get(f"/sequences/{sequence}/suggestions/cam0/2")["items"] == []
+    assert ann.get(f"/sequences/{sequence}/suggestions/cam0/2/detector")["items"] == []
     assert len(ann.get(f"/sequences/{sequence}/suggestions/cam0/3")["items"]) == 1
     fit = {"points": [[100 + 5 * joint, 100, 2] for joint in range(21)]}
     assert ann.send("POST", f"/sequences/{sequence}/suggestions/cam0/2/right/fit", fit).status_code == 403

@@ -9,6 +9,9 @@ import pytest
 
 from tracker.cli.__main__ import main
 from tracker.detection import load_forest
+from tracker.landmarks.network import DATA
+from tracker.tracking.setup import TrackSetup
+from tracker.tracking.tools import make_tools
 
 QUICK = ["--trees", "3", "--tests", "500", "--patches", "1500", "--min-leaf", "10"]
 
@@ -74,3 +77,36 @@ def test_a_recording_without_annotations_is_refused(recording, tmp_path, capsys)
     (bare / "annotations.json").unlink()
     assert main(["train-detector", str(bare), "--out", str(tmp_path / "tips.npz")]) == 2
     assert "has no annotations" in capsys.readouterr().err
+
+
+def test_a_track_takes_a_detector_that_somebody_trained_and_keeps_it(recording, tmp_path, capsys):
+    tips, out = tmp_path / "tips.npz", tmp_path / "track"
+    assert main(["train-detector", str(recording), *QUICK, "--out", str(tips)]) == 0
+    track = ["track", str(recording), "--frames", "0:2", "--no-calibration", "--detector"]
+    assert main([*track, str(tips), "--out", str(out)]) == 0
+    setup = TrackSetup.load(out)
+    assert setup.fingertips is not None
+    with make_tools(setup, np.eye(4)) as tools:
+        assert tools.detector is setup.fingertips
+        assert tools.detector.nodes.tobytes() == load_forest(tips).nodes.tobytes()
+
+
+@pytest.mark.parametrize("name", ["landmarks.onnx", "noise", "model.npz"])
+def test_a_file_that_is_no_detector_is_refused_before_anything_is_tracked(recording, tmp_path, capsys, name):
+    file, out = tmp_path / name, tmp_path / "track"
+    if name == "landmarks.onnx":
+        file.write_bytes((DATA / name).read_bytes())
+    elif name == "noise":
+        file.write_bytes(np.random.default_rng(0).bytes(5000))
+    else:
+        np.savez(file, format=np.array(["something else"]))
+    assert main(["track", str(recording), "--detector", str(file), "--out", str(out)]) == 2
+    said = capsys.readouterr().err
+    assert name in said and "needed" in said and "Traceback" not in said
+    assert not out.exists()
+
+
+def test_a_detector_that_the_run_would_not_use_is_refused(recording, tmp_path, capsys):
+    words = ["--detector", str(tmp_path / "tips.npz"), "--terms", "LO", "--out", str(tmp_path / "track")]
+    assert main(["track", str(recording), *words]) == 2
+    assert "use no fingertips" in capsys.readouterr().err

@@ -98,20 +98,31 @@ def test_what_came_from_a_track_does_not_judge_one_unless_asked(known):
     accepted = JointSource("track", "Track 2")
     sources = (None, accepted, JointSource("copy", "frame 1"), JointSource("copy", "frame 2", is_independent=True))
     items = [
-        replace(item, sources=(*sources, JointSource("fit"), JointSource("import", "coco_keypoints"), *(None,) * 15))
+        replace(
+            item,
+            sources=(
+                *sources,
+                JointSource("fit"),
+                JointSource("import", "coco_keypoints"),
+                JointSource("detector", "Hand detector"),
+                *(None,) * 14,
+            ),
+        )
         for item in known.annotations.items
     ]
     items[0] = replace(items[0], sources=(accepted,) * 21)
     found = evaluate_track(known.track(), Annotations(tuple(items)))
     assert np.isfinite(found.error[0]).sum() == 0
-    assert np.flatnonzero(np.isnan(found.error[1])).tolist() == [1, 2, 4]
-    assert found.left_out.sum() == 21 + 4 * 3
+    assert np.flatnonzero(np.isnan(found.error[1])).tolist() == [1, 2, 4, 6]
+    assert found.left_out.sum() == 21 + 4 * 4
     document = found.to_json()
-    assert (document["evaluated"], document["left_out_joints"]) == (4, 33)
+    assert (document["evaluated"], document["left_out_joints"]) == (4, 37)
     assert {one["words"]: one["joints"] for one in document["sources"] if not one["is_counted"]} == {
         "accepted from Track 2": 25,
         "copied from another frame and not known to be free of a track": 4,
         "accepted from a model fit": 4,
+        "accepted from the hand detector": 4,
     }
     assert evaluate_track(known.track(), Annotations(tuple(items)), ("all",)).statistics.count == 5 * 21
     assert evaluate_track(known.track(), Annotations(tuple(items)), ("import", "fit")).statistics.count == 8
+    assert evaluate_track(known.track(), Annotations(tuple(items)), ("detector",)).statistics.count == 4

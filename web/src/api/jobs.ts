@@ -175,6 +175,15 @@ export function useStartTracking() {
   });
 }
 
+/** Have the hand detector look through a whole recording. */
+export function useStartDetecting() {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: (recording: string) => request<Job>("POST", "/jobs/detect", { body: { sequence_id: recording } }),
+    onSuccess: (job) => takeIn(client, job),
+  });
+}
+
 export function useJobAction(action: "cancel" | "retry" | "resume") {
   const client = useQueryClient();
   return useMutation({

@@ -1100,6 +1100,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/jobs/detect": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Create Detect Job
+         * @description Find the hands in every image of a recording; what is found is suggested to whoever annotates it.
+         */
+        post: operations["create_detect_job"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/jobs/detect/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Check Detect Job
+         * @description Whether the hand detector can look at a recording, and why not. Nothing is started.
+         */
+        post: operations["check_detect_job"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/jobs/events": {
         parameters: {
             query?: never;
@@ -2659,6 +2699,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sequences/{sequence_id}/suggestions/{camera}/{frame}/detector": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Detected
+         * @description The hands of an image as the hand detector sees them; empty where it sees none, or where one marks blindly.
+         *
+         *     They come from the last job that looked at the whole recording; where there is none the image is looked at now.
+         */
+        get: operations["list_detected"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sequences/{sequence_id}/suggestions/{camera}/{frame}/{hand}/fit": {
         parameters: {
             query?: never;
@@ -3468,7 +3530,7 @@ export interface components {
              * Source
              * @description Joints that count, as asked for.
              */
-            source: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+            source: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             /**
              * Sources
              * @description Where the joints came from that count, or are left out.
@@ -4025,7 +4087,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+            kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
             /** Labels */
             labels: number;
             /**
@@ -4242,7 +4304,7 @@ export interface components {
              * Source
              * @description Joints that count, as asked for.
              */
-            source: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+            source: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             /** Thresholds Px */
             thresholds_px: number[];
             /** Tracks */
@@ -4430,6 +4492,17 @@ export interface components {
              * @description Made anew for each undo; sent again, nothing is done twice.
              */
             operation_id: string;
+        };
+        /**
+         * DetectCreate
+         * @description A recording whose hands are to be found.
+         */
+        DetectCreate: {
+            /**
+             * Sequence Id
+             * Format: uuid
+             */
+            sequence_id: string;
         };
         /**
          * DetectionView
@@ -4629,7 +4702,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+            kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
             /**
              * Points
              * @description The label as it was looked at.
@@ -5194,7 +5267,7 @@ export interface components {
             seconds_left: number | null;
             /**
              * Sequence Id
-             * @description The recording of a tracking job.
+             * @description The recording of a job that tracks or detects.
              */
             sequence_id: string | null;
             /**
@@ -5287,7 +5360,7 @@ export interface components {
         JointSourceOut: {
             /**
              * Is Independent
-             * @description Of a triangulation, an interpolation or a copy: no track and no model fit had a part in any joint that it was made of. Only such joints judge a track, unless others are asked for.
+             * @description Of a triangulation, an interpolation or a copy: no track, no model fit and no detector had a part in any joint that it was made of. Only such joints judge a track, unless others are asked for.
              * @default false
              */
             is_independent: boolean;
@@ -5295,7 +5368,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import";
+            kind: "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import";
             /**
              * Label
              * @description For people.
@@ -7556,7 +7629,7 @@ export interface components {
              * Source
              * @enum {string}
              */
-            source: "triangulation" | "interpolation" | "fit" | "track";
+            source: "triangulation" | "interpolation" | "fit" | "track" | "detector";
             /**
              * Track Id
              * @description The track it is of.
@@ -11288,8 +11361,8 @@ export interface operations {
                 camera?: string;
                 /** @description This hand alone. */
                 hand?: "right" | "left";
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
                 /** @description Joints marked so alone. */
                 visibility?: "visible" | "occluded";
                 /** @description Leave out the frame that each track began at: its annotation may have helped. */
@@ -11394,8 +11467,8 @@ export interface operations {
                 camera?: string;
                 /** @description This hand alone. */
                 hand?: "right" | "left";
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
                 /** @description Joints marked so alone. */
                 visibility?: "visible" | "occluded";
                 /** @description Leave out the frame that each track began at: its annotation may have helped. */
@@ -13175,7 +13248,7 @@ export interface operations {
         parameters: {
             query?: {
                 sequence_id?: string;
-                kind?: "track" | "register" | "train" | "loop";
+                kind?: "track" | "detect" | "register" | "train" | "loop";
                 /** @description One or several. */
                 state?: ("queued" | "running" | "succeeded" | "failed" | "cancelled")[];
                 created_by?: string;
@@ -13798,6 +13871,180 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["JobCreate"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["JobCheck"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    create_detect_job: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DetectCreate"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["JobOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    check_detect_job: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DetectCreate"];
             };
         };
         responses: {
@@ -15385,8 +15632,8 @@ export interface operations {
                 format: string;
                 /** @description Each once. */
                 sequence_id: string[];
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path?: never;
@@ -18051,8 +18298,8 @@ export interface operations {
     get_agreement: {
         parameters: {
             query?: {
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path: {
@@ -18139,8 +18386,8 @@ export interface operations {
     get_agreement_csv: {
         parameters: {
             query?: {
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path: {
@@ -18227,8 +18474,8 @@ export interface operations {
     get_agreement_page: {
         parameters: {
             query?: {
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path: {
@@ -20953,7 +21200,7 @@ export interface operations {
         parameters: {
             query?: {
                 /** @description Only these. */
-                kind?: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+                kind?: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
                 /** @description Those that were put away instead of the open ones. */
                 dismissed?: boolean;
                 /** @description `next_cursor` of the page before. */
@@ -21051,7 +21298,7 @@ export interface operations {
             };
             header?: never;
             path: {
-                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
                 camera: string;
                 frame: number;
                 hand: "right" | "left";
@@ -21155,7 +21402,7 @@ export interface operations {
             };
             header?: never;
             path: {
-                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual";
+                kind: "outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector";
                 camera: string;
                 frame: number;
                 hand: "right" | "left";
@@ -21615,8 +21862,8 @@ export interface operations {
                 snapshot_id?: string;
                 /** @description For formats in 3D: take the joints in space from this track of the recording. */
                 track_id?: string;
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path: {
@@ -21719,8 +21966,8 @@ export interface operations {
                 snapshot_id?: string;
                 /** @description For formats in 3D: take the joints in space from this track of the recording. */
                 track_id?: string;
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path: {
@@ -22307,6 +22554,93 @@ export interface operations {
                 /** @description The track to look at; the recording's best one when not given. */
                 track_id?: string;
             };
+            header?: never;
+            path: {
+                sequence_id: string;
+                camera: string;
+                frame: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_Suggestion_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_detected: {
+        parameters: {
+            query?: never;
             header?: never;
             path: {
                 sequence_id: string;
@@ -23854,8 +24188,8 @@ export interface operations {
     get_track_evaluation: {
         parameters: {
             query?: {
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path: {
@@ -23944,8 +24278,8 @@ export interface operations {
     get_evaluation_picture: {
         parameters: {
             query?: {
-                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `track`. */
-                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "triangulation" | "interpolation" | "copy" | "import")[];
+                /** @description Joints that count, by where they came from; given several times, a joint counts that is one of them. `independent`: no track had a part in it, so that nothing is judged by what it made itself. `all`: whatever it came from. Or a kind: `hand`, `unknown` (never noted), `import`, `triangulation`, `interpolation`, `copy`, `fit`, `detector`, `track`. */
+                source?: ("independent" | "all" | "hand" | "unknown" | "track" | "fit" | "detector" | "triangulation" | "interpolation" | "copy" | "import")[];
             };
             header?: never;
             path: {

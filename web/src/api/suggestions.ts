@@ -14,6 +14,12 @@ export async function fetchTrackSuggestions(recording: string, camera: string, f
   return page.items.map(fromServer);
 }
 
+/** The hands of an image as the hand detector sees them; none where it sees none. */
+export async function fetchDetected(recording: string, camera: string, frame: number, signal: AbortSignal): Promise<Suggestion[]> {
+  const page = await request<Page<WireSuggestion>>("GET", `${pathOf(recording, camera, frame)}/detector`, { signal });
+  return page.items.map(fromServer);
+}
+
 /** A model fitted to the joints that are placed. */
 export async function fetchFit(recording: string, { camera, frame, hand }: PoseKey, pose: Pose, signal: AbortSignal): Promise<Suggestion> {
   return fromServer(await request<WireSuggestion>("POST", `${pathOf(recording, camera, frame)}/${hand}/fit`, { body: { points: toWire(pose) }, signal }));

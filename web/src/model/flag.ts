@@ -12,6 +12,7 @@ export const KIND_NAMES: Record<Flag["kind"], string> = {
   jump: "Jump",
   reprojection: "Other cameras",
   residual: "Far from the track",
+  detector: "Far from the hand detector",
 };
 
 export const KINDS = Object.keys(KIND_NAMES) as Flag["kind"][];

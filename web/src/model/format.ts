@@ -45,5 +45,10 @@ export function formatBytes(bytes: number): string {
 /** "depth_residual_mm" or "depth-residual" as words. */
 export const formatName = (name: string): string => name.replaceAll(/[_-]+/g, " ").replace(/^./, (letter) => letter.toUpperCase());
 
+const JOB_WORDS: Record<string, string> = { detect: "Find hands in" };
+
+/** What a job does, before the name of what it does it to: "Track", "Find hands in". */
+export const formatJobKind = (kind: string): string => JOB_WORDS[kind] ?? formatName(kind);
+
 /** "one, two and three". */
 export const joinWords = (words: readonly string[]): string => words.length < 2 ? words.join("") : `${words.slice(0, -1).join(", ")} and ${words.at(-1)}`;

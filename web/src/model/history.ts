@@ -20,6 +20,7 @@ export interface HistoryEntry {
 const KINDS: Record<JointSource["kind"], string> = {
   track: "",
   fit: "",
+  detector: "",
   triangulation: "triangulated from ",
   interpolation: "between ",
   copy: "copied from ",

@@ -14,6 +14,7 @@ it("what is made of a track's joints never counts as free of it, however often i
   expect(twice.slice(0, 3).map(({ from }) => isIndependent(from))).toEqual([true, false, true]);
   const between = interpolate(pose, emptyPose().with(0, point()).with(1, point()).with(2, point({ kind: "fit" })), 0.5);
   expect(between.slice(0, 3).map((joint) => joint?.is_independent)).toEqual([true, undefined, undefined]);
+  expect(isIndependent({ kind: "detector", label: "Hand detector" })).toBe(false);
   expect([ofIndependent(), ofIndependent(point(), point({ kind: "copy", label: "frame 3" }))]).toEqual([{}, {}]);
 });
 

@@ -19,9 +19,10 @@ export const SOURCE_CHOICES: readonly { value: string; label: string }[] = [
   { value: "copy", label: "Copied" },
   { value: "fit", label: "Model fit" },
   { value: "track", label: "Track" },
+  { value: "detector", label: "Hand detector" },
 ];
 
-/** No track and no model fit had a part in the joint; what is made of such joints alone says so. */
+/** No track, no model fit and no hand detector had a part in the joint; what is made of such joints alone says so. */
 export const isIndependent = (from: JointSource | undefined): boolean => from === undefined || from.kind === "import" || from.is_independent === true;
 
 /** To be spread into the source of a joint that is made of others. */

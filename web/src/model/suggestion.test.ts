@@ -17,6 +17,8 @@ const suggestion = (source: Source, x: number, joints = 21, at = place): Suggest
 const start = (poses: AnnotatorState["poses"] = {}): AnnotatorState => ({ poses, camera: "cam0", frame: 3, frameCount: 9, frames: null, hand: "right", joint: 0, isChosen: false, draft: null });
 
 test("each joint is suggested by the first source that has it, hidden ones left out", () => {
+  const seen = { detector: suggestion("detector", 5), track: suggestion("track", 10, 3) };
+  expect(openJoints(seen, undefined, new Set()).map((joint) => joint?.from.kind)).toEqual([...Array<string>(3).fill("track"), ...Array<string>(18).fill("detector")]);
   const both = { track: suggestion("track", 10), interpolation: suggestion("interpolation", 20, 5) };
   const open = openJoints(both, undefined, new Set());
   expect(open.map((joint) => joint?.px[0])).toEqual([...Array(5).fill(20), ...Array(16).fill(10)]);

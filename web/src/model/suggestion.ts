@@ -5,7 +5,7 @@ import type { JointSource } from "../api/types";
 import { emptyPose, keyText, statusOf, type JointPoint, type Pose, type PoseKey } from "./pose";
 
 /** Where suggestions come from; where several have a joint, the first of these is shown. */
-export const SOURCES = ["triangulation", "interpolation", "fit", "track"] as const;
+export const SOURCES = ["triangulation", "interpolation", "fit", "track", "detector"] as const;
 export type Source = (typeof SOURCES)[number];
 
 export const SOURCE_NAMES: Record<Source, string> = {
@@ -13,6 +13,7 @@ export const SOURCE_NAMES: Record<Source, string> = {
   interpolation: "Key frames",
   fit: "Model fit",
   track: "Track",
+  detector: "Hand detector",
 };
 
 /** A proposed joint. Its visibility is a guess, and is named so: no `JointPoint` by accident. */
@@ -20,7 +21,7 @@ export interface SuggestedJoint {
   /** px, (0, 0) is the centre of the top-left pixel */
   readonly px: readonly [number, number];
   readonly guess: "occluded" | "visible";
-  /** Of a joint made of others: no track and no model fit had a part in any of them. */
+  /** Of a joint made of others: no track, no model fit and no detector had a part in any of them. */
   readonly is_independent?: true;
 }
 

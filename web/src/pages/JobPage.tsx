@@ -5,7 +5,7 @@ import { useRestartCheck } from "../api/jobChecks";
 import { isActive, useJob, useJobForm, useJobLog } from "../api/jobs";
 import { useRecording } from "../api/recordings";
 import { describeParams } from "../model/compareJobs";
-import { formatAgo, formatDuration, formatName } from "../model/format";
+import { formatAgo, formatDuration, formatJobKind } from "../model/format";
 import { CompareWith } from "./jobs/CompareWith";
 import { JobResult } from "./jobs/JobResult";
 import { Restart } from "./jobs/Restart";
@@ -41,7 +41,7 @@ export function JobPage() {
   const recording = useRecording(job?.sequence_id ?? undefined).data;
   const restart = useRestartCheck(job).data;
   const form = useJobForm(job?.kind === "track").data;
-  useTitle(job ? `${formatName(job.kind)} ${job.title}` : "Job");
+  useTitle(job ? `${formatJobKind(job.kind)} ${job.title}` : "Job");
   if (error && !job) return <Failure what="The job could not be loaded" error={error} safe="If it runs, it goes on by itself." onRetry={() => void refetch()} />;
   if (!job) return <PageSkeleton />;
   const params = describeParams(job.params, form);
@@ -51,7 +51,7 @@ export function JobPage() {
         <div style={{ minWidth: 0 }}>
           <Group gap="md" wrap="nowrap">
             <Title order={1} className="one-line">
-              {formatName(job.kind)} {job.title}
+              {formatJobKind(job.kind)} {job.title}
             </Title>
             <JobBadge state={job.state} />
           </Group>

@@ -10,13 +10,15 @@ import { setHidden } from "../../state/suggestions";
 import { useActions, useAnnotating } from "./annotating";
 import { useIsBlind } from "./useIsBlind";
 import { useSuggestions } from "./useSession";
-import { useFitSuggestion, useTrackSuggestions } from "./useSuggestionSources";
+import { DetectRecording, useDetectJobs } from "./DetectRecording";
+import { useDetectedSuggestions, useFitSuggestion, useTrackSuggestions } from "./useSuggestionSources";
 
 const ABOUT: Record<Source, string> = {
   triangulation: "joints placed in other cameras, seen from here",
   interpolation: "between two key frames of this hand",
   fit: "a hand model fitted to the joints placed so far, from the fourth on",
   track: "the fitted hand of a tracking run",
+  detector: "hands that a neural network sees in this image",
 };
 
 /** A blind replica is marked without suggestions: people who accept the same ones would seem to agree. */
@@ -27,7 +29,7 @@ export function SuggestTool() {
 
 /** Asks the machines, answers the keys that accept, and lets one choose who may suggest. */
 function Suggest() {
-  const { recording, session, act } = useAnnotating();
+  const { recording, session, state, act } = useAnnotating();
   const suggestions = useSuggestions(session);
   const tracks = useTracks(recording.id).data ?? [];
   const [chosen, setChosen] = useState<string | null>(null);
@@ -39,6 +41,9 @@ function Suggest() {
   const isBlind = useIsBlind();
   useTrackSuggestions(track, !isBlind);
   const failure = useFitSuggestion(!isBlind && !hidden.has("fit"));
+  const hasColor = recording.cameras.find((camera) => camera.id === state.camera)?.has_color === true;
+  const detectJobs = useDetectJobs(recording.id);
+  const detectorFailure = useDetectedSuggestions(detectJobs.found?.id, detectJobs.isKnown && hasColor && !isBlind && !hidden.has("detector"));
   const toggle = (): void => setHidden(session.suggestions, isOn ? SOURCES : []);
   useActions({
     "suggestion.joint": () => act(acceptJoint, session.suggestions.get()),
@@ -64,7 +69,8 @@ function Suggest() {
               size="xs"
               color="violet"
               label={SOURCE_NAMES[source]}
-              description={ABOUT[source]}
+              description={source === "detector" && !hasColor ? "sees nothing in this view: it has only depth" : ABOUT[source]}
+              disabled={source === "detector" && !hasColor}
               checked={!hidden.has(source)}
               onChange={({ currentTarget: { checked } }) => setHidden(session.suggestions, SOURCES.filter((one) => (one === source ? !checked : hidden.has(one))))}
             />
@@ -79,6 +85,12 @@ function Suggest() {
               value={track ?? null}
               onChange={setChosen}
             />
+          )}
+          {!hidden.has("detector") && recording.cameras.some((camera) => camera.has_color) && <DetectRecording recording={recording.id} jobs={detectJobs} />}
+          {detectorFailure !== null && (
+            <Text size="xs" c="var(--warn-text)" role="status">
+              The hand detector suggests nothing: {detectorFailure} Your joints are safe.
+            </Text>
           )}
           {failure !== null && (
             <Text size="xs" c="var(--warn-text)" role="status">

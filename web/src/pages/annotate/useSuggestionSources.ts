@@ -1,6 +1,7 @@
 import { useEffect, useRef, useState } from "react";
-import { fetchFit, fetchTrackSuggestions } from "../../api/suggestions";
+import { fetchDetected, fetchFit, fetchTrackSuggestions } from "../../api/suggestions";
 import { keyText, placedCount, statusOf } from "../../model/pose";
+import type { Source, Suggestion } from "../../model/suggestion";
 import { activeKey } from "../../state/annotator";
 import { suggest, withdraw } from "../../state/suggestions";
 import { useAnnotating } from "./annotating";
@@ -12,16 +13,22 @@ const FIT_AFTER_MS = 150;
 /** Frames that only fly by are not asked for. */
 const REST_MS = 60;
 
-/** Keep the track's hands of this image and of the next one at hand. */
-export function useTrackSuggestions(track: string | undefined, isWanted: boolean): void {
-  const { recording, session, state } = useAnnotating();
+type Ask = (camera: string, frame: number, signal: AbortSignal) => Promise<Suggestion[]>;
+
+/**
+ * Keep what a source says of whole images at hand, of this one and of the next; the last failure, if that is the answer.
+ * All is asked anew when `of` changes: it names what the source goes by.
+ */
+function useImageSuggestions(source: Source, of: string | undefined, isWanted: boolean, fetch: Ask): string | null {
+  const { session, state } = useAnnotating();
   const { suggestions } = session;
   const asked = useRef(new Set<string>());
+  const [failure, setFailure] = useState<string | null>(null);
 
   useEffect(() => {
     asked.current.clear();
-    withdraw(suggestions, "track");
-  }, [suggestions, track]);
+    withdraw(suggestions, source);
+  }, [suggestions, source, of]);
 
   useEffect(() => {
     if (!isWanted) return;
@@ -32,10 +39,13 @@ export function useTrackSuggestions(track: string | undefined, isWanted: boolean
         if (frame >= state.frameCount || asked.current.has(name)) continue;
         asked.current.add(name);
         try {
-          const found = await fetchTrackSuggestions(recording.id, state.camera, frame, track, call.signal);
+          const found = await fetch(state.camera, frame, call.signal);
           if (!call.signal.aborted) suggest(suggestions, found);
-        } catch {
+          if (!call.signal.aborted) setFailure(null);
+        } catch (reason) {
           // Without it there is less to accept and nothing else; the next visit asks again.
+          asked.current.delete(name);
+          if (!call.signal.aborted) setFailure((reason as Error).message);
         }
         if (call.signal.aborted) asked.current.delete(name);
       }
@@ -45,7 +55,23 @@ export function useTrackSuggestions(track: string | undefined, isWanted: boolean
       clearTimeout(timer);
       call.abort();
     };
-  }, [recording.id, suggestions, state.camera, state.frame, state.frameCount, track, isWanted]);
+    // What is asked changes with `of` alone.
+    // eslint-disable-next-line react-hooks/exhaustive-deps
+  }, [suggestions, state.camera, state.frame, state.frameCount, of, isWanted]);
+
+  return isWanted ? failure : null;
+}
+
+/** The track's hands. */
+export function useTrackSuggestions(track: string | undefined, isWanted: boolean): void {
+  const recording = useAnnotating().recording.id;
+  useImageSuggestions("track", track, isWanted, (camera, frame, signal) => fetchTrackSuggestions(recording, camera, frame, track, signal));
+}
+
+/** The hands that the detector sees; `job` is the one that looked through the whole recording, if one did. */
+export function useDetectedSuggestions(job: string | undefined, isWanted: boolean): string | null {
+  const recording = useAnnotating().recording.id;
+  return useImageSuggestions("detector", job, isWanted, (camera, frame, signal) => fetchDetected(recording, camera, frame, signal));
 }
 
 /** Fit a model to the joints placed so far, a moment after each; an answer that is older than the joints is dropped. */

@@ -5,7 +5,7 @@ import { Link } from "react-router";
 import type { RestartCheck } from "../../api/jobChecks";
 import { isActive, useJobAction } from "../../api/jobs";
 import type { Job, JobState } from "../../api/types";
-import { formatAgo, formatDuration, formatLeft, formatName } from "../../model/format";
+import { formatAgo, formatDuration, formatJobKind, formatLeft } from "../../model/format";
 import classes from "./JobRow.module.css";
 import { For } from "./For";
 
@@ -56,6 +56,11 @@ export function JobActions({ job, restart }: { job: Job; restart?: RestartCheck 
           Open the track
         </Button>
       )}
+      {job.kind === "detect" && job.state === "succeeded" && (
+        <Button size="xs" component={Link} to={`/recordings/${job.sequence_id}/annotate`}>
+          Annotate
+        </Button>
+      )}
       {job.hand_model_id && (
         <Button size="xs" variant={isActive(job) ? "default" : "filled"} component={Link} to={`/models/${job.hand_model_id}`}>
           Open the model
@@ -93,7 +98,7 @@ export function JobRow({ job, recording }: { job: Job; recording: string | undef
       <JobBadge state={job.state} />
       <Link to={`/jobs/${job.id}`} className={classes.link}>
         <Text fw={600} className="one-line">
-          {formatName(job.kind)} {recording ?? "a recording"}
+          {formatJobKind(job.kind)} {recording ?? "a recording"}
         </Text>
         <Text size="xs" className={job.error ? "one-line" : "quiet one-line"} c={job.error ? "var(--bad-text)" : undefined}>
           {job.error ?? (isActive(job) ? jobProgress(job) : `ended ${formatAgo(job.ended_at ?? job.created_at)}${tookOf(job)}`)}

@@ -23,7 +23,7 @@ export function SourceFilter({ chosen, onChange }: SourceFilterProps) {
       <Popover.Dropdown>
         <Radio.Group label="Joints that count" value={way} onChange={(next) => onChange(next === "some" ? ["hand"] : [next])}>
           <Stack gap={8} mt={8}>
-            <Radio size="xs" value={INDEPENDENT} label="Without what a track had a part in" description="No track judges itself: neither joints accepted from a track or a model fit count, nor what was made of them." />
+            <Radio size="xs" value={INDEPENDENT} label="Without what a track had a part in" description="No track judges itself: neither joints accepted from a track, a model fit or the hand detector count, nor what was made of them." />
             <Radio size="xs" value={ALL_SOURCES} label="All" />
             <Radio size="xs" value="some" label="Some kinds" />
           </Stack>

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import permutations
 
 import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
+from tracker.detection import name_hands
 from tracker.landmarks import DetectedHand, HandDetector
 from tracker.model.scene import Scene
 from tracker.observation.own_color import find_own_color
@@ -129,7 +129,7 @@ def find_sightings(
     if len(fitting) < len(found):  # a thumb, taken for a hand, would be followed on
         found = detector.find(frame.color, len(names), fitting)
         fitting = [hand for hand in found if _has_size_of(hand, depth, camera)]
-    hands = _name(fitting, names)
+    hands = name_hands(fitting, names)
     if not hands:
         return Sightings(frame, camera, {})
     focal = float(camera.K[0, 0])
@@ -152,19 +152,6 @@ def _has_size_of(hand: DetectedHand, depth: npt.NDArray[np.float32], camera: Cam
     pixels, metres = hand.points - hand.points.mean(axis=0), hand.points_3d[:, :2] - hand.points_3d[:, :2].mean(axis=0)
     scale = float(np.sum(pixels * metres) / max(np.sum(metres**2), 1e-12))  # px a metre
     return scale > 0.0 and SMALLEST < float(camera.K[0, 0]) / scale / float(np.median(seen)) < LARGEST
-
-
-def _name(found: list[DetectedHand], names: tuple[str, ...]) -> dict[str, DetectedHand]:
-    """Each hand with the name that all sides together make likeliest; the only hand of a recording has its name."""
-    if len(names) == 1:
-        return {names[0]: found[0]} if found else {}
-
-    def likely(order: tuple[str, ...]) -> float:
-        rights = [hand.right if name == "right" else 1.0 - hand.right for hand, name in zip(found, order, strict=True)]
-        return float(np.sum(np.log(np.maximum(rights, 1e-6))))
-
-    best = max(permutations(names, len(found)), key=likely)
-    return dict(zip(best, found, strict=True))
 
 
 def _believe(hand: DetectedHand, depth: npt.NDArray[np.float32], is_hand: npt.NDArray[np.bool_]) -> Array:

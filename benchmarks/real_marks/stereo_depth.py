@@ -1,4 +1,4 @@
-"""A recording with depth from a rectified infrared pair: `python benchmarks/stereo_depth.py DATA OUT`.
+"""A recording with depth from a rectified infrared pair: `python -m benchmarks.real_marks.stereo_depth DATA OUT`.
 
 DATA is `d405_take001`: three RealSense D405 in a cluttered room. The images of one camera's pair are matched (OpenCV's
 semi-global matching, checked from both sides); the left image stands for colour.

@@ -1,0 +1,1 @@
+"""How well real recordings are tracked, judged by joints that people marked in them."""

@@ -47,42 +47,44 @@ export default function BinPage() {
         )}
         {!items && <Skeleton height={240} />}
         {items && items.length > 0 && (
-          <Table verticalSpacing="xs" highlightOnHover>
-            <Table.Thead>
-              <Table.Tr>
-                <Table.Th w={144}>What</Table.Th>
-                <Table.Th>Name</Table.Th>
-                <Table.Th w={160}>Deleted</Table.Th>
-                <Table.Th w={160}>By</Table.Th>
-                <Table.Th w={104} ta="right">
-                  Size
-                </Table.Th>
-                <Table.Th w={128} />
-              </Table.Tr>
-            </Table.Thead>
-            <Table.Tbody>
-              {items.map((item) => (
-                <Table.Tr key={item.id}>
-                  <Table.Td>{item.word.replace(/^./, (letter) => letter.toUpperCase())}</Table.Td>
-                  <Table.Td style={{ overflowWrap: "anywhere" }}>{item.name}</Table.Td>
-                  <Table.Td title={item.deleted_at}>{formatAgo(item.deleted_at)}</Table.Td>
-                  <Table.Td>{item.deleted_by_name ?? <span className="quiet">–</span>}</Table.Td>
-                  <Table.Td ta="right">{item.byte_count === null ? <span className="quiet">–</span> : formatBytes(item.byte_count)}</Table.Td>
-                  <Table.Td ta="right">
-                    <Button
-                      size="compact-xs"
-                      variant="default"
-                      aria-label={`Restore ${item.name}`}
-                      loading={restore.isPending && restore.variables?.id === item.id}
-                      onClick={() => restore.mutate(item, { onSuccess: () => notifications.show({ message: `${item.name} is back.` }), onError: tellFailure })}
-                    >
-                      Restore
-                    </Button>
-                  </Table.Td>
+          <div className="table-scroll">
+            <Table verticalSpacing="xs" highlightOnHover miw={760}>
+              <Table.Thead>
+                <Table.Tr>
+                  <Table.Th w={144}>What</Table.Th>
+                  <Table.Th>Name</Table.Th>
+                  <Table.Th w={160}>Deleted</Table.Th>
+                  <Table.Th w={160}>By</Table.Th>
+                  <Table.Th w={104} ta="right">
+                    Size
+                  </Table.Th>
+                  <Table.Th w={128} />
                 </Table.Tr>
-              ))}
-            </Table.Tbody>
-          </Table>
+              </Table.Thead>
+              <Table.Tbody>
+                {items.map((item) => (
+                  <Table.Tr key={item.id}>
+                    <Table.Td>{item.word.replace(/^./, (letter) => letter.toUpperCase())}</Table.Td>
+                    <Table.Td style={{ overflowWrap: "anywhere" }}>{item.name}</Table.Td>
+                    <Table.Td title={item.deleted_at}>{formatAgo(item.deleted_at)}</Table.Td>
+                    <Table.Td>{item.deleted_by_name ?? <span className="quiet">–</span>}</Table.Td>
+                    <Table.Td ta="right">{item.byte_count === null ? <span className="quiet">–</span> : formatBytes(item.byte_count)}</Table.Td>
+                    <Table.Td ta="right">
+                      <Button
+                        size="compact-xs"
+                        variant="default"
+                        aria-label={`Restore ${item.name}`}
+                        loading={restore.isPending && restore.variables?.id === item.id}
+                        onClick={() => restore.mutate(item, { onSuccess: () => notifications.show({ message: `${item.name} is back.` }), onError: tellFailure })}
+                      >
+                        Restore
+                      </Button>
+                    </Table.Td>
+                  </Table.Tr>
+                ))}
+              </Table.Tbody>
+            </Table>
+          </div>
         )}
         {list.hasNextPage && (
           <Group justify="center" mt="md">

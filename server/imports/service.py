@@ -28,6 +28,7 @@ from server.sequences import service as sequences
 from server.sequences.models import SequenceRow
 from server.settings import Settings
 from server.storage import Storage
+from server.storage.sent_json import read_options
 from server.storage.upload import Upload
 from tracker import (
     ArchiveLimits,
@@ -244,12 +245,7 @@ def remove_abandoned(desk: ImportDesk) -> int:
 
 def parse_options(text: str) -> dict[str, Any]:
     """Options from a form's field: a JSON object, or nothing."""
-    if not text.strip():
-        return {}
-    try:
-        options = json.loads(text)
-    except (ValueError, RecursionError):
-        raise InvalidError(f"The field `options` is {text[:80]!r}; needed a JSON object.") from None
+    options = read_options(text)
     ImportOptions.from_json(options)
     return options
 

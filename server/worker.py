@@ -111,7 +111,7 @@ def _dispatch_until(stopping: threading.Event, dispatcher: Dispatcher) -> None:
             if time.monotonic() - adopted > ADOPT_SECONDS:
                 adopted = time.monotonic()
                 dispatcher.adopt()
-        except Exception:
+        except Exception:  # what keeps one job from being dispatched must not end this loop for all others
             log.exception("jobs could not be dispatched; trying again")
             stopping.wait(2.0)
 
@@ -122,7 +122,7 @@ def _beat_forever(database: Database, worker_id: UUID) -> None:
         try:
             with database.writing() as session:
                 is_ours = workers.beat(session, worker_id)
-        except Exception as error:
+        except Exception as error:  # without this thread the others would take this worker for dead while it works
             log.warning("no heartbeat: %s", error)
             continue
         if not is_ours:
@@ -135,5 +135,5 @@ def _warm_up() -> None:
 
     try:
         warm_up(lambda name, share: log.debug("warm-up: %s %.0f %%", name, 100 * share))
-    except Exception:
+    except Exception:  # only a warm-up: the job that needs what failed tells its user
         log.exception("warm-up failed; the first job will show why")

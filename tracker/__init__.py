@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     )
     from tracker.capture.triangulation import Triangulation, triangulate
     from tracker.cli import add_commands
+    from tracker.cli.hands import load_recorded_objects
     from tracker.detection.image_hands import DETECTOR_LABEL, find_image_hands
     from tracker.detection.recorded_hands import (
         RecordedHands,
@@ -92,8 +93,10 @@ if TYPE_CHECKING:
     from tracker.model.blend_mirroring import mirror_blend
     from tracker.model.blend_model import BlendModel
     from tracker.model.default_hand import default_hand
+    from tracker.model.files import measure_model
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
     from tracker.model.mano_files import load_mano, save_mano
+    from tracker.model.object_files import ObjectSize
     from tracker.model.trained_hand import trained_hand
     from tracker.model.untrained_hand import untrained_hand
     from tracker.registration.anatomy import make_anatomical_prior
@@ -202,6 +205,7 @@ _HOMES = {
     "list_image_names": "tracker.label_formats.image_names",
     "load_annotations": "tracker.capture.annotations",
     "load_mano": "tracker.model.mano_files",
+    "load_recorded_objects": "tracker.cli.hands",
     "load_blend_model": "tracker.model.blend_files",
     "load_registration": "tracker.registration.registration_files",
     "load_scan": "tracker.capture.scan",
@@ -213,6 +217,8 @@ _HOMES = {
     "find_possible_units": "tracker.capture.scan_size",
     "find_size_fault": "tracker.capture.scan_size",
     "is_certain": "tracker.capture.scan_size",
+    "measure_model": "tracker.model.files",
+    "ObjectSize": "tracker.model.object_files",
     "measure_size": "tracker.capture.scan_size",
     "write_length": "tracker.capture.scan_size",
     "load_sequence": "tracker.capture.sequence",
@@ -336,6 +342,7 @@ __all__ = [
     "LabelFormat",
     "LabelSet",
     "ModelView",
+    "ObjectSize",
     "QuickFit",
     "RecordedHands",
     "Registration",
@@ -406,6 +413,7 @@ __all__ = [
     "load_blend_model",
     "load_mano",
     "load_recorded_hands",
+    "load_recorded_objects",
     "load_registration",
     "load_scan",
     "load_sequence",
@@ -415,6 +423,7 @@ __all__ = [
     "make_gaussian_prior",
     "make_test_hand",
     "make_training_set",
+    "measure_model",
     "measure_size",
     "mirror_blend",
     "pack_arrays",

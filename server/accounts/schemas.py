@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictBool
 
 from server.accounts.models import Role
+from server.database.numbers import Number
 
 
 class MyAccount(BaseModel):
@@ -78,7 +79,7 @@ class TokenIn(BaseModel):
 
     name: Name
     may_write: StrictBool = Field(default=False, description="False: it may only read.")
-    days: Annotated[float, Field(gt=0, le=3650)] | None = Field(default=90, description="null: never expires.")
+    days: Annotated[Number, Field(gt=0, le=3650)] | None = Field(default=90, description="null: never expires.")
 
 
 class TokenOut(BaseModel):

@@ -9,12 +9,13 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
 from server.annotations.models import Act
+from server.database.numbers import IsNumber, Number
 from server.database.texts import LongLabel
 from server.errors import ErrorBody
 
 Hand = Literal["right", "left"]
-Pixel = Annotated[float, Field(strict=True, ge=-1e6, le=1e6, allow_inf_nan=False)]
-Visibility = Literal[0, 1, 2]
+Pixel = Annotated[Number, Field(ge=-1e6, le=1e6)]
+Visibility = Annotated[Literal[0, 1, 2], IsNumber]
 Point = Annotated[
     tuple[Pixel, Pixel, Visibility],
     WithJsonSchema({"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, mode="serialization"),

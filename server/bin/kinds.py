@@ -1,4 +1,4 @@
-"""What a kind of thing tells of itself, so that the bin can show it and bring it back."""
+"""What a kind of thing tells of itself, so that the bin can show it, bring it back and delete it for good."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from sqlalchemy import SQLColumnExpression
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
+from server.accounts.audit import record_act
 from server.accounts.models import Account
+from server.database import Base
 
 
 @dataclass(frozen=True)
@@ -22,22 +24,38 @@ class BinKind:
     Attributes:
         kind: As the audit trail calls it, such as `scan`.
         word: For people, such as `hand model`.
-        id: Column of its id.
-        name: What to call it.
+        row: Its table, with `id` and `name`.
         deleted_at: Column with the time when it was deleted; None is not.
         restore: Brings it back; given its id and who wants it.
         parent: Kind of the thing that it is part of, and the column with the id of that one.
-        area: Where its files lie; None when it has none of its own.
+        area: Where its files lie; what has none of its own cannot be deleted for good.
     """
 
     kind: str
     word: str
-    id: SQLColumnExpression[uuid.UUID]
-    name: SQLColumnExpression[str]
+    row: Any
     deleted_at: SQLColumnExpression[Any]
     restore: Callable[[Session, Account, uuid.UUID], object]
     parent: tuple[str, SQLColumnExpression[uuid.UUID]] | None = None
     area: str | None = None
+
+
+def make_kind(
+    kind: str,
+    word: str,
+    row: type[Base],
+    area: str,
+    parent: tuple[str, SQLColumnExpression[uuid.UUID]] | None = None,
+) -> BinKind:
+    """A thing with files of its own, which is back as soon as its row no longer says when it was deleted."""
+
+    def restore(session: Session, account: Account, id_: uuid.UUID) -> None:
+        found: Any = session.get_one(row, id_)
+        found.deleted_at = None
+        session.flush()
+        record_act(session, account.id, f"{kind}.restore", kind, id_)
+
+    return BinKind(kind, word, row, row.deleted_at, restore, parent, area)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 async def get_bin_kinds(connection: HTTPConnection) -> tuple[BinKind, ...]:

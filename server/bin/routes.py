@@ -8,10 +8,10 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from server.accounts.service import LeadAccount
-from server.bin import service
+from server.bin import erasing, service
 from server.bin.kinds import BinKindsDep
-from server.bin.schemas import BinItem
-from server.database import SessionDep
+from server.bin.schemas import BinErasure, BinItem
+from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import error_responses
 from server.storage import StorageDep
@@ -38,3 +38,24 @@ def list_bin(
 def restore_from_bin(kind: str, item_id: uuid.UUID, session: SessionDep, kinds: BinKindsDep, lead: LeadAccount) -> None:
     """Bring a deleted thing back. 409 when what it belongs to is in the bin too, which is restored first."""
     service.restore(session, kinds, lead, kind, item_id)
+
+
+@router.get("/{kind}/{item_id}/erasure")
+def describe_erasure(
+    kind: str, item_id: uuid.UUID, session: SessionDep, storage: StorageDep, kinds: BinKindsDep, lead: LeadAccount
+) -> BinErasure:
+    """What goes with a deleted thing when it is deleted for good, and what keeps it if something does."""
+    return erasing.describe(session, storage, kinds, kind, item_id)
+
+
+@router.delete("/{kind}/{item_id}", status_code=204, responses=error_responses(409))
+def delete_for_good(
+    kind: str, item_id: uuid.UUID, database: DatabaseDep, storage: StorageDep, kinds: BinKindsDep, lead: LeadAccount
+) -> None:
+    """Delete a thing in the bin for good, with its files and all that hangs on it: nothing brings it back.
+
+    409 while a job uses it, or when something that stays was made from it.
+    """
+    with database.writing() as session:
+        left = erasing.erase(session, storage, kinds, lead, kind, item_id)
+    erasing.remove_files(storage, left)

@@ -20,3 +20,20 @@ class BinItem(BaseModel):
     deleted_at: datetime
     deleted_by_name: str | None = Field(description="Null: by a script, or before the audit trail kept it.")
     byte_count: int | None = Field(description="Of its files on this machine; null when it has none of its own.")
+
+
+class BinGoing(BaseModel):
+    """Things of one kind that go with another."""
+
+    word: str = Field(description="The kind for people.")
+    count: int
+
+
+class BinErasure(BaseModel):
+    """What goes when a thing in the bin is deleted for good. Nothing of it can be brought back."""
+
+    word: str = Field(description="The kind for people.")
+    name: str
+    going: list[BinGoing] = Field(description="What hangs on it and goes too.")
+    byte_count: int = Field(description="Of the files on this machine that go.")
+    obstacle: str | None = Field(description="Why it cannot go; null when it can.")

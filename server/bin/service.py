@@ -24,13 +24,13 @@ def list_bin(
 ) -> tuple[list[BinItem], str | None]:
     """What was deleted, the last first; with `only`, of one kind."""
     by_name = {kind.kind: kind for kind in kinds}
-    chosen = kinds if only is None else [_find_kind(kinds, only)]
+    chosen = kinds if only is None else [find_kind(kinds, only)]
     together = union_all(
         *(
             select(
                 literal(kind.kind).label("kind"),
-                kind.id.label("id"),
-                kind.name.label("name"),
+                kind.row.id.label("id"),
+                kind.row.name.label("name"),
                 kind.deleted_at.label("deleted_at"),
             ).where(kind.deleted_at.is_not(None))
             for kind in chosen
@@ -60,29 +60,29 @@ def list_bin(
 
 def restore(session: Session, kinds: Sequence[BinKind], account: Account, name: str, id_: uuid.UUID) -> None:
     """Bring a thing back. What it is part of must be there: that is brought back first."""
-    kind = _find_kind(kinds, name)
-    if not _is_deleted(session, kind, id_):
+    kind = find_kind(kinds, name)
+    if not is_deleted(session, kind, id_):
         raise NotFoundError(f"The bin holds no {kind.word} {id_}. Somebody may have brought it back.")
     if kind.parent is not None:
-        parent = _find_kind(kinds, kind.parent[0])
-        parent_id = session.scalar(select(kind.parent[1]).where(kind.id == id_))
-        if parent_id is not None and _is_deleted(session, parent, parent_id):
-            called = session.scalar(select(parent.name).where(parent.id == parent_id))
+        parent = find_kind(kinds, kind.parent[0])
+        parent_id = session.scalar(select(kind.parent[1]).where(kind.row.id == id_))
+        if parent_id is not None and is_deleted(session, parent, parent_id):
+            called = session.scalar(select(parent.row.name).where(parent.row.id == parent_id))
             raise ConflictError(
                 f"The {parent.word} “{called}” that it belongs to is in the bin too. Restore that one first."
             )
     kind.restore(session, account, id_)
 
 
-def _find_kind(kinds: Sequence[BinKind], name: str) -> BinKind:
+def find_kind(kinds: Sequence[BinKind], name: str) -> BinKind:
     for kind in kinds:
         if kind.kind == name:
             return kind
     raise NotFoundError(f"The bin knows no {name[:40]!r}; it has {', '.join(kind.kind for kind in kinds)}.")
 
 
-def _is_deleted(session: Session, kind: BinKind, id_: uuid.UUID) -> bool:
-    return session.scalar(select(kind.deleted_at).where(kind.id == id_)) is not None
+def is_deleted(session: Session, kind: BinKind, id_: uuid.UUID) -> bool:
+    return session.scalar(select(kind.deleted_at).where(kind.row.id == id_)) is not None
 
 
 def _find_deleters(session: Session, ids: Sequence[uuid.UUID]) -> dict[uuid.UUID, str]:
@@ -97,8 +97,10 @@ def _find_deleters(session: Session, ids: Sequence[uuid.UUID]) -> dict[uuid.UUID
 
 
 def _measure(storage: Storage, kind: BinKind, id_: uuid.UUID) -> int | None:
+    return None if kind.area is None else measure_files(storage, kind.area, id_)
+
+
+def measure_files(storage: Storage, area: str, id_: uuid.UUID) -> int:
     """Bytes of the files of a thing on this machine."""
-    if kind.area is None:
-        return None
-    folder = storage.root / kind.area / str(id_)
+    folder = storage.root / area / str(id_)
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())

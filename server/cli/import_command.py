@@ -101,9 +101,10 @@ def run(args: argparse.Namespace) -> int:
 
 def describe_refusal(told: Path, path: Path, options: dict[str, Any]) -> str:
     """What is wrong, every option that is needed, and a command that has them all; empty when no option would help."""
+    from server.imports.service import measure_mesh
     from tracker import ImportOptions, check_import
 
-    report = check_import(path, options.get("format"), ImportOptions.from_json(options))
+    report = check_import(path, options.get("format"), ImportOptions.from_json(options), measure=measure_mesh)
     needed = [question for question in report.questions if question.is_required]
     if not needed:
         return ""

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StrictBool
 
+from server.database.numbers import Number
 from server.registrations.schemas import RegistrationOut, Standing
 
 REASONS: dict[str, str] = {
@@ -59,9 +60,7 @@ class DecisionMake(BaseModel):
         AfterValidator(_check_reasons),
     ] = Field(default_factory=list, description="Names from `/curation/reasons`.")
     note: Annotated[str, Field(max_length=2000), AfterValidator(_check_text)] = ""
-    seconds: float | None = Field(
-        default=None, ge=0, le=86400, allow_inf_nan=False, description="How long it was looked at."
-    )
+    seconds: Number | None = Field(default=None, ge=0, le=86400, description="How long it was looked at.")
     operation_id: uuid.UUID = Field(description="Made anew for each decision; sent again, nothing is done twice.")
 
 
@@ -109,7 +108,7 @@ class SecondReviewAsk(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     collection: Annotated[str, Field(max_length=200)] | None = Field(default=None, description="Null: of all.")
-    share: float = Field(default=1.0, gt=0, le=1, allow_inf_nan=False, description="Of the registrations there are.")
+    share: Number = Field(default=1.0, gt=0, le=1, description="Of the registrations there are.")
     only_decided: StrictBool = Field(default=False, description="Only of those that somebody has decided about.")
 
 

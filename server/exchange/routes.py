@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +9,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
-from pydantic import ValidationError
 
 from server.accounts.service import CurrentAccount, LeadAccount
 from server.annotations.guards import GuardsDep
@@ -32,6 +30,7 @@ from server.exchange.schemas import (
 from server.exchange.snapshots import get_snapshot
 from server.sequences.service import get_sequence
 from server.storage import Storage, StorageDep
+from server.storage.sent_json import read_options, reading_json
 from server.storage.upload import Upload, UploadLimits, work_on_upload
 from tracker import JOINT_ORDERS, LABEL_FORMATS, ExportedLabels, ImportHints, export_labels, pack_files
 
@@ -304,9 +303,5 @@ def _read(storage: Storage, folder: Path, rows: Any, fields: dict[str, str]) -> 
 
 def parse_options(text: str) -> LabelImportOptions:
     """Options from a form's field: a JSON object, or nothing."""
-    try:
-        return LabelImportOptions.model_validate(json.loads(text) if text.strip() else {})
-    except (ValidationError, ValueError, RecursionError) as fault:
-        first = fault.errors()[0] if isinstance(fault, ValidationError) else {"loc": (), "msg": "it is no JSON object"}
-        where = ".".join(map(str, first["loc"]))
-        raise InvalidError(f"The field `options` {f'({where}) ' if where else ''}is wrong: {first['msg']}.") from None
+    with reading_json("The field `options`", "options of an import of labels"):
+        return LabelImportOptions.model_validate(read_options(text))

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from fastapi import APIRouter, Depends, Request, Response
-from pydantic import ValidationError
 
 from server.accounts.audit import record_act
 from server.accounts.service import AccountIdDep, LeadAccount, require_lead
@@ -18,6 +17,7 @@ from server.errors import InvalidError, NotFoundError, error_responses
 from server.hand_models import service, storing
 from server.hand_models.schemas import HandModelOptions, HandModelOut, HandModelReport, HandSkeleton
 from server.storage import StorageDep
+from server.storage.sent_json import reading_json
 from server.storage.upload import Upload, UploadLimits, work_on_upload
 from tracker import HAND_EDGES, HAND_JOINTS
 
@@ -113,12 +113,10 @@ async def upload_hand_model(
     def work(folder: Path, upload: Upload) -> HandModelOut:
         if len(upload.names) != 1:
             raise InvalidError(f"The upload holds {len(upload.names)} files; needed one model.")
-        try:
+        with reading_json("The form", "a file, and a name and a side where they are known"):
             options = HandModelOptions.model_validate(
-                {key: text for key, text in upload.fields.items() if text.strip()}
+                {name: text for name, text in upload.fields.items() if text.strip()}
             )
-        except ValidationError as fault:
-            raise InvalidError(f"The form's {fault.errors()[0]['loc'][0]}: {fault.errors()[0]['msg']}.") from None
         model = storing.read_upload(folder / upload.names[0], options.side)
         with database.writing() as session:
             row = storing.add_uploaded(session, storage, model, options.name or Path(upload.names[0]).stem, account_id)

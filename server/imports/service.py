@@ -13,7 +13,7 @@ import threading
 import uuid
 from datetime import timedelta
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 from sqlalchemy import delete, select, update
@@ -28,6 +28,7 @@ from server.sequences import service as sequences
 from server.sequences.models import SequenceRow
 from server.settings import Settings
 from server.storage import Storage
+from server.storage.sent_json import read_options
 from server.storage.upload import Upload
 from tracker import (
     ArchiveLimits,
@@ -39,6 +40,9 @@ from tracker import (
     load_annotations,
     run_import,
 )
+
+if TYPE_CHECKING:
+    from tracker import ObjectSize
 
 AREA = "uploads"
 FILES, UNPACKED = "files", "unpacked"
@@ -190,7 +194,8 @@ def import_recording(
     """
     sequence_id = uuid.uuid4()
     folder = desk.storage.folder(sequences.AREA, sequence_id)
-    report = run_import(source, folder, options.get("format"), ImportOptions.from_json(options))
+    told = ImportOptions.from_json(options)
+    report = run_import(source, folder, options.get("format"), told, measure=measure_mesh)
     try:
         recording = sequences.open_sequence(desk.storage, sequence_id)
         columns = sequences.describe_recording(recording)
@@ -244,12 +249,7 @@ def remove_abandoned(desk: ImportDesk) -> int:
 
 def parse_options(text: str) -> dict[str, Any]:
     """Options from a form's field: a JSON object, or nothing."""
-    if not text.strip():
-        return {}
-    try:
-        options = json.loads(text)
-    except (ValueError, RecursionError):
-        raise InvalidError(f"The field `options` is {text[:80]!r}; needed a JSON object.") from None
+    options = read_options(text)
     ImportOptions.from_json(options)
     return options
 
@@ -274,8 +274,16 @@ def _unpack(desk: ImportDesk, import_id: uuid.UUID, upload: Upload) -> None:
 def _check(desk: ImportDesk, import_id: uuid.UUID, options: dict[str, Any], name: str) -> dict[str, Any]:
     source = desk.source(import_id)
     known = find_probes(import_id)
-    report = check_import(source, options.get("format"), ImportOptions.from_json(options | {"name": name}), known)
+    told = ImportOptions.from_json(options | {"name": name})
+    report = check_import(source, options.get("format"), told, known, measure_mesh)
     return _clean(report, source)
+
+
+def measure_mesh(path: Path) -> ObjectSize | None:
+    """The size of an object's model; recordings without objects do without what reads them."""
+    from tracker import measure_model
+
+    return measure_model(path)
 
 
 def _clean(report: ImportReport, source: Path) -> dict[str, Any]:

@@ -6,8 +6,9 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, model_validator
+from pydantic import BaseModel, ConfigDict, Field, StrictBool, model_validator
 
+from server.database.numbers import Whole
 from server.database.texts import Label, Name
 from server.training_sets.schemas import TrainingRule
 
@@ -54,13 +55,9 @@ class TrainingParams(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    rounds: StrictInt = Field(
-        default=3, ge=1, le=20, description="Times that all parts of the model are improved in turn."
-    )
-    num_shapes: StrictInt = Field(
-        default=10, ge=1, le=200, description="Shape directions of the whole hand kept, at most."
-    )
-    num_local_shapes: StrictInt = Field(
+    rounds: Whole = Field(default=3, ge=1, le=20, description="Times that all parts of the model are improved in turn.")
+    num_shapes: Whole = Field(default=10, ge=1, le=200, description="Shape directions of the whole hand kept, at most.")
+    num_local_shapes: Whole = Field(
         default=0,
         ge=0,
         le=200,
@@ -118,7 +115,7 @@ class LoopCreate(BaseModel):
         description="What is trained from. `verdict`: what the program calls good and nobody rejected; `decisions`: "
         "what people have accepted by now. Then one round is done, and its registrations wait for people.",
     )
-    rounds: int = Field(default=1, ge=1, le=10, description="By decisions: 1.")
+    rounds: Whole = Field(default=1, ge=1, le=10, description="By decisions: 1.")
     leave_out_subjects: list[Label] = Field(default_factory=list, max_length=1000, description="Kept for testing.")
     options: TrainingParams = Field(default_factory=TrainingParams)
     evaluate: Evaluate = "no"

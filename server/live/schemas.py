@@ -8,6 +8,7 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field
 
 from server.annotations.schemas import Hand, Points, Sources
+from server.database.numbers import FrameNumber
 
 
 class LabelChange(BaseModel):
@@ -54,5 +55,5 @@ class VisitPut(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     camera: Annotated[str, Field(max_length=64)]
-    frame: Annotated[int, Field(ge=0, le=10**9)]
+    frame: FrameNumber
     hand: Hand

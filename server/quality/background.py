@@ -46,7 +46,10 @@ def _check_empty(label: Label, looked: Looked) -> Iterator[Finding]:
         joints = np.flatnonzero(distance > limit)
         if joints.size:
             worst = joints[np.argmax(distance[joints])]
-            others = f"; so are {joints.size - 1} other joints" if joints.size > 1 else ""
+            more = joints.size - 1
+            others = (
+                f"; so {'is' if more == 1 else 'are'} {more} other {'joint' if more == 1 else 'joints'}" if more else ""
+            )
             reason = f"The {joint_name(worst)} is {distance[worst]:.0f} px or more from {of_what}{others}."
             yield Finding(label, "background", float(distance[worst] / limit), tuple(map(int, joints)), reason)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pydantic import BaseModel, ConfigDict, Field
 
 from server.annotations.schemas import Hand, Points
+from server.database.numbers import Whole
 from server.database.paging import Page
 from server.quality.finding import Kind
 
@@ -59,4 +60,4 @@ class FlagLook(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    revision: int = Field(ge=1, le=10**9, description="Of the label. A later revision is checked anew.")
+    revision: Whole = Field(ge=1, le=10**9, description="Of the label. A later revision is checked anew.")

@@ -5,7 +5,6 @@ Files are read for milliseconds to seconds each, so the functions take the datab
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import uuid
@@ -14,14 +13,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.accounts.audit import record_act
 from server.database import Database
 from server.database.texts import Label, Name
-from server.errors import InvalidError, StudioError
+from server.errors import StudioError
 from server.scans.cropping import find_flags
 from server.scans.folder import ListedScan, find_scans
 from server.scans.models import ScanRow
@@ -30,6 +29,7 @@ from server.scans.service import AREA
 from server.scans.units import measure_kept
 from server.storage import Storage
 from server.storage.digest import compute_digest
+from server.storage.sent_json import read_options, reading_json
 
 
 class ScanOptions(BaseModel):
@@ -58,25 +58,13 @@ class Added:
 
 def parse_options(text: str) -> ScanOptions:
     """Options from a form's field: a JSON object, or nothing."""
-    if not text.strip():
-        return ScanOptions()
-    try:
-        options = json.loads(text)
-    except (ValueError, RecursionError):
-        options = None
-    if not isinstance(options, dict):
-        raise InvalidError(f"The field `options` is {text[:80]!r}; needed a JSON object.")
-    return make_options(options)
+    return make_options(read_options(text))
 
 
 def make_options(options: dict[str, Any]) -> ScanOptions:
     """Options that somebody gave; raises for what they cannot be."""
-    try:
+    with reading_json("What was said of the scans", "options that fit them"):
         return ScanOptions.model_validate(options)
-    except ValidationError as fault:
-        first = fault.errors()[0]
-        place = ".".join(str(part) for part in first["loc"]) or "the options"
-        raise InvalidError(f"{place}: {first['msg']} (got {str(first['input'])[:80]!r}).") from None
 
 
 def add_scans(

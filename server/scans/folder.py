@@ -12,10 +12,15 @@ from pydantic import BaseModel, ConfigDict, Field
 from server.database.texts import Label, Name
 from server.errors import InvalidError
 from server.scans.schemas import Side, UnitScale
+from server.storage.sent_json import reading_json
 from tracker import say_count
 
 SUFFIXES = (".ply", ".obj", ".stl")
 LIST_NAME = "scans.json"
+NEEDED = (
+    "a list of objects with `file`, and `subject`, `pose`, `side` (right or left) and `metres_per_unit` where they are "
+    "known"
+)
 MAX_LIST_BYTES = 64 * 2**20
 
 
@@ -87,15 +92,10 @@ def _read_lists(paths: Iterable[Path], root: Path) -> dict[str, ListedScan]:
         name = path.relative_to(root).as_posix()
         if path.stat().st_size > MAX_LIST_BYTES:
             raise InvalidError(f"{name} has more than {MAX_LIST_BYTES} bytes.")
-        try:
+        with reading_json(name, NEEDED):
             document = json.loads(path.read_bytes())
             lines = document["scans"] if isinstance(document, dict) else document
             read = [ListedScan.model_validate(line) for line in lines]
-        except (ValueError, KeyError, TypeError, RecursionError) as fault:
-            raise InvalidError(
-                f"{name} cannot be read: {str(fault)[:300]} Needed a list of objects with `file`, and `subject`, "
-                "`pose`, `side` (right or left) and `metres_per_unit` where they are known."
-            ) from None
         base = path.parent.relative_to(root).as_posix()
         found |= {line.file if base == "." else f"{base}/{line.file}": line for line in read}
     return found

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StrictBool
 
+from server.database.numbers import Number
 from server.database.texts import Label, Name
 
 Side = Literal["right", "left"]
@@ -18,8 +19,8 @@ MOST_STROKES = 200
 MOST_CORNERS = 2000
 
 
-Finite = Annotated[float, Field(allow_inf_nan=False, ge=-1e9, le=1e9)]
-UnitScale = Annotated[float, Field(gt=0, le=1000, allow_inf_nan=False)]
+Finite = Annotated[Number, Field(ge=-1e9, le=1e9)]
+UnitScale = Annotated[Number, Field(gt=0, le=1000)]
 
 
 class ScanRegistration(BaseModel):

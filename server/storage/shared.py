@@ -109,6 +109,11 @@ class SharedStorage(Storage):
             self._note(area, id_).unlink(missing_ok=True)
             self._store.folder(area, id_).remove(MANIFEST)
 
+    def remove_document(self, area: str, id_: uuid.UUID) -> None:
+        """Remove it here and in the store."""
+        super().remove_document(area, id_)
+        self._store.folder(area, id_).remove(DOCUMENT)
+
     def remote_folder(self, area: str, id_: uuid.UUID) -> RemoteFolder:
         return self._store.folder(area, id_)
 

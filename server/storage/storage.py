@@ -77,6 +77,10 @@ class Storage:
             return
         shutil.rmtree(doomed, ignore_errors=True)
 
+    def remove_document(self, area: str, id_: uuid.UUID) -> None:
+        """Remove the file of a thing that is one document, which may be gone already."""
+        Storage.folder(self, area, id_).with_suffix(".json").unlink(missing_ok=True)
+
     def list_ids(self, area: str) -> list[uuid.UUID]:
         """Ids of the things that have a folder in an area, those being removed not."""
         found = []

@@ -9,8 +9,7 @@ from server.teams.models import ProjectRow, ReplicaSetRow
 PROJECTS = BinKind(
     kind="project",
     word="project",
-    id=ProjectRow.id,
-    name=ProjectRow.name,
+    row=ProjectRow,
     deleted_at=ProjectRow.archived_at,
     restore=lambda session, account, id_: projects.archive_project(session, account, id_, is_archived=False),
 )
@@ -18,8 +17,7 @@ PROJECTS = BinKind(
 REPLICA_SETS = BinKind(
     kind="replica_set",
     word="blind replica",
-    id=ReplicaSetRow.id,
-    name=ReplicaSetRow.name,
+    row=ReplicaSetRow,
     deleted_at=ReplicaSetRow.deleted_at,
     restore=lambda session, account, id_: replicas.withdraw_replica_set(
         session, account, replicas.get_replica_set(session, id_, hold=True, deleted_too=True), is_withdrawn=False

@@ -9,11 +9,11 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from server.accounts.models import Role
+from server.database.numbers import FrameNumber, Whole
 from server.database.texts import Name, Text, Words
 from server.teams.models import AssignmentState
 
 Hand = Literal["right", "left"]
-Frame = Annotated[int, Field(ge=0, le=10**9)]
 
 
 class Person(BaseModel):
@@ -118,8 +118,8 @@ class AssignmentMake(BaseModel):
 
     sequence_id: uuid.UUID
     account_id: uuid.UUID
-    frame_first: Frame
-    frame_last: Frame
+    frame_first: FrameNumber
+    frame_last: FrameNumber
     note: Text = ""
 
 
@@ -129,8 +129,8 @@ class AssignmentPatch(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     account_id: uuid.UUID | None = None
-    frame_first: Frame | None = None
-    frame_last: Frame | None = None
+    frame_first: FrameNumber | None = None
+    frame_last: FrameNumber | None = None
     note: Text | None = None
 
 
@@ -141,9 +141,9 @@ class CommentMake(BaseModel):
 
     text: Words
     camera: Annotated[str, Field(max_length=64)] | None = None
-    frame: Frame | None = None
+    frame: FrameNumber | None = None
     hand: Hand | None = None
-    joint: Annotated[int, Field(ge=0, le=20)] | None = None
+    joint: Annotated[Whole, Field(ge=0, le=20)] | None = None
 
     @model_validator(mode="after")
     def check(self) -> CommentMake:
@@ -188,7 +188,7 @@ class ReplicaSetMake(BaseModel):
 
     name: Name
     sequence_id: uuid.UUID
-    frames: Annotated[list[Frame], Field(min_length=1, max_length=2000)]
+    frames: Annotated[list[FrameNumber], Field(min_length=1, max_length=2000)]
     cameras: Annotated[list[Annotated[str, Field(max_length=64)]], Field(min_length=1, max_length=16)]
     hands: Annotated[list[Hand], Field(min_length=1, max_length=2)]
     account_ids: Annotated[list[uuid.UUID], Field(min_length=2, max_length=20)]

@@ -6,6 +6,8 @@ import uuid
 
 from pydantic import BaseModel, ConfigDict, Field, StrictBool
 
+from server.database.numbers import Whole
+
 
 class Show(BaseModel):
     """Layers to show or hide; those not named stay as they are."""
@@ -27,14 +29,14 @@ class ViewerSessionCreate(BaseModel):
     """What to look at."""
 
     track_id: uuid.UUID
-    frame: int | None = Field(None, description="Frame to begin with; the track's first without it.")
+    frame: Whole | None = Field(None, description="Frame to begin with; the track's first without it.")
     show: Show | None = None
 
 
 class ViewerSessionChange(BaseModel):
     """Where to go and what to show."""
 
-    frame: int | None = None
+    frame: Whole | None = None
     show: Show | None = None
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import re
+import shutil
 from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
+import trimesh
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
@@ -97,3 +100,31 @@ def test_a_video_brings_no_questions_about_depth(studio, tmp_path, open_page):
     expect(page.get_by_text("Still needed: focal length fx, principal point cx, principal point cy.")).to_be_visible()
     expect(page.get_by_text("Depth unit")).to_have_count(0)
     expect(page.get_by_text("Sensor", exact=True)).to_have_count(0)
+
+
+def test_the_size_of_an_object_is_shown_and_its_unit_chosen_before_it_is_stored(
+    studio, synthesized, tmp_path, open_page, screenshots
+):
+    from playwright.sync_api import expect
+
+    folder = tmp_path / "with a cube"
+    shutil.copytree(synthesized.folder, folder, ignore=shutil.ignore_patterns("models", "truth.npz"))
+    (folder / "objects").mkdir()
+    trimesh.creation.box((6.0, 6.0, 6.0)).export(folder / "objects" / "cube.ply")
+    document = json.loads((folder / "sequence.json").read_text())
+    document["objects"] = [{"name": "cube", "model": "objects/cube.ply"}]
+    (folder / "sequence.json").write_text(json.dumps(document))
+
+    page = open_page()
+    choose(page, folder)
+    unit = page.get_by_role("radiogroup", name="Unit of the objects’ meshes")
+    expect(unit.get_by_label("Millimetres: cube is 0.6 x 0.6 x 0.6 cm (guessed)")).to_be_checked()
+    expect(page.get_by_text("cube, 0.60 × 0.60 × 0.60 cm (guessed)")).to_be_visible()
+    screenshots.take(page, "24-import-object-guessed")
+    unit.get_by_label("Centimetres: cube is 6 x 6 x 6 cm").check()
+    expect(page.get_by_text("cube, 6.0 × 6.0 × 6.0 cm")).to_be_visible()
+    screenshots.take(page, "25-import-object")
+    page.get_by_role("button", name="Store the recording").click()
+    expect(page).to_have_url(re.compile(r"/recordings/[0-9a-f-]{36}$"))
+    stored = studio.data_dir / "sequences" / page.url.rpartition("/")[2] / "sequence.json"
+    assert json.loads(stored.read_text())["objects"][0]["metres_per_unit"] == 0.01

@@ -95,6 +95,29 @@ def test_a_flag_is_put_away_by_a_key(studio, labelled, open_page, picture_of):
     assert studio.get(f"/sequences/{labelled['id']}/flags")["dismissed"] == 1
 
 
+def test_on_a_phone_a_flag_stands_below_the_picture(labelled, open_page, picture_of, screenshots):
+    from playwright.sync_api import expect
+
+    phone = open_page(390, 844, is_phone=True)
+    phone.goto(f"/recordings/{labelled['id']}/annotate?camera=cam0&frame=2&hand=right")
+    picture = picture_of(phone)
+    picture.wait()
+    line = phone.get_by_role("button", name=re.compile("^Label check: "))
+    expect(line).to_be_visible()
+    for name in ("folded", "opened"):
+        card = line if name == "folded" else phone.get_by_role("group", name=re.compile("^Label check: ")).first
+        expect(card).to_be_visible()
+        frame, box = picture.element.bounding_box(), card.bounding_box()
+        assert box["y"] >= frame["y"] + frame["height"], f"the {name} card covers the picture"
+        assert frame["height"] > 200
+        screenshots.take(phone, f"45-flag-on-a-phone-{name}")
+        if name == "folded":
+            line.tap()
+    expect(card).to_contain_text("index tip")
+    phone.get_by_role("button", name="Fold the label check").tap()
+    expect(line).to_be_visible()
+
+
 def test_a_label_is_found_right_only_once_its_picture_is_there(labelled, open_page):
     from playwright.sync_api import expect
 

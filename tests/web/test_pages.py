@@ -169,6 +169,12 @@ def test_a_track_is_looked_at_by_fingers(studio, track, open_page, picture_of, s
     expect(page.get_by_role("group", name="Layers of the 3D view")).to_be_visible()
     expect(picture.element).to_be_hidden()
 
+    names = {"/bin": "Bin", "/people": "People", "/account": "Account", "/audit": "Audit trail", "/docs/api": "API"}
+    for address, name in names.items():
+        page.goto(address)
+        expect(page.get_by_role("banner")).to_contain_text(name)
+        assert not page.evaluate(TOO_WIDE), address
+
 
 def test_a_job_tells_the_error_that_the_page_of_its_track_tells(studio, track, synthesized, open_page):
     """The labels have changed since the track was made, and nobody has opened it."""

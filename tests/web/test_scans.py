@@ -169,6 +169,21 @@ def test_a_unit_is_said_beside_a_hand_before_anything_is_stored_and_corrected_af
     page.get_by_text("own_unit is back.").wait_for()
     assert studio.get(f"/scans/{added['id']}")["name"] == "own_unit"
 
+    studio.send("DELETE", f"/scans/{added['id']}").raise_for_status()
+    page.goto("/bin?kind=scan")
+    page.get_by_role("button", name="Delete own_unit for good").click()
+    erasing = page.get_by_role("dialog", name="Delete for good?")
+    expect(erasing).to_contain_text("The scan own_unit goes, and nothing can bring it back.")
+    expect(erasing.get_by_role("list", name="What goes")).to_contain_text("of files")
+    screenshots.take(page, "bin-delete-for-good")
+    erasing.get_by_role("button", name="Keep it").click()
+    expect(erasing).to_be_hidden()
+    page.get_by_role("button", name="Delete own_unit for good").click()
+    erasing.get_by_role("button", name="Delete for good").click()
+    page.get_by_text("own_unit is deleted for good.").wait_for()
+    expect(page.get_by_role("button", name="Restore own_unit")).to_have_count(0)
+    assert not (studio.data_dir / "scans" / added["id"]).exists()
+
 
 def test_the_list_is_narrowed_and_the_address_holds_how(scans, open_page):
     from playwright.sync_api import expect

@@ -20,6 +20,7 @@ from tracker.capture.importers.rgbd_folder import RgbdFolder
 from tracker.capture.importers.synced_videos import SyncedVideos
 from tracker.capture.importers.tum_rgbd import TumRgbd
 from tracker.capture.listed_files import ListedFiles, list_files
+from tracker.capture.object_units import MeasureMesh, ObjectCheck, ObjectReport
 from tracker.capture.sensor_presets import SensorFit, fit_presets
 from tracker.capture.sequence import MAX_FRAMES
 from tracker.errors import ImportRefusedError, TrackerError, say_count
@@ -60,6 +61,7 @@ def check_import(
     format: str | None = None,
     options: ImportOptions | None = None,
     probes: dict[Hashable, StreamProbe] | None = None,
+    measure: MeasureMesh | None = None,
 ) -> ImportReport:
     """What an import of a folder (or a single video) would bring, and whether it is possible. Stores nothing.
 
@@ -69,12 +71,17 @@ def check_import(
         options: What the files do not tell.
         probes: What earlier looks at the same files gave, which is used again and added to; the files must not have
             changed meanwhile.
+        measure: Tells the size of objects' meshes; without it their unit is not asked for.
     """
-    return examine(Path(source), format, options or ImportOptions(), probes).report
+    return examine(Path(source), format, options or ImportOptions(), probes, measure).report
 
 
 def examine(
-    source: Path, format: str | None, options: ImportOptions, known: dict[Hashable, StreamProbe] | None = None
+    source: Path,
+    format: str | None,
+    options: ImportOptions,
+    known: dict[Hashable, StreamProbe] | None = None,
+    measure: MeasureMesh | None = None,
 ) -> CheckedImport:
     """Plan an import and look at every file's header and some pixels."""
     name = options.name or ""
@@ -94,6 +101,10 @@ def examine(
     if options.hands is None and plan.format != RecordingFolder.format:
         warnings.append("Which hands are seen was not told; a right hand is assumed.")
         questions.append(_ask_hands())
+    objects, measured = ObjectCheck(problems, warnings, questions), tuple(ObjectReport(o.name) for o in plan.objects)
+    if measure is not None:
+        plan, measured = objects.check(plan, files.root, options, measure)
+        plan = replace(plan, takes=(*plan.takes, *objects.takes))
     probes = {camera.id: _probe(camera, problems, known) for camera in plan.cameras}
     frame_count = _agree_on_count(plan, probes, problems, warnings, questions, allow=bool(options.allow_gaps))
     fps = _agree_on_fps(plan, probes, problems, warnings, questions)
@@ -111,6 +122,7 @@ def examine(
         cameras=cameras,
         hands=plan.hands,
         objects=tuple(item.name for item in plan.objects),
+        object_sizes=measured,
         annotations=len(plan.annotations.items) if plan.annotations else 0,
         baselines_m=_find_baselines(plan, problems, warnings),
         problems=tuple(dict.fromkeys(problems)),

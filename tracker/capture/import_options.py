@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from tracker.capture.document import Node
+from tracker.capture.recorded_object import UNIT_LIMITS
 from tracker.errors import ImportRefusedError
 
 COLOR_FORMATS = ("jpeg", "png")
@@ -38,6 +39,7 @@ class ImportOptions:
     hands: tuple[str, ...] | None = _help("Hands that are seen: right, left or both.")
     allow_gaps: bool | None = _help("Import although frames are missing; the report says which.")
     world_unit_m: float | None = _help("Metres per unit of the calibration, such as 0.001 or a checkerboard square.")
+    object_unit_m: float | None = _help("Metres per unit of the objects' meshes, where sequence.json does not tell it.")
     color_format: str | None = _help("How frames of videos are stored: jpeg (quality 95) or png.")
 
     def to_json(self) -> dict[str, Any]:
@@ -88,6 +90,7 @@ def _parse(key: str, node: Node) -> Any:
         "fps": (0.001, 100_000),
         "depth_scale": (1e-7, 1.0),
         "world_unit_m": (1e-6, 1e4),
+        "object_unit_m": UNIT_LIMITS,
         "cx": (-1e5, 1e5),
         "cy": (-1e5, 1e5),
     }

@@ -22,6 +22,7 @@ _FIELDS: dict[str, tuple[str, Kind, str]] = {
     "cy": ("Principal point cy", "number", "px"),
     "depth_scale": ("Depth unit", "number", "m"),
     "world_unit_m": ("Unit of the calibration", "number", "m"),
+    "object_unit_m": ("Unit of the objects' meshes", "number", "m"),
     "fps": ("Frames per second", "number", "1/s"),
     "hands": ("Hands seen", "choice", ""),
     "allow_gaps": ("Import although frames are missing", "boolean", ""),

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from tracker.capture.import_question import ImportQuestion
+from tracker.capture.object_units import ObjectReport
 from tracker.capture.sensor_presets import SensorFit
 from tracker.errors import say_count
 
@@ -110,6 +111,7 @@ class ImportReport:
         cameras: One report each.
         hands: Hands that are seen.
         objects: Names of objects.
+        object_sizes: What is known of the size of each.
         annotations: How many annotations come along.
         baselines_m: Distance of each pair of cameras, such as `cam0 - cam1`.
         problems: Reasons to refuse.
@@ -128,6 +130,7 @@ class ImportReport:
     cameras: tuple[CameraReport, ...] = ()
     hands: tuple[str, ...] = ()
     objects: tuple[str, ...] = ()
+    object_sizes: tuple[ObjectReport, ...] = ()
     annotations: int = 0
     baselines_m: dict[str, float] = field(default_factory=dict)
     problems: tuple[str, ...] = ()

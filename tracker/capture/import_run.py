@@ -18,6 +18,7 @@ from tracker.capture.import_check import CheckedImport, examine
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera, Progress
 from tracker.capture.import_report import ImportReport
+from tracker.capture.object_units import MeasureMesh
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.capture.sequence import Sequence, save_sequence_json
 from tracker.capture.workplace import make_workplace
@@ -51,6 +52,7 @@ def run_import(
     format: str | None = None,
     options: ImportOptions | None = None,
     progress: Progress | None = None,
+    measure: MeasureMesh | None = None,
 ) -> ImportReport:
     """Import a recording as a recording folder; every image is decoded on the way.
 
@@ -62,13 +64,14 @@ def run_import(
         format: One of IMPORT_FORMATS, or None to recognise it.
         options: What the files do not tell.
         progress: Called with what is being done and the share that is done.
+        measure: Tells the size of objects' meshes, whose unit is then stored.
     """
     source, destination = Path(source), Path(destination)
     if os.path.lexists(destination):
         raise ImportRefusedError(f"{destination}: something is there already; choose another name.")
     progress = progress or _say_nothing
     progress("check", 0.0)
-    checked = examine(source, format, options or ImportOptions())
+    checked = examine(source, format, options or ImportOptions(), measure=measure)
     if not checked.report.ok or checked.plan is None:
         raise ImportRefusedError(" ".join(checked.report.problems))
     try:

@@ -14,6 +14,10 @@ from tracker.capture.relative_path import find_path_fault
 Array = npt.NDArray[np.float64]
 
 
+UNIT_LIMITS = (1e-6, 1e3)
+"""m; lengths that the unit of a model file may have."""
+
+
 @dataclass(frozen=True, eq=False)
 class RecordedObject:
     """An object's model and, if somebody placed it, where it is in the first frame.
@@ -23,16 +27,20 @@ class RecordedObject:
         model: Path of the model file, relative to the recording.
         T_world_object: (4, 4) the model file's coordinates to world, m, or None.
         joints: Bone to (3,) world, m; empty when it is not articulated or nobody placed it.
+        metres_per_unit: Length of the model file's unit, or None when the file knows it or nobody said it.
     """
 
     name: str
     model: str
     T_world_object: Array | None = None
     joints: dict[str, Array] = field(default_factory=dict)
+    metres_per_unit: float | None = None
 
     def to_json(self) -> dict:
         """Its entry in `sequence.json`."""
         entry: dict = {"name": self.name, "model": self.model}
+        if self.metres_per_unit is not None:
+            entry["metres_per_unit"] = self.metres_per_unit
         initial: dict = {}
         if self.T_world_object is not None:
             initial["T_world_object"] = np.asarray(self.T_world_object, dtype=np.float64).tolist()
@@ -47,6 +55,7 @@ def parse_object(node: Node) -> RecordedObject:
     fault = find_path_fault(model)
     if fault:
         raise node.error(f"{node.file}: {node.where}.model {model!r} {fault}.")
+    unit = node.get("metres_per_unit").number(*UNIT_LIMITS) if node.has("metres_per_unit") else None
     T, joints = None, {}
     if node.has("initial"):
         initial = node.get("initial")
@@ -62,4 +71,4 @@ def parse_object(node: Node) -> RecordedObject:
                 if point.shape != (3,):
                     bones.get(bone).fail("three numbers, m")
                 joints[bone] = point
-    return RecordedObject(name, model, T, joints)
+    return RecordedObject(name, model, T, joints, unit)

@@ -10,6 +10,7 @@ from tracker.cli.command import TRAINED
 from tracker.errors import TrackerError
 
 if TYPE_CHECKING:
+    from tracker.capture.sequence import Sequence as Recording
     from tracker.model.articulated import ArticulatedModel
 
 
@@ -62,3 +63,14 @@ def load_objects(given: Sequence[tuple[str, Path]], objects: tuple[str, ...]) ->
             raise TrackerError(f"--object {name}: the recording names {list(objects) or 'no objects'}.")
         models[name] = load_model(path)
     return models
+
+
+def load_recorded_objects(recording: Recording) -> dict[str, ArticulatedModel]:
+    """A model for each object whose file's unit the recording says; that of the others is told by their size."""
+    from tracker.model import load_model
+
+    return {
+        item.name: load_model(recording.object_path(item.name), metres_per_unit=item.metres_per_unit)
+        for item in recording.objects
+        if item.metres_per_unit is not None
+    }

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tracker.cli.command import add_json, choose_frames, parse_hand, parse_named_file, parse_range, run_guarded
-from tracker.cli.hands import load_hands, load_objects
+from tracker.cli.hands import load_hands, load_objects, load_recorded_objects
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError, say_count
 from tracker.tracking.presets import PRESETS, find_preset
@@ -125,6 +125,7 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         options,
         {
             **load_hands(args.hand, sequence.hands),
+            **load_recorded_objects(sequence),
             **load_objects(args.object, tuple(item.name for item in sequence.objects)),
         },
         annotations,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tracker.model.blend_mirroring import mirror_blend, mirror_blend_pose
     from tracker.model.blend_model import BlendModel, PosedBlend
     from tracker.model.decimation import decimate
-    from tracker.model.files import load_model, save_model
+    from tracker.model.files import load_model, measure_model, save_model
     from tracker.model.joints import FINGERS, HAND_EDGES, HAND_JOINTS
     from tracker.model.mirroring import mirror, mirror_pose
     from tracker.model.scene import PosedScene, Scene
@@ -42,6 +42,7 @@ _HOMES = {
     "load_model": "tracker.model.files",
     "load_t16_model": "tracker.model.t16_files",
     "load_t16_motion": "tracker.model.t16_files",
+    "measure_model": "tracker.model.files",
     "mirror": "tracker.model.mirroring",
     "mirror_blend": "tracker.model.blend_mirroring",
     "mirror_blend_pose": "tracker.model.blend_mirroring",
@@ -69,6 +70,7 @@ __all__ = [
     "load_model",
     "load_t16_model",
     "load_t16_motion",
+    "measure_model",
     "mirror",
     "mirror_blend",
     "mirror_blend_pose",

@@ -17,7 +17,7 @@ from tracker.model.mano_conventions import ManoConvention
 from tracker.model.mano_files import is_mano_npz, load_mano
 from tracker.model.npz_arrays import NpzFields, list_npz_arrays, read_npz_arrays
 from tracker.model.npz_files import read_npz_model, save_npz_model
-from tracker.model.object_files import OBJECT_SUFFIXES, is_skinned, load_object
+from tracker.model.object_files import OBJECT_SUFFIXES, ObjectSize, is_skinned, load_object, measure_object
 from tracker.model.t16_files import load_t16_model
 
 KINDS = (
@@ -51,7 +51,7 @@ def load_model(path: Path, max_faces: int | None = MAX_FACES, metres_per_unit: f
     suffix = path.suffix.lower()
     if suffix == ".npz":
         return _load_npz(path)
-    if suffix == ".off" and any(path.with_suffix(other).is_file() for other in (".SKEL", ".SKIN", ".LIMITS")):
+    if _is_t16(path):
         return load_t16_model(path, max_faces)
     if suffix in (".glb", ".gltf") and is_skinned(read_gltf(path)):
         return load_gltf_model(path, max_faces)
@@ -60,6 +60,20 @@ def load_model(path: Path, max_faces: int | None = MAX_FACES, metres_per_unit: f
     if suffix == ".pkl":
         return _follow(load_mano(path, convention=TRACKED), path)
     raise ModelFileError(path, f"the suffix {path.suffix[:20]!r}", KINDS)
+
+
+def measure_model(path: Path) -> ObjectSize | None:
+    """The size of a rigid object's mesh, in the file's unit; None of a model that knows its unit."""
+    suffix = path.suffix.lower()
+    if suffix not in OBJECT_SUFFIXES or _is_t16(path) or (suffix in (".glb", ".gltf") and is_skinned(read_gltf(path))):
+        return None
+    return measure_object(path)
+
+
+def _is_t16(path: Path) -> bool:
+    return path.suffix.lower() == ".off" and any(
+        path.with_suffix(other).is_file() for other in (".SKEL", ".SKIN", ".LIMITS")
+    )
 
 
 def _load_npz(path: Path) -> ArticulatedModel:

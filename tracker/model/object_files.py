@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import logging
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,42 @@ POSSIBLE_SIZES = (1e-3, 10.0)
 """m; sizes that are believed when the unit is given."""
 
 
+@dataclass(frozen=True)
+class ObjectSize:
+    """How large a mesh is, and in which units it can be a thing to hold.
+
+    Attributes:
+        sides: (3,) of the box around it, in the file's unit.
+        guess: m; the unit that is taken when nobody says one, or None.
+        units: Usual units that make a possible size of it: what each is called, and m.
+    """
+
+    sides: tuple[float, float, float]
+    guess: float | None
+    units: tuple[tuple[str, float], ...]
+
+    def find_fault(self, metres_per_unit: float) -> str:
+        """Why it cannot be in this unit, or nothing."""
+        size = float(np.linalg.norm(self.sides)) * metres_per_unit
+        if POSSIBLE_SIZES[0] <= size <= POSSIBLE_SIZES[1]:
+            return ""
+        return f"it would be {size:.3g} m across; needed {1e3 * POSSIBLE_SIZES[0]:g} mm to {POSSIBLE_SIZES[1]:g} m"
+
+
+@reads(ModelFileError, NEEDED)
+def measure_object(path: Path) -> ObjectSize:
+    """The size of a mesh before it is used."""
+    vertices = _read_checked(path)[0]
+    sides = np.ptp(vertices, axis=0)
+    size = float(np.linalg.norm(sides))
+    fit = [(name, scale) for name, scale in UNITS if POSSIBLE_SIZES[0] <= size * scale <= POSSIBLE_SIZES[1]]
+    return ObjectSize((float(sides[0]), float(sides[1]), float(sides[2])), _guess_unit(size), tuple(fit))
+
+
+def _guess_unit(size: float) -> float | None:
+    return next((scale for _, scale in UNITS if SIZES[0] <= size * scale <= SIZES[1]), None)
+
+
 @reads(ModelFileError, NEEDED)
 def load_object(
     path: Path, max_faces: int | None = MAX_OBJECT_FACES, metres_per_unit: float | None = None
@@ -64,21 +101,8 @@ def load_object(
         ModelFileError: With what was found and what is needed.
     """
     path = Path(path)
-    vertices, faces = _read(path)
-    if not len(faces):
-        raise ModelFileError(path, "no triangles", NEEDED)
-    if vertices.ndim != 2 or vertices.shape[1] != 3:
-        raise ModelFileError(path, f"vertices of shape {vertices.shape}", "three coordinates for each vertex")
-    if len(vertices) > MAX_VERTICES or len(faces) > MAX_FILE_FACES:
-        raise ModelFileError(
-            path, f"{len(vertices)} vertices and {len(faces)} faces", f"at most {MAX_VERTICES} and {MAX_FILE_FACES}"
-        )
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise ModelFileError(path, f"a face with the vertex {faces.max()}", f"vertices below {len(vertices)}")
-    if not np.all(np.isfinite(vertices[faces])) or np.abs(vertices[faces]).max() > 1e9:
-        raise ModelFileError(path, "coordinates that are not finite", "finite coordinates")
-    used, faces = np.unique(faces, return_inverse=True)
-    mesh = clean_mesh(vertices[used], faces.reshape(-1, 3))
+    vertices, faces = _read_checked(path)
+    mesh = clean_mesh(vertices, faces)
     if len(mesh.faces) < 2:
         raise ModelFileError(path, "no triangles with an area", NEEDED)
     scale, unit = _find_unit(path, mesh.vertices, metres_per_unit)
@@ -95,6 +119,25 @@ def load_object(
         provenance=provenance,
     )
     return model if max_faces is None else decimate_file(path, model, max_faces)
+
+
+def _read_checked(path: Path) -> tuple[Array, Faces]:
+    """Vertices that triangles use, and the triangles."""
+    vertices, faces = _read(path)
+    if not len(faces):
+        raise ModelFileError(path, "no triangles", NEEDED)
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise ModelFileError(path, f"vertices of shape {vertices.shape}", "three coordinates for each vertex")
+    if len(vertices) > MAX_VERTICES or len(faces) > MAX_FILE_FACES:
+        raise ModelFileError(
+            path, f"{len(vertices)} vertices and {len(faces)} faces", f"at most {MAX_VERTICES} and {MAX_FILE_FACES}"
+        )
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise ModelFileError(path, f"a face with the vertex {faces.max()}", f"vertices below {len(vertices)}")
+    if not np.all(np.isfinite(vertices[faces])) or np.abs(vertices[faces]).max() > 1e9:
+        raise ModelFileError(path, "coordinates that are not finite", "finite coordinates")
+    used, faces = np.unique(faces, return_inverse=True)
+    return vertices[used], faces.reshape(-1, 3)
 
 
 def find_middle(vertices: Array, faces: Faces) -> Array:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
-from tracker.detection import name_hands
+from tracker.detection.image_hands import name_hands
 from tracker.landmarks import DetectedHand, HandDetector
 from tracker.model.scene import Scene
 from tracker.observation.own_color import find_own_color

@@ -84,6 +84,8 @@ def fill(app: FastAPI, sender: Sender, rendered: Path, track: Path, hand: Genera
         "/return": {"assignment_id": ids["submitted_assignment_id"]},
         "/evaluations/report.{kind}": {"reference": LEFT_OUT, "snapshot": LEFT_OUT, "source": LEFT_OUT},
         "/bin/{kind}/{item_id}/restore": {"kind": "scan", "item_id": ids["binned_scan_id"]},
+        "/bin/{kind}/{item_id}/erasure": {"kind": "scan", "item_id": ids["binned_scan_id"]},
+        "/bin/{kind}/{item_id}": {"kind": "scan", "item_id": ids["binned_scan_id"]},
         "/lineage/{kind}/{id}": {"kind": "scan", "id": ids["scan_id"]},
         "/dismissal": {"kind": "jump", "revision": 1},
         "/{sequence_id}/labels/export": {"snapshot_id": LEFT_OUT, "track_id": LEFT_OUT},

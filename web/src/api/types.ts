@@ -73,6 +73,15 @@ export interface TrackSummary {
 }
 
 /** What the server found in an import; problems and warnings are sentences for people. */
+/** How large an object's mesh is; no sides when its file knows its unit. */
+export interface ObjectReport {
+  name: string;
+  size_m: number[];
+  metres_per_unit: number | null;
+  /** Nobody said the unit; the size told it. */
+  is_guessed: boolean;
+}
+
 export interface ImportReport {
   ok: boolean;
   format: string;
@@ -82,6 +91,8 @@ export interface ImportReport {
   cameras: CameraReport[];
   hands: string[];
   objects: string[];
+  /** Absent from reports of older studios. */
+  object_sizes?: ObjectReport[];
   annotations: number;
   baselines_m: Record<string, number>;
   problems: string[];

@@ -6,7 +6,7 @@ import type { ImportQuestion, SensorFit } from "../api/types";
 /** As typed: a number that is being typed may not be one yet. */
 export type Draft = Record<string, string | number | boolean | string[] | undefined>;
 
-const NUMBERS = ["fx", "fy", "cx", "cy", "depth_scale", "world_unit_m", "fps"] as const;
+const NUMBERS = ["fx", "fy", "cx", "cy", "depth_scale", "world_unit_m", "object_unit_m", "fps"] as const;
 
 export interface NumberField {
   name: (typeof NUMBERS)[number];

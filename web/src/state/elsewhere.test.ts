@@ -38,7 +38,8 @@ test("what waits in other recordings, in other tabs, of other people and for oth
   local.setItem("handloom/decisions/anna/000000000000001-op", "{}");
   createJournal(local, "ben", "here").keep("1|left|cam0", [save]);
   session.setItem("handloom/crop/anna/scan", "{}");
+  session.setItem("handloom/crop/anna/opened", "null");
   session.setItem("handloom/crop/ben/scan", "{}");
-  expect(find()).toEqual({ mine: 2, recording: "there", crops: 1, others: [{ name: "Ben", count: 1 }] });
+  expect(find(), "a scan that was only opened is no crop").toEqual({ mine: 2, recording: "there", crops: 1, others: [{ name: "Ben", count: 1 }] });
   expect(find("decisions"), "on the page of decisions the gestures are elsewhere").toMatchObject({ mine: 3 });
 });

@@ -23,6 +23,9 @@ export type Own = { readonly scope: string } | "decisions";
 /** Where strokes on scans wait in this tab until they are saved; each person's own. */
 export const cropKey = (scan: string): string => `handloom/crop/${accountId()}/${scan}`;
 
+/** What the hook that keeps a draft writes for "none" as soon as a scan is opened. */
+const NO_DRAFT = JSON.stringify(null);
+
 const namesIn = (storage: Storage, prefix: string): string[] =>
   Array.from({ length: storage.length }, (_, at) => storage.key(at) ?? "").filter((name) => name.startsWith(prefix));
 
@@ -46,7 +49,7 @@ export function findElsewhere(storages: { local: Storage; session: Storage }, ac
   return {
     mine: waiting.size,
     recording: recordings[0] ?? null,
-    crops: namesIn(storages.session, `handloom/crop/${account}/`).length,
+    crops: namesIn(storages.session, `handloom/crop/${account}/`).filter((name) => storages.session.getItem(name) !== NO_DRAFT).length,
     others: [...others].map(([owner, count]) => ({ name: nameOf(owner), count })),
   };
 }

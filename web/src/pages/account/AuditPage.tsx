@@ -63,35 +63,37 @@ export default function AuditPage() {
         )}
         {!lines && <Skeleton height={240} />}
         {lines && lines.length > 0 && (
-          <Table verticalSpacing="xs" highlightOnHover>
-            <Table.Thead>
-              <Table.Tr>
-                <Table.Th w={184}>When</Table.Th>
-                <Table.Th w={160}>Who</Table.Th>
-                <Table.Th w={176}>What</Table.Th>
-                <Table.Th>More</Table.Th>
-              </Table.Tr>
-            </Table.Thead>
-            <Table.Tbody>
-              {lines.map((line) => (
-                <Table.Tr key={line.id}>
-                  <Table.Td>{formatMoment(line.time)}</Table.Td>
-                  <Table.Td>{line.account ?? "command line"}</Table.Td>
-                  <Table.Td>{line.act.replace(".", " · ")}</Table.Td>
-                  <Table.Td style={{ overflowWrap: "anywhere" }}>
-                    <Text size="sm" component="span">
-                      {describeDetail(line.detail)}
-                    </Text>{" "}
-                    {line.subject_id && (
-                      <Text size="xs" className="quiet" component="span">
-                        {line.subject} {people.find((person) => person.id === line.subject_id)?.name ?? line.subject_id.slice(0, 8)}
-                      </Text>
-                    )}
-                  </Table.Td>
+          <div className="table-scroll">
+            <Table verticalSpacing="xs" highlightOnHover miw={680}>
+              <Table.Thead>
+                <Table.Tr>
+                  <Table.Th w={184}>When</Table.Th>
+                  <Table.Th w={160}>Who</Table.Th>
+                  <Table.Th w={176}>What</Table.Th>
+                  <Table.Th>More</Table.Th>
                 </Table.Tr>
-              ))}
-            </Table.Tbody>
-          </Table>
+              </Table.Thead>
+              <Table.Tbody>
+                {lines.map((line) => (
+                  <Table.Tr key={line.id}>
+                    <Table.Td>{formatMoment(line.time)}</Table.Td>
+                    <Table.Td>{line.account ?? "command line"}</Table.Td>
+                    <Table.Td>{line.act.replace(".", " · ")}</Table.Td>
+                    <Table.Td style={{ overflowWrap: "anywhere" }}>
+                      <Text size="sm" component="span">
+                        {describeDetail(line.detail)}
+                      </Text>{" "}
+                      {line.subject_id && (
+                        <Text size="xs" className="quiet" component="span">
+                          {line.subject} {people.find((person) => person.id === line.subject_id)?.name ?? line.subject_id.slice(0, 8)}
+                        </Text>
+                      )}
+                    </Table.Td>
+                  </Table.Tr>
+                ))}
+              </Table.Tbody>
+            </Table>
+          </div>
         )}
         {list.hasNextPage && (
           <Group justify="center" mt="md">

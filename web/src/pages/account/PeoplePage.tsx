@@ -76,61 +76,63 @@ export default function PeoplePage() {
           </Text>
         )}
         {data ? (
-          <Table verticalSpacing="sm">
-            <Table.Thead>
-              <Table.Tr>
-                <Table.Th>Name</Table.Th>
-                <Table.Th>Role</Table.Th>
-                <Table.Th>State</Table.Th>
-                <Table.Th>Last seen</Table.Th>
-                <Table.Th />
-              </Table.Tr>
-            </Table.Thead>
-            <Table.Tbody>
-              {data.map((person) => (
-                <Table.Tr key={person.id} className={person.is_disabled ? classes.off : undefined} data-testid={`person-${person.name}`}>
-                  <Table.Td>
-                    <Group gap="sm">
-                      {person.name}
-                      {person.id === me.id && (
-                        <Badge variant="light" tt="none">
-                          you
-                        </Badge>
-                      )}
-                    </Group>
-                  </Table.Td>
-                  <Table.Td>
-                    {person.may_manage ? (
-                      <Select w={136} size="xs" aria-label={`Role of ${person.name}`} data={roles} value={person.role} onChange={(value) => value && change.mutate({ person, role: value as Role })} allowDeselect={false} />
-                    ) : (
-                      person.role
-                    )}
-                  </Table.Td>
-                  <Table.Td>{stateOf(person)}</Table.Td>
-                  <Table.Td>{formatMoment(person.last_seen_at)}</Table.Td>
-                  <Table.Td>
-                    <Group gap="xs" justify="flex-end" wrap="nowrap">
-                      {person.may_manage && !person.is_disabled && (
-                        <Tooltip label="A one-time link with which they set a new password">
-                          <Button size="xs" variant="default" onClick={() => makeCode.mutate(person.id, { onSuccess: ({ code }) => setLink({ name: person.name, code }) })}>
-                            Password link
-                          </Button>
-                        </Tooltip>
-                      )}
-                      {person.may_manage && (
-                        <Button size="xs" variant="default" onClick={() => change.mutate({ person, is_disabled: !person.is_disabled })} aria-label={`${person.is_disabled ? "Enable" : "Disable"} ${person.name}`}>
-                          {person.is_disabled ? "Enable" : "Disable"}
-                        </Button>
-                      )}
-                      <Button size="xs" variant="subtle" color="gray" component={Link} to={`/audit?account_id=${person.id}`}>
-                        Acts
-                      </Button>
-                    </Group>
-                  </Table.Td>
+          <div className="table-scroll">
+            <Table verticalSpacing="sm" miw={720}>
+              <Table.Thead>
+                <Table.Tr>
+                  <Table.Th>Name</Table.Th>
+                  <Table.Th>Role</Table.Th>
+                  <Table.Th>State</Table.Th>
+                  <Table.Th>Last seen</Table.Th>
+                  <Table.Th />
                 </Table.Tr>
-              ))}
-            </Table.Tbody>
-          </Table>
+              </Table.Thead>
+              <Table.Tbody>
+                {data.map((person) => (
+                  <Table.Tr key={person.id} className={person.is_disabled ? classes.off : undefined} data-testid={`person-${person.name}`}>
+                    <Table.Td>
+                      <Group gap="sm">
+                        {person.name}
+                        {person.id === me.id && (
+                          <Badge variant="light" tt="none">
+                            you
+                          </Badge>
+                        )}
+                      </Group>
+                    </Table.Td>
+                    <Table.Td>
+                      {person.may_manage ? (
+                        <Select w={136} size="xs" aria-label={`Role of ${person.name}`} data={roles} value={person.role} onChange={(value) => value && change.mutate({ person, role: value as Role })} allowDeselect={false} />
+                      ) : (
+                        person.role
+                      )}
+                    </Table.Td>
+                    <Table.Td>{stateOf(person)}</Table.Td>
+                    <Table.Td>{formatMoment(person.last_seen_at)}</Table.Td>
+                    <Table.Td>
+                      <Group gap="xs" justify="flex-end" wrap="nowrap">
+                        {person.may_manage && !person.is_disabled && (
+                          <Tooltip label="A one-time link with which they set a new password">
+                            <Button size="xs" variant="default" onClick={() => makeCode.mutate(person.id, { onSuccess: ({ code }) => setLink({ name: person.name, code }) })}>
+                              Password link
+                            </Button>
+                          </Tooltip>
+                        )}
+                        {person.may_manage && (
+                          <Button size="xs" variant="default" onClick={() => change.mutate({ person, is_disabled: !person.is_disabled })} aria-label={`${person.is_disabled ? "Enable" : "Disable"} ${person.name}`}>
+                            {person.is_disabled ? "Enable" : "Disable"}
+                          </Button>
+                        )}
+                        <Button size="xs" variant="subtle" color="gray" component={Link} to={`/audit?account_id=${person.id}`}>
+                          Acts
+                        </Button>
+                      </Group>
+                    </Table.Td>
+                  </Table.Tr>
+                ))}
+              </Table.Tbody>
+            </Table>
+          </div>
         ) : (
           <Skeleton height={160} />
         )}

@@ -1,13 +1,14 @@
-import { Button, Group, Text } from "@mantine/core";
-import { IconFlag } from "@tabler/icons-react";
+import { ActionIcon, Button, Group, Text, UnstyledButton } from "@mantine/core";
+import { IconChevronDown, IconChevronUp, IconFlag } from "@tabler/icons-react";
 import { useQueryClient } from "@tanstack/react-query";
-import { useEffect, useMemo } from "react";
+import { useEffect, useMemo, useState } from "react";
 import { goToFrame, selectCamera, selectJoint, switchHand } from "../../actions/annotate/select";
 import { flagKeys, useDismissal, useFlags } from "../../api/flags";
 import type { Flag } from "../../api/types";
 import { KIND_NAMES, nextFlag } from "../../model/flag";
 import type { FrameMarks } from "../../model/frameMarks";
 import { useKeyOf } from "../../state/keys";
+import { useIsCompact } from "../parts/useScreen";
 import { useActions, useAnnotating } from "./annotating";
 import { useIsBlind } from "./useIsBlind";
 import classes from "./Annotator.module.css";
@@ -24,6 +25,9 @@ export function FlagCard() {
   const flags = isBlind || !found ? [] : found;
   const dismissal = useDismissal(recording.id);
   const keyOf = useKeyOf();
+  // On a phone the picture has no room for a card: one line stands below it, and opens.
+  const isCompact = useIsCompact();
+  const [isOpen, setOpen] = useState(false);
   const isSaved = saving.waiting === 0 && !saving.isSending;
 
   // A save may come and go between two drawings: `isSaved` alone would not tell.
@@ -51,6 +55,15 @@ export function FlagCard() {
   };
   useActions({ "flag.next": walk(1), "flag.previous": walk(-1), "flag.dismiss": () => putAway(first) });
 
+  if (isCompact && !isOpen && first) {
+    return (
+      <UnstyledButton className={`card ${classes.notice} ${classes.fold}`} aria-expanded={false} onClick={() => setOpen(true)}>
+        <IconFlag size={16} color="var(--warn-text)" aria-hidden />
+        <span className="one-line">Label check: {here.map((flag) => KIND_NAMES[flag.kind]).join(", ")}</span>
+        <IconChevronDown size={16} aria-hidden />
+      </UnstyledButton>
+    );
+  }
   return here.map((flag) => (
     <div key={flag.kind} className={`card ${classes.notice}`} role="group" aria-label={`Label check: ${KIND_NAMES[flag.kind]}`}>
       <Group gap={8} wrap="nowrap" mb={4}>
@@ -58,6 +71,11 @@ export function FlagCard() {
         <Text size="sm" fw={600}>
           {KIND_NAMES[flag.kind]}
         </Text>
+        {isCompact && flag === first && (
+          <ActionIcon ml="auto" aria-label="Fold the label check" aria-expanded onClick={() => setOpen(false)}>
+            <IconChevronUp size={16} />
+          </ActionIcon>
+        )}
       </Group>
       <Text size="xs" mb={8}>
         {flag.reason}

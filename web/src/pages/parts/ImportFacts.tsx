@@ -1,7 +1,8 @@
 import { SimpleGrid, Table, Title } from "@mantine/core";
 import type { ReactNode } from "react";
-import type { CameraReport, ImportReport } from "../../api/types";
+import type { CameraReport, ImportReport, ObjectReport } from "../../api/types";
 import { formatCount, formatNumber } from "../../model/format";
+import { formatSize } from "../../model/scanUnit";
 import { Fact } from "./Fact";
 
 /** "12 %", "0.4 %", and never "-0 %". */
@@ -51,6 +52,12 @@ const ROWS: readonly (readonly [string, (camera: CameraReport) => ReactNode])[] 
   ["Position", ({ calibration }) => calibration && `${calibration.centre_m.map((value) => formatNumber(value, 3)).join(", ")} m`],
 ];
 
+/** "ball, 5.2 × 5.2 × 5.2 cm (guessed)". */
+function describeObject(name: string, sizes: readonly ObjectReport[]): string {
+  const found = sizes.find((one) => one.name === name && one.size_m.length > 0);
+  return found ? `${name}, ${formatSize(found.size_m)}${found.is_guessed ? " (guessed)" : ""}` : name;
+}
+
 /** The figures of an import report. */
 export function ImportFacts({ report }: { report: ImportReport }) {
   const cameras = report.cameras ?? [];
@@ -62,7 +69,7 @@ export function ImportFacts({ report }: { report: ImportReport }) {
         <Fact label="Frames">{report.frame_count.toLocaleString("en")}</Fact>
         <Fact label="Frames per second">{formatNumber(report.fps, report.fps !== null && Number.isInteger(report.fps) ? 0 : 2)}</Fact>
         <Fact label="Hands">{report.hands.join(", ") || "–"}</Fact>
-        <Fact label="Objects">{report.objects.join(", ") || "none"}</Fact>
+        <Fact label="Objects">{report.objects.map((name) => describeObject(name, report.object_sizes ?? [])).join("; ") || "none"}</Fact>
         <Fact label="Annotations">{report.annotations}</Fact>
       </SimpleGrid>
       {cameras.length > 0 && (

@@ -7,6 +7,7 @@ import { formatName } from "../../model/format";
 import { numberFields, withSensor } from "../../model/importForm";
 import { DepthPreview } from "./DepthPreview";
 import classes from "./ImportOptionsForm.module.css";
+import { ObjectUnit } from "./ObjectUnit";
 import { SensorChoice } from "./SensorChoice";
 import { SeriesChoice } from "./SeriesChoice";
 import type { LiveCheck } from "./useLiveCheck";
@@ -88,6 +89,7 @@ export function ImportOptionsForm({ importId, report, live }: ImportOptionsFormP
             ))}
           </SimpleGrid>
         )}
+        {takes.includes("object_unit_m") && <ObjectUnit question={ask("object_unit_m")} value={draft["object_unit_m"] as string | number | undefined} onChange={(value) => set({ object_unit_m: value })} />}
         <DepthPreview report={report} hint={isNeeded("depth_scale") && text("depth_scale") === "" ? (ask("depth_scale")?.ask ?? "") : ""} />
         {isNeeded("world_unit_m") && text("world_unit_m") === "" && (
           <Text size="sm" className="quiet">
@@ -114,7 +116,7 @@ export function ImportOptionsForm({ importId, report, live }: ImportOptionsFormP
             onChange={(event) => set({ allow_gaps: event.currentTarget.checked || undefined })}
           />
         )}
-        <Button variant="subtle" size="compact-sm" onClick={more.toggle} aria-expanded={isMoreShown} leftSection={<Chevron size={14} aria-hidden />} style={{ alignSelf: "flex-start" }}>
+        <Button variant="subtle" size="compact-sm" display={SERIES.some((name) => takes.includes(name)) || takes.includes("hands") ? undefined : "none"} onClick={more.toggle} aria-expanded={isMoreShown} leftSection={<Chevron size={14} aria-hidden />} style={{ alignSelf: "flex-start" }}>
           Patterns and format
         </Button>
         <Collapse expanded={isMoreShown}>

@@ -25,6 +25,7 @@ import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { Tool } from "../parts/Tool";
+import { useHasFingers } from "../parts/useScreen";
 import { useTitle } from "../parts/useTitle";
 import { CropPanel } from "./CropPanel";
 import { RegisterDialog } from "./RegisterDialog";
@@ -135,6 +136,7 @@ function OpenScan({ scan }: { scan: Scan }) {
   const [isCutting, setCutting] = useState(false);
   const [isRegistering, registering] = useDisclosure(false);
   const hint = useHint();
+  const hasFingers = useHasFingers();
   const keyOf = useKeyOf();
   const navigate = useNavigate();
   const neighbours = useScanList({ collection: scan.collection });
@@ -304,7 +306,7 @@ function OpenScan({ scan }: { scan: Scan }) {
           </span>
         ))}
         <Text size="xs" span ml="auto" role="status">
-          {isCutting ? "The next stroke cuts" : "Drag to turn, wheel to come nearer, right drag to move"}
+          {isCutting ? "The next stroke cuts" : hasFingers ? "Drag to turn, pinch to come nearer, two fingers to move" : "Drag to turn, wheel to come nearer, right drag to move"}
         </Text>
       </div>
       <RegisterDialog isOpen={isRegistering} onClose={registering.close} scanIds={[scan.id]} />

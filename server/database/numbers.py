@@ -1,0 +1,21 @@
+"""Numbers in the JSON that people send, in one way for all rooms: true is no 1, and "5" is no 5."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BeforeValidator, Field, Strict
+
+
+def _refuse_truth(value: object) -> object:
+    if isinstance(value, bool):
+        raise ValueError("needed a number, not true or false")
+    return value
+
+
+IsNumber = BeforeValidator(_refuse_truth)
+"""For a choice of few numbers: pydantic takes true for `Literal[1]`."""
+
+Whole = Annotated[int, Strict()]
+Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
+FrameNumber = Annotated[Whole, Field(ge=0, le=10**9)]

@@ -15,7 +15,7 @@ from tracker.terms.marked_joints import mark_joints
 from tracker.tracking.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
 from tracker.tracking.follow import follow_frame
 from tracker.tracking.objective import Objective
-from tracker.tracking.region import choose_stride, region_around
+from tracker.tracking.region import region_around
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.sighting import find_sightings
 from tracker.tracking.state import TrackState
@@ -148,7 +148,7 @@ def _look(sequence: Sequence, setup: TrackSetup, frames: range, place: int, pose
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
         return None
-    seen = observe(frame, camera, region, setup.preprocessing, choose_stride(region, camera))
+    seen = observe(frame, camera, region, setup.preprocessing)
     if seen.hand_count < FEWEST_PIXELS:
         return None
     marks = {} if place > 0 else setup.marks

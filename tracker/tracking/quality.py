@@ -33,8 +33,9 @@ BROAD_RIM = 0.0045
 ELSEWHERE = 0.6
 """A finger whose joints are this far from where the hand detector saw them, `Sighting.measure`, is elsewhere."""
 
-BROAD_MISFIT = 6e-5
-"""More than this area, m², where drawn and seen disagree means that some finger is elsewhere."""
+MISFIT, BROAD_MISFIT = 1.1e-4, 6e-5
+"""More than this area, m², where drawn and seen disagree means that some finger is elsewhere: by the depth image alone,
+and where the hand detector says so too."""
 
 SHOWN = 1.2e-3
 """Of a hand that is followed this much shows, m²; one that is not there hides within, or behind, the other."""
@@ -103,8 +104,9 @@ class Quality:
         A real hand of another shape leaves some misfit with every finger in its place; where the detector saw the hand,
         it says whether one is not.
         """
-        is_elsewhere = self.worst_finger is None or self.worst_finger > ELSEWHERE
-        return self.is_gone or (self.broad_misfit > BROAD_MISFIT and is_elsewhere)
+        if self.worst_finger is None:
+            return self.is_gone or self.misfit > MISFIT
+        return self.is_gone or (self.broad_misfit > BROAD_MISFIT and self.worst_finger > ELSEWHERE)
 
 
 def measure_quality(view: View, observation: Observation, model: int = 0) -> Quality:

@@ -22,7 +22,7 @@ from tracker.tracking.objective import Objective
 from tracker.tracking.options import TrackOptions
 from tracker.tracking.part import Part
 from tracker.tracking.patience import Patience
-from tracker.tracking.quality import BROAD_MISFIT
+from tracker.tracking.quality import MISFIT
 from tracker.tracking.start import start_tracking
 from tracker.tracking.state import TrackState
 from tracker.tracking.tools import Tools
@@ -66,7 +66,7 @@ def test_a_finger_that_is_elsewhere_is_a_lost_hand(recorded, run):
     wrong[6:] = np.clip(wrong[6:] + 0.7, setup.scene.lower[6:], setup.scene.upper[6:])
     seen = look(frame, camera, setup, wrong)
     attempt = attempt_fit(setup, seen, wrong, wrong, Objective(), FitOptions(iterations=0))
-    assert attempt.quality.broad_misfit > BROAD_MISFIT
+    assert attempt.misfit > MISFIT
     assert attempt.lost == (0,)
 
 

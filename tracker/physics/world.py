@@ -257,16 +257,19 @@ class PhysicsWorld:
         turns_xyzw = Rotation.from_matrix(Rs[chosen]).as_quat().tolist() if len(chosen) else []
         for index, turn_xyzw in zip(chosen.tolist(), turns_xyzw, strict=True):
             home = centers[index].tolist(), turn_xyzw
-            self._bodies[index] = self._add(self._shapes[index], *home, protocol.friction)
+            self._bodies[index] = self._add(self._shapes[index], *home, protocol.friction, protocol.spinning_friction)
             self._home[index] = home
 
-    def _add(self, shape: int, position: list[float], turn_xyzw: list[float], friction: float) -> int:
+    def _add(
+        self, shape: int, position: list[float], turn_xyzw: list[float], friction: float, spinning: float = 0.0
+    ) -> int:
         bullet, client = self._bullet, self._client
         body = bullet.createMultiBody(0.0, shape, -1, position, turn_xyzw, physicsClientId=client)
         bullet.changeDynamics(
             body,
             -1,
             lateralFriction=friction,
+            spinningFriction=spinning,
             restitution=0.0,
             collisionMargin=self._skin,
             physicsClientId=client,
@@ -312,6 +315,7 @@ class PhysicsWorld:
                 link,
                 localInertiaDiagonal=inertia.tolist(),
                 lateralFriction=protocol.friction,
+                spinningFriction=protocol.spinning_friction,
                 restitution=protocol.restitution,
                 linearDamping=0.0,
                 angularDamping=0.0,

@@ -61,11 +61,13 @@ class Twin:
 
 
 @lru_cache(maxsize=4)
-def render_twin(data: Path, cache: Path, name: str, frames: int | None, step: int, seed: int) -> Twin:
-    """A twin from the cache, or rendered into it; `data` is the authors' folder."""
-    performance = load_twin(data, name, FACES)
+def render_twin(
+    data: Path, cache: Path, name: str, frames: int | None, step: int, seed: int, faces: int | None = FACES
+) -> Twin:
+    """A twin from the cache, or rendered into it; `data` is the authors' folder, None `faces` their full meshes."""
+    performance = load_twin(data, name, faces)
     last = performance.num_moments if frames is None else min(frames, performance.num_moments)
-    folder = cache / f"{name}_{last}_{step}_{seed}"
+    folder = cache / (f"{name}_{last}_{step}_{seed}" + ("" if faces == FACES else f"_{faces or 'full'}"))
     if not folder.exists():
         render_into(folder, performance, RecordingOptions(range(0, last, step), seed=seed))
     return Twin(performance, load_sequence(folder), load_truth(folder / "truth.npz"))

@@ -82,7 +82,7 @@ def start_tracking(
         placed[name] = _begin(sightings, setup, list(placed.values()))
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
-        model = given.get(item.name) or load_model(sequence.object_path(item.name))
+        model = given.get(item.name) or load_model(sequence.object_path(item.name), options.max_faces)
         others = [(other, pose) for other, pose in placed.values() if np.any(pose)]
         first_second = frames[: max(1, round(sequence.fps)) : max(1, round(sequence.fps / 6))]
         views = (setup.read(sequence, index) for index in first_second)

@@ -77,6 +77,11 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
     parser.add_argument("--no-recovery", action="store_true", help="do not look for a lost hand")
     parser.add_argument(
+        "--static-scene",
+        choices=("find", "recording", "none"),
+        help="where tables and walls are for physics: the recording's, else found in the depth (find)",
+    )
+    parser.add_argument(
         "--stop-below", type=float, metavar="MM", help="stop iterating when the mean joint moves less than this (never)"
     )
     parser.add_argument("--threads", type=int, metavar="N", help="threads of the image preparation (1)")
@@ -105,6 +110,7 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         "use_detector": False if args.no_detector else None,
         "use_skin": False if args.no_skin else None,
         "recover": False if args.no_recovery else None,
+        "static_scene": args.static_scene,
         "stop_below_mm": args.stop_below,
         "threads": args.threads,
     }

@@ -98,22 +98,6 @@ grips of a cube fall, and what is drawn into contact was held.
 """
 
 
-@dataclass(frozen=True)
-class StaticPlane:
-    """A table, floor or wall: everything behind it is solid, so nothing can pass through it in one step.
-
-    Attributes:
-        point: (3,) on it, world, m.
-        normal: (3,) unit, away from the solid side, world.
-    """
-
-    point: tuple[float, float, float]
-    normal: tuple[float, float, float]
-
-    def __post_init__(self) -> None:
-        assert abs(float(np.linalg.norm(self.normal)) - 1.0) < 1e-6, "the normal must be of length 1"
-
-
 def find_down(T_world_camera: Array) -> tuple[float, float, float]:
     """Unit direction of gravity in the world for a camera that stands upright: its own +y."""
     assert T_world_camera.shape == (4, 4)

@@ -27,6 +27,8 @@ TERM_LABELS = {
 METHODS = ("handloom", "t16")
 """Our tracker, or Algorithm 1 of [T16] with no term and no step beyond it (docs/objective.md)."""
 
+STATIC_SCENES = ("find", "recording", "none")
+
 LAST_FRAME = 10_000_000
 
 
@@ -95,6 +97,15 @@ class TrackOptions:
         label="Use the hand detector",
     )
     recover: bool = _option(True, "Look for a lost hand in the whole image.", label="Recover a lost hand")
+    static_scene: str = _option(
+        "find",
+        "Tables and walls for physics: the recording's own, else the largest plane behind the hands in the depth.",
+        label="Static scene",
+        choices=STATIC_SCENES,
+        choice_labels=("Recording's, else found in depth", "Recording's only", "None"),
+        is_advanced=True,
+        about="recording",
+    )
     stop_below_mm: float = _option(
         0.0,
         "Stop iterating when the mean joint moves less than this; 0 never does.",
@@ -126,6 +137,8 @@ class TrackOptions:
             raise TrackingError(f"terms is {self.terms!r}; needed one of {', '.join(TERMS)}.")
         if self.method not in METHODS:
             raise TrackingError(f"method is {self.method!r}; needed one of {', '.join(METHODS)}.")
+        if self.static_scene not in STATIC_SCENES:
+            raise TrackingError(f"static_scene is {self.static_scene!r}; needed one of {', '.join(STATIC_SCENES)}.")
         for option in fields(self):
             if "low" not in option.metadata:
                 continue

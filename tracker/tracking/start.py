@@ -33,6 +33,7 @@ from tracker.tracking.start_automatic import find_hand
 from tracker.tracking.start_object import start_object
 from tracker.tracking.start_plan import plan_start
 from tracker.tracking.state import TrackState
+from tracker.tracking.static_scene import see_static_scene
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
@@ -94,6 +95,8 @@ def start_tracking(
         placed |= _calibrate(sequence, there, placed, bare, frames, tell)
     setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks)
     pose = np.concatenate([placed[name][1] for name in order])
+    if sequence.objects:
+        setup = replace(setup, static_scene=see_static_scene(sequence, setup, frame, camera, pose))
     return setup, TrackState(frames[0], pose, pose, is_lost=is_lost)
 
 

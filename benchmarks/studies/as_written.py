@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +12,22 @@ import numpy as np
 
 from benchmarks.studies.twin_runs import find_first_motion, measure, render_twin, start_twin
 from tracker.evaluation import evaluate_against_truth
-from tracker.tracking.as_written import follow_as_written
+from tracker.terms.residual import Term
+from tracker.tracking.as_written import CONTOURS, DATA_TERMS, follow_as_written
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.options import TrackOptions
 from tracker.tracking.tools import make_tools
 from tracker.tracking.track import join_chunks
 
-DATA = {"both": ("model_to_data", "data_to_model"), "m2d": ("model_to_data",), "d2m": ("data_to_model",)}
+M2D, D2M = "model_to_data", "data_to_model"
+DATA: dict[str, dict[str, Term]] = {
+    "both": DATA_TERMS,
+    "m2d": {M2D: DATA_TERMS[M2D]},
+    "d2m": {D2M: DATA_TERMS[D2M]},
+    "any edge": DATA_TERMS | {D2M: replace(CONTOURS, max_angle=180.0)},
+    "every pixel": DATA_TERMS | {D2M: replace(CONTOURS, at_vertices=False)},
+}
+"""The data terms, one of them alone, both without regard to the orientation of edges, or with every pixel of one."""
 
 BLOCK = 10
 """Frames that are drawn together: the errors of frames that follow one another are alike."""

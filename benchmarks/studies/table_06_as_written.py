@@ -17,6 +17,8 @@ PARTS = (("LO m2d", "LO", "m2d"), ("LO d2m", "LO", "d2m"))
 HANDS = ("LO", "LO+C", "LO+S", "LO+SC")
 OBJECTS = ("LO", "LO+C", "LO+S", "LO+SC", "LO+CP", "LO+SCP")
 PAIRS = (
+    ("orientation of edges", HAND_HAND, "LO+SC", "LO+SC, any edge"),
+    ("vertices, not pixels", HAND_HAND, "LO+SC", "LO+SC, every pixel"),
     ("C", HAND_HAND, "LO+C", "LO"),
     ("C beside S", HAND_HAND, "LO+SC", "LO+S"),
     ("S", HAND_HAND, "LO+S", "LO"),
@@ -26,7 +28,12 @@ PAIRS = (
     ("P beside C", HELD, "LO+CP", "LO+C"),
     ("P beside SC", HELD, "LO+SCP", "LO+SC"),
 )
-"""Term, sequences, with it, without it."""
+"""Term, sequences, with it, without it: the terms, and behind a comma which of the `DATA` of as_written.py."""
+
+
+def _pair(sequences: tuple[str, ...], extent: Extent, what: str) -> list[AsWritten]:
+    terms, _, data = what.partition(", ")
+    return _runs(sequences, extent, terms, data or "both")
 
 
 def _runs(sequences: tuple[str, ...], extent: Extent, terms: str, data: str = "both") -> list[AsWritten]:
@@ -37,7 +44,8 @@ def trials(extent: Extent) -> list[Trial]:
     """The bar's own set first."""
     found: list[Trial] = [run for terms in reversed(HANDS) for run in _runs(HAND_HAND, extent, terms)]
     found += [run for _, terms, data in PARTS for run in _runs(HAND_HAND, extent, terms, data)]
-    return found + [run for terms in OBJECTS for run in _runs(HELD, extent, terms)]
+    found += [run for terms in OBJECTS for run in _runs(HELD, extent, terms)]
+    return found + [run for _, names, *both in PAIRS for what in both for run in _pair(names, extent, what)]
 
 
 def tabulate(results: Results, extent: Extent) -> list[Row]:
@@ -61,7 +69,7 @@ def tabulate(results: Results, extent: Extent) -> list[Row]:
             }
         )
     for term, sequences, with_it, without in PAIRS:
-        pairs = [[results[run] for run in _runs(sequences, extent, terms)] for terms in (with_it, without)]
+        pairs = [[results[run] for run in _pair(sequences, extent, what)] for what in (with_it, without)]
         mean, low, high = compare(*pairs)
         rows.append(
             {

@@ -184,11 +184,14 @@ class Run:
     stop_below_mm: float = 0.0
     threads: int = 1
     penetration: bool = False
+    method: str = "handloom"
 
     def __call__(self, data: Path, cache: Path, penetration: bool = False) -> dict[str, Any]:
         """Render, track, measure."""
-        twin = render_twin(data, cache, self.sequence, self.frames, self.step, self.seed)
+        faces = None if self.method == "t16" else FACES
+        twin = render_twin(data, cache, self.sequence, self.frames, self.step, self.seed, faces)
         options = TrackOptions(
+            method=self.method,
             terms=self.terms,
             iterations=self.iterations,
             calibrate=self.own_hand,

@@ -9,6 +9,7 @@ frame before. At 30 frames a second that changes nothing; every third frame of a
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from time import perf_counter
 
 import numpy as np
@@ -43,10 +44,9 @@ PHYSICS_WEIGHT = 10.0
 PIXELS_OF_30_MM = 40
 """px; more than the 30 mm of §3.2.3 are half a metre from the camera, so that only those limit contours."""
 
-DATA_TERMS: dict[str, Term] = {
-    "model_to_data": ModelToData(),
-    "data_to_model": DataToModel(weight=1.0, max_pixels=PIXELS_OF_30_MM, stride=1, at_vertices=True),
-}
+CONTOURS = DataToModel(weight=1.0, max_pixels=PIXELS_OF_30_MM, stride=1, at_vertices=True)
+
+DATA_TERMS: dict[str, Term] = {"model_to_data": ModelToData(), "data_to_model": CONTOURS}
 """Eq. 7 and Eq. 8: each with the weight of one that Eq. 5 gives it, and all matches."""
 
 
@@ -55,7 +55,7 @@ def follow_as_written(
     setup: TrackSetup,
     tools: Tools,
     state: TrackState,
-    data_terms: tuple[str, ...] = tuple(DATA_TERMS),
+    data_terms: Mapping[str, Term] = DATA_TERMS,
 ) -> tuple[TrackState, FrameResult]:
     """The next frame; a hand that the fit does not explain is called lost and followed on from where it is.
 
@@ -64,7 +64,7 @@ def follow_as_written(
         setup: Models and options.
         tools: With what S and P need.
         state: After the frame before.
-        data_terms: Eq. 7 and Eq. 8; studies leave one of them out.
+        data_terms: Eq. 7 and Eq. 8; studies change them.
     """
     read_at = perf_counter()
     frame, camera = setup.read(sequence, state.next_frame)
@@ -90,10 +90,10 @@ def follow_as_written(
 
 
 def compose_objective(
-    setup: TrackSetup, tools: Tools, seen: Observation, data_terms: tuple[str, ...] = tuple(DATA_TERMS)
+    setup: TrackSetup, tools: Tools, seen: Observation, data_terms: Mapping[str, Term] = DATA_TERMS
 ) -> Objective:
     """Eq. 5 for a frame, with the terms that the run's letters ask for."""
-    terms: dict[str, Term] = {name: DATA_TERMS[name] for name in data_terms}
+    terms: dict[str, Term] = dict(data_terms)
     if "C" in setup.options.term_letters:
         terms["collision"] = Collision(weight=COLLISION_WEIGHT)
     if tools.detector is not None:

@@ -98,7 +98,7 @@ def show(rows: list[Row]) -> list[Block]:
         f"**Bar: at most {BAR_PX} px pooled, none of the four failed: {show_px(whole['px'])} px, {whole['failed']} of "
         f"{whole['sequences']} failed ({'met' if is_met else 'not met'}).** The preset has P too, which does nothing "
         "without an object. The same mesh is rendered and tracked, so that only noise and the optimiser can be wrong: "
-        " T16's 5 px hold the misfit of a scanned hand and of manual marks as well."
+        "T16's 5 px hold the misfit of a scanned hand and of manual marks as well."
     )
     pairs = tuple(
         (

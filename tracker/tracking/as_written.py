@@ -16,7 +16,7 @@ import numpy as np
 
 from tracker.capture.sequence import Sequence
 from tracker.detection import find_fingertips
-from tracker.observation import Observation
+from tracker.observation import Observation, observe
 from tracker.terms.collision import Collision
 from tracker.terms.data_to_model import DataToModel
 from tracker.terms.joint_prior import Bending
@@ -24,13 +24,16 @@ from tracker.terms.model_to_data import ModelToData
 from tracker.terms.physics import Supported
 from tracker.terms.residual import Term
 from tracker.terms.salient import Salient
-from tracker.tracking.attempt import attempt_fit, look
+from tracker.tracking.attempt import MIN_PIXELS, attempt_fit
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.frame_result import FrameResult
 from tracker.tracking.objective import Objective
+from tracker.tracking.recovery import list_hands
+from tracker.tracking.region import region_around
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.state import TrackState
 from tracker.tracking.tools import Tools
+from tracker.tracking.watch_objects import watch_objects
 
 COLLISION_WEIGHT = 10.0
 """γ_c (§4.1.3)."""
@@ -71,21 +74,31 @@ def follow_as_written(
     started = perf_counter()
     stages = {"reading": started - read_at}
     predicted = state.predict(setup.scene)
-    seen = look(frame, camera, setup, predicted)
-    if seen is None:
-        kept = TrackState(state.next_frame + 1, state.pose, state.pose)
-        return kept, FrameResult(state.next_frame, state.pose, "lost", perf_counter() - started, None, (), stages)
-    objective = compose_objective(setup, tools, seen, data_terms)
-    is_first = state.next_frame == setup.options.first_frame
-    iterations = setup.options.first_iterations if is_first else setup.options.iterations
-    options = FitOptions(iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm, fine=iterations)
+    region = region_around(setup.scene.pose_at(predicted).vertices, camera)
+    seen = None if region is None else observe(frame, camera, region, setup.preprocessing)
     stages["observing"] = perf_counter() - started
-    best = attempt_fit(setup, seen, predicted, state.pose, objective, options)
-    pose = best.pose if np.all(np.isfinite(best.pose)) else state.pose
-    status = "lost" if best.qualities and best.lost else "ok"
-    quality = best.quality if best.qualities else None
-    seconds = perf_counter() - started
-    result = FrameResult(state.next_frame, pose, status, seconds, quality, best.fit.costs, stages | best.fit.stages)
+    attempt, pose = None, state.pose
+    if seen is not None and seen.hand_count >= MIN_PIXELS:
+        is_first = state.next_frame == setup.options.first_frame
+        iterations = setup.options.first_iterations if is_first else setup.options.iterations
+        options = FitOptions(iterations=iterations, stop_below=0.001 * setup.options.stop_below_mm, fine=iterations)
+        objective = compose_objective(setup, tools, seen, data_terms)
+        attempt = attempt_fit(setup, seen, predicted, state.pose, objective, options)
+        stages |= attempt.fit.stages
+        pose = attempt.pose if np.all(np.isfinite(attempt.pose)) else state.pose
+    _, objects = watch_objects(frame, camera, setup, pose, None if attempt is None else attempt.objects, recover=False)
+    lost = list_hands(setup) if attempt is None else attempt.lost
+    result = FrameResult(
+        state.next_frame,
+        pose,
+        "lost" if lost else "ok",
+        perf_counter() - started,
+        attempt.quality if attempt is not None and attempt.qualities else None,
+        () if attempt is None else attempt.fit.costs,
+        stages,
+        tuple(objects),
+        tuple("lost" if hand in lost else "ok" for hand in list_hands(setup)),
+    )
     return TrackState(state.next_frame + 1, pose, state.pose), result
 
 

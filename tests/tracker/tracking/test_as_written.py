@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 
+import cv2
 import numpy as np
 import pytest
 
 from tests.tracker.grips import PINCH, gripped
+from tracker.capture.sequence import load_sequence
 from tracker.physics import PhysicsWorld
 from tracker.terms.physics import Supported
 from tracker.tracking.as_written import DATA_TERMS, compose_objective
@@ -33,6 +35,7 @@ def test_a_waving_hand_is_followed_with_the_papers_terms_alone(recorded, written
         < 2e-3
     )
     assert set(chunk.status) == {0}, "ok"
+    assert chunk.hand_status.tolist() == 12 * [[0]]
     names = {*DATA_TERMS, "collision", "salient", "anatomy", "regularization"}
     assert {str(name) for name in chunk.cost_names} == names
     assert chunk.iterations.tolist() == [50] + 11 * [10]
@@ -43,6 +46,7 @@ def test_every_match_counts_in_every_iteration_with_the_weights_of_the_paper(rec
     frame, camera = setup.read(recorded.sequence, 0)
     with make_tools(setup, camera.T_world_camera) as tools:
         seen = look(frame, camera, setup, start.pose)
+        assert seen is not None
         objective = compose_objective(setup, tools, seen)
     assert {name: term.weight for name, term in objective.terms.items()} == {
         "model_to_data": 1.0,
@@ -76,3 +80,21 @@ def test_meshes_stay_as_they_are_with_the_method_of_the_paper_and_are_decimated_
     assert TrackOptions(method="t16").max_faces is None
     assert TrackOptions().max_faces == 1500
     assert dataclasses.replace(TrackOptions(), method="t16").is_as_written
+
+
+def test_a_hand_that_goes_out_of_sight_is_lost_and_taken_up_where_it_was(recorded, written, tmp_path):
+    for path in recorded.sequence.folder.rglob("*"):
+        target = tmp_path / path.relative_to(recorded.sequence.folder)
+        if path.is_dir():
+            target.mkdir(parents=True, exist_ok=True)
+        else:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(path.read_bytes())
+    blinded = load_sequence(tmp_path)
+    cv2.imwrite(str(blinded.image_path("depth", 4, "cam0")), np.zeros((480, 640), np.uint16))
+    setup, start, _, chunk = written
+    _, found = track_frames(blinded, setup, start, range(7))
+    assert found.status.tolist() == [0, 0, 0, 0, 1, 0, 0], "lost where there is nothing"
+    assert found.hand_status[:, 0].tolist() == found.status.tolist()
+    np.testing.assert_array_equal(found.pose[4], found.pose[3])
+    np.testing.assert_array_equal(found.pose[:4], chunk.pose[:4])

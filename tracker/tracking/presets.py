@@ -58,8 +58,8 @@ PRESETS: tuple[TrackPreset, ...] = (
         "t16",
         "T16, as written",
         "To compare with the paper: its algorithm on full meshes, without our terms, second tries and searches.",
-        99.0,
-        999.0,
+        138.0,
+        292.0,
         {"method": "t16", "terms": "LO+SCP", "iterations": 10, "calibrate": False},
     ),
 )

@@ -1,6 +1,7 @@
 """What the presets of a tracking job cost: `python benchmarks/presets.py FOLDER_OF_T16_DATA`.
 
-Twins of two public sequences, the authors' models, one thread: 09 (one hand) and 17 (two hands and a pipe).
+Twins of two public sequences, the authors' models, with `t16` their full meshes, one thread: 09 (one hand) and 17 (two
+hands and a pipe).
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ def main() -> None:
 
 
 def _run(args: argparse.Namespace, name: str, preset: TrackPreset) -> dict[str, Any]:
-    run = Run(name, frames=args.frames, terms=preset.values["terms"], iterations=preset.values["iterations"])
+    values = {option: value for option, value in preset.values.items() if option != "calibrate"}
+    run = Run(name, frames=args.frames, **values)
     return run(args.data, args.cache)
 
 

@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     )
     from tracker.capture.triangulation import Triangulation, triangulate
     from tracker.cli import add_commands
-    from tracker.cli.hands import load_recorded_objects
     from tracker.detection.image_hands import DETECTOR_LABEL, find_image_hands
     from tracker.detection.recorded_hands import (
         RecordedHands,
@@ -205,7 +204,6 @@ _HOMES = {
     "list_image_names": "tracker.label_formats.image_names",
     "load_annotations": "tracker.capture.annotations",
     "load_mano": "tracker.model.mano_files",
-    "load_recorded_objects": "tracker.cli.hands",
     "load_blend_model": "tracker.model.blend_files",
     "load_registration": "tracker.registration.registration_files",
     "load_scan": "tracker.capture.scan",
@@ -413,7 +411,6 @@ __all__ = [
     "load_blend_model",
     "load_mano",
     "load_recorded_hands",
-    "load_recorded_objects",
     "load_registration",
     "load_scan",
     "load_sequence",

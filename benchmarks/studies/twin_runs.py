@@ -61,11 +61,13 @@ class Twin:
 
 
 @lru_cache(maxsize=4)
-def render_twin(data: Path, cache: Path, name: str, frames: int | None, step: int, seed: int) -> Twin:
-    """A twin from the cache, or rendered into it; `data` is the authors' folder."""
-    performance = load_twin(data, name, FACES)
+def render_twin(
+    data: Path, cache: Path, name: str, frames: int | None, step: int, seed: int, faces: int | None = FACES
+) -> Twin:
+    """A twin from the cache, or rendered into it; `data` is the authors' folder, None `faces` their full meshes."""
+    performance = load_twin(data, name, faces)
     last = performance.num_moments if frames is None else min(frames, performance.num_moments)
-    folder = cache / f"{name}_{last}_{step}_{seed}"
+    folder = cache / (f"{name}_{last}_{step}_{seed}" + ("" if faces == FACES else f"_{faces or 'full'}"))
     if not folder.exists():
         render_into(folder, performance, RecordingOptions(range(0, last, step), seed=seed))
     return Twin(performance, load_sequence(folder), load_truth(folder / "truth.npz"))
@@ -182,11 +184,14 @@ class Run:
     stop_below_mm: float = 0.0
     threads: int = 1
     penetration: bool = False
+    method: str = "handloom"
 
     def __call__(self, data: Path, cache: Path, penetration: bool = False) -> dict[str, Any]:
         """Render, track, measure."""
-        twin = render_twin(data, cache, self.sequence, self.frames, self.step, self.seed)
+        faces = None if self.method == "t16" else FACES
+        twin = render_twin(data, cache, self.sequence, self.frames, self.step, self.seed, faces)
         options = TrackOptions(
+            method=self.method,
             terms=self.terms,
             iterations=self.iterations,
             calibrate=self.own_hand,

@@ -74,7 +74,7 @@ class TrackingJob:
             progress: Is told.
             others: Jobs that may have done just this before: what each is called, and its files.
         """
-        from tracker import load_annotations, load_recorded_objects, plan_start, start_tracking
+        from tracker import load_annotations, plan_start, start_tracking
 
         manifest = self.files.read_manifest("start")
         if manifest is not None:
@@ -91,7 +91,7 @@ class TrackingJob:
         setup, state = start_tracking(
             recording,
             options,
-            (self.load_hands() or {}) | load_recorded_objects(recording),
+            self.load_hands(),
             annotations,
             lambda stage, share: progress.part((0.0, begins), stage, share),
         )

@@ -14,6 +14,7 @@ from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_question import ImportQuestion
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.recorded_object import RecordedObject
+from tracker.capture.static_plane import StaticPlane
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
@@ -147,6 +148,8 @@ class ImportPlan:
         frame_count: As the source declares, or None when it is what the streams hold.
         hands: Hands that are seen.
         objects: Objects that are handled.
+        gravity: (3,) unit, which way things fall, world, where the source says it.
+        planes: Tables, floors, walls that the source names.
         files: Other files to copy, target to source, both relative.
         annotations: Already in the source, or None.
         problems: Sentences, each a reason to refuse.
@@ -164,6 +167,8 @@ class ImportPlan:
     frame_count: int | None = None
     hands: tuple[str, ...] = ("right",)
     objects: tuple[RecordedObject, ...] = ()
+    gravity: tuple[float, float, float] | None = None
+    planes: tuple[StaticPlane, ...] = ()
     files: dict[str, str] = field(default_factory=dict)
     annotations: Annotations | None = None
     problems: tuple[str, ...] = ()

@@ -131,7 +131,16 @@ def _fill(folder: Path, checked: CheckedImport, progress: Progress) -> None:
     if plan.annotations is not None:
         save_annotations(folder / "annotations.json", plan.annotations)
     sequence = Sequence(
-        folder, plan.name, report.fps, report.frame_count, tuple(cameras), plan.hands, plan.objects, annotations=name
+        folder,
+        plan.name,
+        report.fps,
+        report.frame_count,
+        tuple(cameras),
+        plan.hands,
+        plan.objects,
+        name,
+        plan.gravity,
+        plan.planes,
     )
     save_sequence_json(sequence)
     document = {

@@ -16,6 +16,7 @@ from tracker.capture.image_file import MAX_IMAGE_BYTES, decode_color, decode_dep
 from tracker.capture.recorded_camera import RecordedCamera, parse_camera
 from tracker.capture.recorded_object import RecordedObject, parse_object
 from tracker.capture.relative_path import find_path_fault, is_inside
+from tracker.capture.static_plane import MAX_PLANES, StaticPlane, parse_direction, parse_plane
 from tracker.errors import FrameError, SequenceError
 
 SEQUENCE_FILE = "sequence.json"
@@ -36,6 +37,8 @@ class Sequence:
         hands: Of `right`, `left`, those that are seen.
         objects: Those that are handled.
         annotations: Relative path of its annotations, or None.
+        gravity: (3,) unit, which way things fall, world; None where nobody said.
+        planes: Tables, floors, walls that somebody measured.
     """
 
     folder: Path
@@ -46,6 +49,8 @@ class Sequence:
     hands: tuple[str, ...] = ("right",)
     objects: tuple[RecordedObject, ...] = ()
     annotations: str | None = None
+    gravity: tuple[float, float, float] | None = None
+    planes: tuple[StaticPlane, ...] = ()
 
     @property
     def annotations_path(self) -> Path | None:
@@ -122,7 +127,13 @@ class Sequence:
             "hands": list(self.hands),
             "objects": [item.to_json() for item in self.objects],
         }
-        return document | ({"annotations": self.annotations} if self.annotations is not None else {})
+        if self.annotations is not None:
+            document["annotations"] = self.annotations
+        if self.gravity is not None:
+            document["gravity"] = list(self.gravity)
+        if self.planes:
+            document["planes"] = [plane.to_json() for plane in self.planes]
+        return document
 
 
 def load_sequence(folder: Path | str) -> Sequence:
@@ -159,6 +170,8 @@ def parse_sequence(node: Node, folder: Path) -> Sequence:
         hands=hands,
         objects=objects,
         annotations=annotations,
+        gravity=parse_direction(node.get("gravity")) if node.has("gravity") else None,
+        planes=tuple(parse_plane(p) for p in node.get("planes").items(MAX_PLANES)) if node.has("planes") else (),
     )
 
 

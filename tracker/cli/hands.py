@@ -9,13 +9,19 @@ from typing import TYPE_CHECKING
 from tracker.cli.command import TRAINED
 from tracker.errors import TrackerError
 
+MAX_FACES = 1500
+"""As `tracker.model.files.MAX_FACES`, which would take its time to import."""
+
 if TYPE_CHECKING:
-    from tracker.capture.sequence import Sequence as Recording
     from tracker.model.articulated import ArticulatedModel
 
 
-def load_hands(given: Sequence[tuple[str, Path | None]], hands: tuple[str, ...]) -> dict[str, ArticulatedModel]:
+def load_hands(
+    given: Sequence[tuple[str, Path | None]], hands: tuple[str, ...], max_faces: int | None = MAX_FACES
+) -> dict[str, ArticulatedModel]:
     """A model for each of the hands: from the file given for it, the hand learnt from scans, or the default hand.
+
+    Heavier meshes are decimated to `max_faces`; None keeps them.
 
     Raises:
         TrackerError: A file is given for a hand that is not among them, or holds none of that side.
@@ -32,7 +38,7 @@ def load_hands(given: Sequence[tuple[str, Path | None]], hands: tuple[str, ...])
     models = {}
     for side in hands:
         path = files.get(side)
-        models[side] = default_hand(side) if path is None else _load_hand(path, side)
+        models[side] = default_hand(side) if path is None else _load_hand(path, side, max_faces)
         found = models[side].hand
         if found is None or found.side != side:
             raise TrackerError(
@@ -41,16 +47,18 @@ def load_hands(given: Sequence[tuple[str, Path | None]], hands: tuple[str, ...])
     return models
 
 
-def _load_hand(path: Path, side: str) -> ArticulatedModel:
+def _load_hand(path: Path, side: str, max_faces: int | None) -> ArticulatedModel:
     from tracker.model import load_model
     from tracker.model.blend_articulated import articulated_of
     from tracker.model.trained_hand import trained_hand
 
-    return articulated_of(trained_hand(side)) if path == Path(TRAINED) else load_model(path)
+    return articulated_of(trained_hand(side)) if path == Path(TRAINED) else load_model(path, max_faces)
 
 
-def load_objects(given: Sequence[tuple[str, Path]], objects: tuple[str, ...]) -> dict[str, ArticulatedModel]:
-    """A model for each object that a file is given for.
+def load_objects(
+    given: Sequence[tuple[str, Path]], objects: tuple[str, ...], max_faces: int | None = MAX_FACES
+) -> dict[str, ArticulatedModel]:
+    """A model for each object that a file is given for, decimated as `load_hands` says.
 
     Raises:
         TrackerError: The recording names no such object.
@@ -61,16 +69,5 @@ def load_objects(given: Sequence[tuple[str, Path]], objects: tuple[str, ...]) ->
     for name, path in given:
         if name not in objects:
             raise TrackerError(f"--object {name}: the recording names {list(objects) or 'no objects'}.")
-        models[name] = load_model(path)
+        models[name] = load_model(path, max_faces)
     return models
-
-
-def load_recorded_objects(recording: Recording) -> dict[str, ArticulatedModel]:
-    """A model for each object whose file's unit the recording says; that of the others is told by their size."""
-    from tracker.model import load_model
-
-    return {
-        item.name: load_model(recording.object_path(item.name), metres_per_unit=item.metres_per_unit)
-        for item in recording.objects
-        if item.metres_per_unit is not None
-    }

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tracker.cli.command import add_json, choose_frames, parse_hand, parse_named_file, parse_range, run_guarded
-from tracker.cli.hands import load_hands, load_objects, load_recorded_objects
+from tracker.cli.hands import load_hands, load_objects
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError, say_count
 from tracker.tracking.presets import PRESETS, find_preset
@@ -77,6 +77,11 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
     parser.add_argument("--no-recovery", action="store_true", help="do not look for a lost hand")
     parser.add_argument(
+        "--static-scene",
+        choices=("find", "recording", "none"),
+        help="where tables and walls are for physics: the recording's, else found in the depth (find)",
+    )
+    parser.add_argument(
         "--stop-below", type=float, metavar="MM", help="stop iterating when the mean joint moves less than this (never)"
     )
     parser.add_argument("--threads", type=int, metavar="N", help="threads of the image preparation (1)")
@@ -101,10 +106,11 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         "first_frame": frames.start,
         "last_frame": frames.stop - 1,
         "camera": args.camera,
-        "calibrate": not args.no_calibration,
-        "use_detector": not args.no_detector,
-        "use_skin": not args.no_skin,
-        "recover": not args.no_recovery,
+        "calibrate": False if args.no_calibration else None,
+        "use_detector": False if args.no_detector else None,
+        "use_skin": False if args.no_skin else None,
+        "recover": False if args.no_recovery else None,
+        "static_scene": args.static_scene,
         "stop_below_mm": args.stop_below,
         "threads": args.threads,
     }
@@ -124,9 +130,8 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         sequence,
         options,
         {
-            **load_hands(args.hand, sequence.hands),
-            **load_recorded_objects(sequence),
-            **load_objects(args.object, tuple(item.name for item in sequence.objects)),
+            **load_hands(args.hand, sequence.hands, options.max_faces),
+            **load_objects(args.object, tuple(item.name for item in sequence.objects), options.max_faces),
         },
         annotations,
         lambda stage, share: line.show(0.0, stage),

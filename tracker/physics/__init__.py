@@ -1,7 +1,10 @@
 """Rigid-body simulation of hands and the object they hold; [T16] §3.2.6."""
 
+from tracker.capture.static_plane import StaticPlane
 from tracker.physics.displacement import Displacement, measure_displacement, simulate
-from tracker.physics.protocol import SD_OBMAN, SD_SEED, SEARCH, Protocol, StaticPlane, find_down
+from tracker.physics.plane_search import find_plane
+from tracker.physics.protocol import SD_OBMAN, SD_SEED, SEARCH, Protocol, find_down
+from tracker.physics.static_scene import StaticScene, choose_down
 from tracker.physics.support import (
     Contact,
     Support,
@@ -21,10 +24,13 @@ __all__ = [
     "PhysicsWorld",
     "Protocol",
     "StaticPlane",
+    "StaticScene",
     "Support",
     "SupportOptions",
+    "choose_down",
     "find_down",
     "find_part_bones",
+    "find_plane",
     "find_settled_displacement",
     "find_support",
     "measure_displacement",

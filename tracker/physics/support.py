@@ -91,7 +91,7 @@ def find_support(world: PhysicsWorld, posed: PosedScene, options: SupportOptions
     """Simulate the pose; if the object falls, try the finger parts near it and keep what holds it best.
 
     Overlaps of hulls are resolved before anything is simulated (a hull is set back until it just touches), because
-    they would throw the object. A candidate is set forward until it touches.
+    they would throw the object. A candidate is set forward until it touches, and so is a plane as near as that.
 
     Differs from the paper: combinations must pass a wrench test, and at most `most_simulations` of those that do are
     simulated; the search ends early at one that moves the object less than two thirds of `stable_below`. An object that
@@ -138,7 +138,7 @@ def _settle(
     world: PhysicsWorld, posed: PosedScene, options: SupportOptions
 ) -> tuple[tuple[Gap, ...], dict[int, Array], float]:
     """What is near, how far hulls are set back to where they just touch, and how far the object then moves, m."""
-    world.place(posed, options.protocol, options.reach)
+    world.place(posed, options.protocol, options.reach, rests_within=options.near)
     gaps = world.find_gaps(max(options.near, 2.0 * options.protocol.skin))
     if not gaps and not world.planes:
         return gaps, {}, options.protocol.free_fall

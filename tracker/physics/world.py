@@ -11,12 +11,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from tracker.capture.static_plane import StaticPlane
 from tracker.model.scene import PosedScene, Scene
 from tracker.physics.bullet import load_bullet
 from tracker.physics.hulls import BoneHull, find_bone_hulls
 from tracker.physics.moving_body import build_moving_body
 from tracker.physics.near_hulls import HullPairs
-from tracker.physics.protocol import GRAVITY, Protocol, StaticPlane
+from tracker.physics.protocol import GRAVITY, Protocol
 
 Array = npt.NDArray[np.float64]
 
@@ -74,7 +75,7 @@ class PhysicsWorld:
         self.scene = scene
         self.moving = objects[0] if moving is None else moving
         self.down = np.array(down, dtype=np.float64)
-        self.planes = tuple(planes)
+        self.planes = self._planes = tuple(planes)
         assert self.down.shape == (3,) and abs(float(np.linalg.norm(self.down)) - 1.0) < 1e-6
         self._bullet = load_bullet()
         self._client = self._bullet.connect(self._bullet.DIRECT)
@@ -118,7 +119,7 @@ class PhysicsWorld:
         """Give the client back; a second call does nothing."""
         self._finalizer()
 
-    def place(self, posed: PosedScene, protocol: Protocol, reach: float = np.inf) -> None:
+    def place(self, posed: PosedScene, protocol: Protocol, reach: float = np.inf, rests_within: float = 0.0) -> None:
         """Put every hull where the pose has it, and the object at rest.
 
         Args:
@@ -126,6 +127,8 @@ class PhysicsWorld:
             protocol: Materials and time-step of the runs that follow.
             reach: Leave out still hulls that are farther than this from the object, m; nothing that is simulated can
                 touch them.
+            rests_within: A plane that the object's lowest corner is above or below by no more than this, m, is set to
+                where the object rests on it: depth tells neither of them so exactly.
         """
         assert posed.scene is self.scene
         bullet, client = self._bullet, self._client
@@ -152,7 +155,8 @@ class PhysicsWorld:
         self.radius = float(np.linalg.norm(self._corners - self.centroid, axis=1).max())
         still_Rs, still_centers = self._poses(posed, self.hulls)
         near = self._pairs.find_near(still_Rs, still_centers, Rs, centers, reach)
-        for plane in self.planes:
+        self._planes = tuple(self._set_under(plane, rests_within) for plane in self.planes)
+        for plane in self._planes:
             self._place_plane(plane, protocol)
         self._place_hulls(still_Rs, still_centers, np.any(near, axis=1), protocol)
         is_near = np.any(near, axis=0) | bool(self.planes) | np.isinf(reach)
@@ -176,7 +180,7 @@ class PhysicsWorld:
     def find_plane_contacts(self) -> tuple[Array, Array]:
         """Corners (N, 3) of the object that lie on a plane of the static scene, m, and its normals (N, 3), world."""
         corners, normals = [], []
-        for plane in self.planes:
+        for plane in self._planes:
             height = (self._corners - np.array(plane.point)) @ np.array(plane.normal)
             on_plane = self._corners[height <= 2.0 * self._skin]
             if len(on_plane) > MAX_PLANE_CONTACTS:
@@ -245,6 +249,14 @@ class PhysicsWorld:
         centers = np.array([hull.center for _, hull in hulls])
         return Ms[:, :, :3], np.einsum("nij,nj->ni", Ms[:, :, :3], centers) + Ms[:, :, 3]
 
+    def _set_under(self, plane: StaticPlane, within: float) -> StaticPlane:
+        """The plane, set to where the object just touches it if that is not farther than `within`, m."""
+        height = float(((self._corners - np.array(plane.point)) @ np.array(plane.normal)).min())
+        if abs(height) > within:
+            return plane
+        x, y, z = (np.array(plane.point) + height * np.array(plane.normal)).tolist()
+        return StaticPlane((x, y, z), plane.normal)
+
     def _place_plane(self, plane: StaticPlane, protocol: Protocol) -> None:
         """A large block below the plane."""
         normal = np.array(plane.normal)
@@ -257,16 +269,19 @@ class PhysicsWorld:
         turns_xyzw = Rotation.from_matrix(Rs[chosen]).as_quat().tolist() if len(chosen) else []
         for index, turn_xyzw in zip(chosen.tolist(), turns_xyzw, strict=True):
             home = centers[index].tolist(), turn_xyzw
-            self._bodies[index] = self._add(self._shapes[index], *home, protocol.friction)
+            self._bodies[index] = self._add(self._shapes[index], *home, protocol.friction, protocol.spinning_friction)
             self._home[index] = home
 
-    def _add(self, shape: int, position: list[float], turn_xyzw: list[float], friction: float) -> int:
+    def _add(
+        self, shape: int, position: list[float], turn_xyzw: list[float], friction: float, spinning: float = 0.0
+    ) -> int:
         bullet, client = self._bullet, self._client
         body = bullet.createMultiBody(0.0, shape, -1, position, turn_xyzw, physicsClientId=client)
         bullet.changeDynamics(
             body,
             -1,
             lateralFriction=friction,
+            spinningFriction=spinning,
             restitution=0.0,
             collisionMargin=self._skin,
             physicsClientId=client,
@@ -312,6 +327,7 @@ class PhysicsWorld:
                 link,
                 localInertiaDiagonal=inertia.tolist(),
                 lateralFriction=protocol.friction,
+                spinningFriction=protocol.spinning_friction,
                 restitution=protocol.restitution,
                 linearDamping=0.0,
                 angularDamping=0.0,

@@ -6,12 +6,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import nnls
 
+from tracker.physics.protocol import PATCH_RADIUS
+
 Array = npt.NDArray[np.float64]
 
 CONE_EDGES = 8
-
-PATCH_RADIUS = 0.005
-"""m; a contact is a patch of about this radius, so it can also resist some turning about itself."""
 
 
 def build_wrenches(points: Array, inward: Array, friction: float, centroid: Array, radius: float) -> Array:

@@ -9,10 +9,16 @@ from numba import njit
 
 from tracker.model.scene import PosedScene
 from tracker.observation import HAND
+from tracker.observation.depth_edges import find_fall
 from tracker.terms.nearby_pixels import find_nearby_pixels
 from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
+
+NOWHERE = np.zeros((0, 0), dtype=np.int32)
+
+VISIBLE_WITHIN = 0.003
+"""A vertex is visible when it is at most this far behind the drawn surface, m."""
 
 
 @dataclass(frozen=True)
@@ -20,8 +26,9 @@ class DataToModel:
     """Pull depth discontinuities of the model towards those of the image: E = Σ |v_i(θ) × d_i − m_i|², [T16] Eq. 8.
 
     A drawn pixel next to nothing or to something deeper is a discontinuity of the model. It is matched to the nearest
-    discontinuity of the image by the distance transform; the error is the distance of the surface point from that
-    pixel's viewing ray, so the unreliable depth at an edge only rejects outliers: it is averaged over 3x3 pixels.
+    discontinuity of the image at which the surface ends to the same side: the left contour of a finger never meets the
+    right contour of its neighbour. The error is the distance of the surface point from that pixel's viewing ray, so the
+    unreliable depth at an edge only rejects outliers: it is averaged over 3x3 pixels.
 
     Differs from the paper: a smaller weight and a limit in pixels. On rendered twins full weight within 20 px drew
     fingers to their neighbour's contour (docs/objective.md).
@@ -33,6 +40,14 @@ class DataToModel:
 
     max_pixels: int = 8
     """px."""
+
+    max_angle: float = 45.0
+    """deg between the directions in which the two end (§3.3: as for RGB, "the orientation of the edges is taken into
+    account for matching"; the angle is that of §3.2.2); 180 matches whatever is nearest."""
+
+    at_vertices: bool = False
+    """Whether only vertices at discontinuities are matched, as Eq. 8 has them, or every pixel of one: meshes are much
+    coarser than pixels."""
 
     stride: int = 2
     """Every so many discontinuities one is matched: they lie pixel by pixel along a contour."""
@@ -59,6 +74,7 @@ class DataToModel:
             moments,
             posed.scene.arrays.faces,
             context.face_labels,
+            _find_vertex_pixels(view.projected, view.inverse_depth) if self.at_vertices else NOWHERE,
             view.projected,
             view.inverse_depth,
             view.face,
@@ -71,6 +87,7 @@ class DataToModel:
             self.jump,
             find_nearby_pixels(self.max_pixels),
             self.max_distance,
+            np.cos(np.deg2rad(self.max_angle)),
         )
         weights = np.full(count, self.weight)
         return PointToLine(ids[:count], barycentric[:count], directions[:count], moments[:count], weights)
@@ -84,6 +101,7 @@ def _find_into(
     moments,
     faces,
     face_labels,
+    vertex_at,
     projected,
     inverse_depth,
     face,
@@ -96,6 +114,7 @@ def _find_into(
     jump,
     nearby,
     max_distance,
+    min_cosine,
 ):
     height, width = labels.shape
     fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
@@ -103,7 +122,7 @@ def _find_into(
     for row in range(1, height - 1):
         for column in range(1, width - 1):
             f = face[row, column]
-            if f < 0 or (row + column) % stride != 0:
+            if f < 0 or (row + column) % stride != 0 or (len(vertex_at) > 0 and vertex_at[row, column] < 0):
                 continue
             z = 1.0 / inverse_depth[row, column]
             farthest = 1.0 / (z + jump)
@@ -115,12 +134,15 @@ def _find_into(
             ):
                 continue
             kind = 0 if face_labels[f] & HAND != 0 else 1
+            x, y = find_fall(inverse_depth, True, row, column, jump)
             to_row, to_column = -1, -1
             for step in range(len(nearby)):
                 r, c = row + nearby[step, 0], column + nearby[step, 1]
                 if r >= 0 and c >= 0 and r < height and c < width and edges[kind, r, c]:
-                    to_row, to_column = r, c
-                    break
+                    to_x, to_y = find_fall(depth, False, r, c, jump)
+                    if x * to_x + y * to_y >= min_cosine:
+                        to_row, to_column = r, c
+                        break
             if to_row < 0 or labels[to_row, to_column] & face_labels[f] == 0:
                 continue
             total, seen = 0.0, 0
@@ -136,13 +158,36 @@ def _find_into(
                 continue
             length = np.sqrt(rx * rx + ry * ry + 1.0)
             corners = faces[f]
-            barycentric_into(barycentric[count], corners, projected, column, row)
+            if len(vertex_at) > 0:
+                barycentric[count, 0], barycentric[count, 1], barycentric[count, 2] = 1.0, 0.0, 0.0
+            else:
+                barycentric_into(barycentric[count], corners, projected, column, row)
             d = directions[count]
             for i in range(3):
-                ids[count, i] = corners[i]
+                ids[count, i] = corners[i] if len(vertex_at) == 0 else vertex_at[row, column]
                 d[i] = (T[i, 0] * rx + T[i, 1] * ry + T[i, 2]) / length
             moments[count, 0] = T[1, 3] * d[2] - T[2, 3] * d[1]
             moments[count, 1] = T[2, 3] * d[0] - T[0, 3] * d[2]
             moments[count, 2] = T[0, 3] * d[1] - T[1, 3] * d[0]
             count += 1
     return count
+
+
+@njit(cache=True, nogil=True)
+def _find_vertex_pixels(projected, inverse_depth):
+    """(H, W) the nearest visible vertex that projects into each pixel, -1 for none."""
+    height, width = inverse_depth.shape
+    vertex_at = np.full((height, width), -1, dtype=np.int32)
+    for v in range(len(projected)):
+        inverse = projected[v, 2]
+        if inverse <= 0.0:
+            continue
+        column, row = int(np.rint(projected[v, 0])), int(np.rint(projected[v, 1]))
+        if row < 0 or column < 0 or row >= height or column >= width:
+            continue
+        drawn = inverse_depth[row, column]
+        if drawn <= 0.0 or 1.0 / inverse > 1.0 / drawn + VISIBLE_WITHIN:
+            continue
+        if vertex_at[row, column] < 0 or inverse > projected[vertex_at[row, column], 2]:
+            vertex_at[row, column] = v
+    return vertex_at

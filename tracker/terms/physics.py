@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from tracker.model.scene import PosedScene
-from tracker.physics import Contact
+from tracker.physics import Contact, PhysicsWorld, SupportOptions, find_support
 from tracker.physics.closest_points import find_closest_point
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.point_point import PointToPoint
@@ -65,3 +65,24 @@ class Physics:
         if self.to_plane:
             return PointToPlane(ids, shares, targets, normals, weights)
         return PointToPoint(ids, shares, targets, weights)
+
+
+@dataclass(frozen=True)
+class Supported:
+    """`Physics` with the contacts that hold the object at the pose of each look: in every iteration, [T16] Algorithm 1.
+
+    At each look the pose is simulated; an object that stays needs no contacts (§3.2.6).
+    """
+
+    world: PhysicsWorld
+    """Of the scene that is fitted."""
+
+    weight: float = 10.0
+    """γ_ph (§4.2.1)."""
+
+    options: SupportOptions = field(default_factory=SupportOptions)
+    """How contacts are looked for."""
+
+    def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToPoint | PointToPlane:
+        """The nearest pair of each finger part that should touch."""
+        return Physics(find_support(self.world, posed, self.options).contacts, self.weight).find(posed, context)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.sequence import Sequence
+from tracker.tracking.as_written import follow_as_written
 from tracker.tracking.attempt import Attempt
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow_part import follow_part
@@ -60,6 +61,8 @@ def follow_frame(
     sequence: Sequence, setup: TrackSetup, tools: Tools, state: TrackState, recover: bool
 ) -> tuple[TrackState, FrameResult]:
     """Track the next frame."""
+    if setup.options.is_as_written:
+        return follow_as_written(sequence, setup, tools, state)
     read_at = perf_counter()
     frame, camera = setup.read(sequence, state.next_frame)
     started = perf_counter()

@@ -18,6 +18,7 @@ from tracker.model.scene import PosedScene
 from tracker.observation import Observation, observe
 from tracker.physics import find_support
 from tracker.rendering import View, render_view
+from tracker.tracking.as_written import compose_objective
 from tracker.tracking.frame_fit import draw, find_residuals
 from tracker.tracking.hold import HoldOptions, with_contacts
 from tracker.tracking.region import region_around
@@ -105,9 +106,11 @@ class FrameView:
         """Name of each term of the run to its (M, 2, 3) segments from model to data, world, m."""
         if self._seen is None:
             return {}
-        tools = self.aids.tools
+        tools, setup = self.aids.tools, self.aids.setup
         objective = tools.with_fingertips(self._seen)
-        if tools.world is not None:
+        if setup.options.is_as_written:
+            objective = compose_objective(setup, tools, self._seen)
+        elif tools.world is not None:
             support = find_support(tools.world, self._posed, HoldOptions().support)
             objective = objective if support.is_stable else with_contacts(objective, support)
         found = find_residuals(self._posed, self._seen, objective)

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 from tracker.errors import TrackingError
+from tracker.model.files import MAX_FACES
 
 TERMS = ("LO", "LO+C", "LO+S", "LO+SC", "LO+P", "LO+CP", "LO+SP", "LO+SCP")
 """Sets of terms that can be asked for, in the paper's letters: C collision, S salient points, P physics."""
@@ -22,6 +23,11 @@ TERM_LABELS = {
     "LO+SCP": "depth, fingertips, collision, physics",
 }
 """What the sets are made of, for people."""
+
+METHODS = ("handloom", "t16")
+"""Our tracker, or Algorithm 1 of [T16] with no term and no step beyond it (docs/objective.md)."""
+
+STATIC_SCENES = ("find", "recording", "none")
 
 LAST_FRAME = 10_000_000
 
@@ -53,6 +59,14 @@ class TrackOptions:
         choices=TERMS,
         choice_labels=tuple(f"{name} · {TERM_LABELS[name]}" for name in TERMS),
     )
+    method: str = _option(
+        "handloom",
+        "Handloom's tracker, or the algorithm of T16 as the paper has it: full meshes, every match, no search.",
+        label="Method",
+        choices=METHODS,
+        choice_labels=("Handloom", "T16, as written"),
+        is_advanced=True,
+    )
     iterations: int = _option(10, "Gauss-Newton iterations on every frame.", label="Iterations", low=1, high=200)
     first_iterations: int = _option(
         50,
@@ -83,6 +97,15 @@ class TrackOptions:
         label="Use the hand detector",
     )
     recover: bool = _option(True, "Look for a lost hand in the whole image.", label="Recover a lost hand")
+    static_scene: str = _option(
+        "find",
+        "Tables and walls for physics: the recording's own, else the largest plane behind the hands in the depth.",
+        label="Static scene",
+        choices=STATIC_SCENES,
+        choice_labels=("Recording's, else found in depth", "Recording's only", "None"),
+        is_advanced=True,
+        about="recording",
+    )
     stop_below_mm: float = _option(
         0.0,
         "Stop iterating when the mean joint moves less than this; 0 never does.",
@@ -112,6 +135,10 @@ class TrackOptions:
     def __post_init__(self) -> None:
         if self.terms not in TERMS:
             raise TrackingError(f"terms is {self.terms!r}; needed one of {', '.join(TERMS)}.")
+        if self.method not in METHODS:
+            raise TrackingError(f"method is {self.method!r}; needed one of {', '.join(METHODS)}.")
+        if self.static_scene not in STATIC_SCENES:
+            raise TrackingError(f"static_scene is {self.static_scene!r}; needed one of {', '.join(STATIC_SCENES)}.")
         for option in fields(self):
             if "low" not in option.metadata:
                 continue
@@ -125,6 +152,16 @@ class TrackOptions:
     def term_letters(self) -> str:
         """The letters behind LO."""
         return self.terms.partition("+")[2]
+
+    @property
+    def is_as_written(self) -> bool:
+        """Whether the paper's algorithm runs, and not ours."""
+        return self.method == "t16"
+
+    @property
+    def max_faces(self) -> int | None:
+        """Heavier meshes are decimated to so many faces when they are loaded; None keeps them, as the paper does."""
+        return None if self.is_as_written else MAX_FACES
 
     def to_json(self) -> dict[str, Any]:
         """Plain values by name."""

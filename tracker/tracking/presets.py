@@ -54,6 +54,14 @@ PRESETS: tuple[TrackPreset, ...] = (
         46.1,
         {"terms": "LO+SCP", "iterations": 10},
     ),
+    TrackPreset(
+        "t16",
+        "T16, as written",
+        "To compare with the paper: its algorithm on full meshes, without our terms, second tries and searches.",
+        138.0,
+        292.0,
+        {"method": "t16", "terms": "LO+SCP", "iterations": 10, "calibrate": False},
+    ),
 )
 """From the quickest to the most thorough. Times: benchmarks/presets.py, in docs/tracking.md."""
 

@@ -21,6 +21,7 @@ from tracker.model.joints import HAND_JOINTS
 from tracker.model.npz_files import load_npz_model, save_npz_model
 from tracker.model.scene import Scene
 from tracker.observation import Preprocessing, undistort
+from tracker.physics import PhysicsWorld, StaticScene, find_down
 from tracker.tracking.options import TrackOptions
 from tracker.tracking.tracking_faults import find_tracking_faults
 
@@ -38,6 +39,7 @@ class TrackSetup:
         options: What the user chose.
         marks: Name of a hand to its joints (21, 3) as marked in the first frame, px of an ideal lens and v.
         fingertips: Finds fingertips for the S of [T16] Eq. 5; None for the detector that comes along.
+        static_scene: Planes and gravity; None where the run was begun without an object, or before they were kept.
     """
 
     names: tuple[str, ...]
@@ -46,6 +48,7 @@ class TrackSetup:
     options: TrackOptions
     marks: dict[str, npt.NDArray[np.float64]] = field(default_factory=dict)
     fingertips: Forest | None = None
+    static_scene: StaticScene | None = None
 
     @cached_property
     def scene(self) -> Scene:
@@ -84,6 +87,11 @@ class TrackSetup:
     def object_names(self) -> tuple[str, ...]:
         return tuple(name for name, model in zip(self.names, self.models, strict=True) if not model.hand)
 
+    def make_world(self, T_world_camera: npt.NDArray[np.float64]) -> PhysicsWorld:
+        """A physics world with the run's static scene; where it has none, things fall along +y of the camera (4, 4)."""
+        static = self.static_scene or StaticScene(find_down(T_world_camera))
+        return PhysicsWorld(self.scene, down=static.down, planes=static.planes)
+
     def read(self, sequence: Sequence, index: int) -> tuple[Frame, Camera]:
         """A frame as an ideal pinhole camera sees it, and that camera."""
         return undistort(sequence.frame(index, self.camera_id), sequence.camera(self.camera_id))
@@ -103,6 +111,8 @@ class TrackSetup:
             "options": self.options.to_json(),
             "marks": {name: points.tolist() for name, points in self.marks.items()},
         }
+        if self.static_scene is not None:
+            document["static_scene"] = self.static_scene.to_json()
         temporary = folder / ".setup.json.part"
         temporary.write_text(json.dumps(document, indent=1))
         temporary.replace(folder / "setup.json")
@@ -115,10 +125,12 @@ class TrackSetup:
             document = json.loads((folder / "setup.json").read_text())
             names = tuple(str(name) for name in document["names"])
             camera, options = str(document["camera"]), TrackOptions.from_json(document["options"])
+            static = document.get("static_scene")
+            static_scene = None if static is None else StaticScene.from_json(static)
             marks = {str(n): np.array(p, dtype=np.float64).reshape(21, 3) for n, p in document["marks"].items()}
         models = tuple(load_npz_model(folder / "models" / f"{name}.npz") for name in names)
         fingertips = load_forest(folder / FINGERTIPS) if (folder / FINGERTIPS).exists() else None
-        return cls(names, models, camera, options, marks, fingertips)
+        return cls(names, models, camera, options, marks, fingertips, static_scene)
 
 
 def choose_camera(sequence: Sequence, options: TrackOptions) -> str:

@@ -33,6 +33,7 @@ from tracker.tracking.start_automatic import find_hand
 from tracker.tracking.start_object import start_object
 from tracker.tracking.start_plan import plan_start
 from tracker.tracking.state import TrackState
+from tracker.tracking.static_scene import see_static_scene
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
@@ -82,7 +83,8 @@ def start_tracking(
         placed[name] = _begin(sightings, setup, list(placed.values()))
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
-        model = given.get(item.name) or load_model(sequence.object_path(item.name))
+        path = sequence.object_path(item.name)
+        model = given.get(item.name) or load_model(path, options.max_faces, item.metres_per_unit)
         others = [(other, pose) for other, pose in placed.values() if np.any(pose)]
         first_second = frames[: max(1, round(sequence.fps)) : max(1, round(sequence.fps / 6))]
         views = (setup.read(sequence, index) for index in first_second)
@@ -94,6 +96,8 @@ def start_tracking(
         placed |= _calibrate(sequence, there, placed, bare, frames, tell)
     setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks)
     pose = np.concatenate([placed[name][1] for name in order])
+    if sequence.objects:
+        setup = replace(setup, static_scene=see_static_scene(sequence, setup, frame, camera, pose))
     return setup, TrackState(frames[0], pose, pose, is_lost=is_lost)
 
 

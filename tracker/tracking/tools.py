@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from tracker.detection import Forest, find_fingertips
 from tracker.observation import Observation
-from tracker.physics import PhysicsWorld, find_down
+from tracker.physics import PhysicsWorld
 from tracker.terms.collision import Collision
 from tracker.terms.salient import Salient
 from tracker.tracking.objective import Objective
@@ -57,5 +57,5 @@ def make_tools(setup: TrackSetup, T_world_camera: npt.NDArray[np.float64]) -> It
     if "P" not in letters or not has_object:
         yield Tools(Objective(terms=terms), detector, None)
         return
-    with PhysicsWorld(setup.scene, down=find_down(T_world_camera)) as world:
+    with setup.make_world(T_world_camera) as world:
         yield Tools(Objective(terms=terms), detector, world)

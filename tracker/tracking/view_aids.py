@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from tracker.detection import Forest
 from tracker.model.scene import PosedScene
-from tracker.physics import PhysicsWorld, find_down
+from tracker.physics import PhysicsWorld
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.tools import Tools, make_tools
 
@@ -59,7 +59,7 @@ class ViewAids:
 
     @cached_property
     def _world(self) -> PhysicsWorld:
-        return self._stack.enter_context(PhysicsWorld(self.setup.scene, down=find_down(self._T_world_camera)))
+        return self._stack.enter_context(self.setup.make_world(self._T_world_camera))
 
     def close(self) -> None:
         self._stack.close()

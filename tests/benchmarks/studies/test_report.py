@@ -6,6 +6,7 @@ from html.parser import HTMLParser
 
 import pytest
 
+from benchmarks.studies import paper
 from benchmarks.studies.bars import show as show_bars
 from benchmarks.studies.blocks import Picture, Section, Table, Text
 from benchmarks.studies.catalogue import STUDIES
@@ -14,6 +15,7 @@ from benchmarks.studies.page import write_page
 from benchmarks.studies.plots import Lines, Series, draw_plot
 from benchmarks.studies.report import StudyRows, build_sections, load_all_rows, load_rows, write_report
 from benchmarks.studies.study import Extent, Study
+from benchmarks.studies.table_06_as_written import BAR_PX
 from benchmarks.studies.trial import ROOT, Trial
 
 
@@ -117,7 +119,7 @@ def test_every_study_names_its_trials_and_says_what_is_comparable(study):
 
 def test_every_table_and_figure_that_was_asked_for_has_a_study():
     wanted = {f"table_{n:02d}" for n in (2, 3, 4, 5, 6, 7, 8, 11, 12, 13, 14)} | {"figure_13", "figure_16", "bars"}
-    assert {study.name for study in STUDIES} == wanted
+    assert {study.name for study in STUDIES} == wanted | {"table_06_as_written"}
 
 
 def test_the_committed_report_is_what_its_rows_say(tmp_path):
@@ -138,3 +140,14 @@ def test_rows_come_from_the_first_folder_that_has_them(tmp_path):
     rows_of(quick=True)["toy"].save(tmp_path / "a")
     assert load_all_rows([toy_study()], tmp_path / "a", tmp_path / "b")["toy"].quick
     assert not load_all_rows([toy_study()], tmp_path / "none", tmp_path / "b")["toy"].quick
+
+
+def test_the_papers_method_as_written_meets_its_bar_and_stands_beside_the_papers_figures():
+    kept = load_rows("table_06_as_written", ROOT / "docs" / "studies" / "rows")
+    assert kept is not None and not kept.quick
+    whole = next(row for row in kept.rows if row["kind"] == "hands" and row["paper"] == "LO+SC")
+    assert whole["sequences"] == 4 and whole["failed"] == 0 and whole["px"] <= BAR_PX
+    assert {row["paper"] for row in kept.rows if row["kind"] == "hands"} == set(paper.TABLE_6)
+    for row in kept.rows:
+        if row["kind"] == "pair":
+            assert row["low"] <= row["px"] <= row["high"]

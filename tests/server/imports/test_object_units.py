@@ -12,7 +12,7 @@ import trimesh
 
 from tests.server.conftest import Studio
 from tests.server.imports.test_routes import parts_of, upload
-from tracker import load_recorded_objects, load_sequence
+from tracker import load_model, load_sequence
 
 API = "/api/v1"
 
@@ -35,7 +35,9 @@ def confirm(studio: Studio, found: dict[str, Any]) -> Path:
 
 def measure_tracked(recording: Path) -> float:
     """Side of the cube that a track would fit, m."""
-    [cube] = load_recorded_objects(load_sequence(recording)).values()
+    sequence = load_sequence(recording)
+    [item] = sequence.objects
+    cube = load_model(sequence.object_path(item.name), metres_per_unit=item.metres_per_unit)
     return float(np.ptp(cube.vertices, axis=0)[0])
 
 

@@ -12,6 +12,7 @@ import pytest
 
 from tracker.capture import ImportOptions, check_import, load_sequence, run_import
 from tracker.capture.annotations import JOINT_NAMES
+from tracker.capture.static_plane import StaticPlane
 from tracker.errors import ImportRefusedError
 
 RGBD = ImportOptions(fx=60, cx=31.5, cy=23.5, depth_scale=0.001, fps=30)
@@ -258,7 +259,7 @@ def test_frames_come_in_the_order_of_their_numbers_not_of_their_letters(folder: 
     assert [sequence.depth_raw(i, "cam0")[0, 0] for i in range(6)] == [507, 508, 509, 510, 511, 512]
 
 
-def test_annotations_and_models_come_along(recording: Path, tmp_path: Path) -> None:
+def test_annotations_models_tables_and_gravity_come_along(recording: Path, tmp_path: Path) -> None:
     points = [[1.0, 2.0, 2]] * 21
     items = [{"frame": 4, "camera": "cam0", "hand": "right", "points": points}]
     annotations = {"version": 1, "joints": list(JOINT_NAMES), "items": items}
@@ -268,12 +269,14 @@ def test_annotations_and_models_come_along(recording: Path, tmp_path: Path) -> N
         (recording / "objects" / name).write_text(name)
     document = json.loads((recording / "sequence.json").read_text())
     document |= {"annotations": "marks.json", "objects": [{"name": "ball", "model": "objects/ball.OFF"}]}
+    document |= {"gravity": [0, 3, 4], "planes": [{"point": [0, 0.2, 0.6], "normal": [0, -2, 0]}]}
     (recording / "sequence.json").write_text(json.dumps(document))
     report = run_import(recording, tmp_path / "kept/r")
     assert report.annotations == 1 and report.objects == ("ball",)
     assert report.warnings == ("1 file that sequence.json does not name is left out: objects/other.txt.",)
     sequence = load_sequence(tmp_path / "kept/r")
     assert sequence.annotations_path == tmp_path / "kept/r/annotations.json"
+    assert (sequence.gravity, sequence.planes) == ((0.0, 0.6, 0.8), (StaticPlane((0.0, 0.2, 0.6), (0.0, -1.0, 0.0)),))
     assert sorted(p.name for p in (tmp_path / "kept/r/objects").iterdir()) == ["ball.OFF", "ball.SKEL"]
     items[0]["frame"] = 5
     (recording / "marks.json").write_text(json.dumps(annotations))

@@ -69,14 +69,16 @@ def test_a_part_of_a_recording_is_tracked_from_its_own_first_frame(recording, tm
 
 def test_a_preset_stands_for_its_options_and_what_is_given_besides_wins(recording, tmp_path):
     hand = f"right={recording / 'models' / 'right.npz'}"
-    arguments = ["track", str(recording), "--hand", hand, "--frames", "0:2", "--no-calibration"]
+    arguments = ["track", str(recording), "--hand", hand, "--frames", "0:2"]
     for name, given, wanted in (
-        ("plain", ["--preset", "fast"], ("LO", 5)),
-        ("other", ["--preset", "balanced", "--iterations", "7"], ("LO+SC", 7)),
+        ("plain", ["--no-calibration", "--preset", "fast"], ("LO", 5, False, "handloom")),
+        ("other", ["--no-calibration", "--preset", "balanced", "--iterations", "7"], ("LO+SC", 7, False, "handloom")),
+        ("paper", ["--preset", "t16", "--static-scene", "none"], ("LO+SCP", 10, False, "t16")),
     ):
         assert main([*arguments, *given, "--out", str(tmp_path / name)]) == 0
         options = json.loads((tmp_path / name / "setup.json").read_text())["options"]
-        assert (options["terms"], options["iterations"]) == wanted
+        assert tuple(options[key] for key in ("terms", "iterations", "calibrate", "method")) == wanted
+        assert options["static_scene"] == ("none" if name == "paper" else "find")
         assert options["use_detector"]
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from tests.tracker.grips import PINCH, cube, gripped
 from tracker.model.default_hand import default_hand
-from tracker.physics import SEARCH, Contact, PhysicsWorld, SupportOptions, find_part_bones, find_support
+from tracker.physics import SEARCH, Contact, PhysicsWorld, StaticPlane, SupportOptions, find_part_bones, find_support
 from tracker.physics.support import rank_combinations
 
 AROUND = ([1, 0, 0], [-1, 0.1, 0], [0.5, 0.1, 0.85], [0.5, 0, -0.85])
@@ -99,3 +99,15 @@ def test_what_nothing_is_near_falls_freely_and_is_not_simulated():
 def test_a_hand_supports_with_its_fingers_only():
     names = set(find_part_bones(default_hand("right")).values())
     assert len(names) == 14 and not any("metacarpal" in name or name == "wrist" for name in names)
+
+
+@pytest.mark.parametrize("height", [-0.008, 0.0, 0.008])
+def test_a_ball_on_a_table_needs_no_fingers_though_the_table_is_known_to_a_centimetre_only(height):
+    posed = gripped(PINCH, (0.005, 0.005))
+    lowest = float(posed.vertices[posed.scene.vertex_slices[1]][:, 1].max())
+    table = StaticPlane((0.0, lowest + height, 0.0), (0.0, -1.0, 0.0))
+    with PhysicsWorld(posed.scene, planes=[table]) as world:
+        assert find_support(world, posed).is_stable
+    far = StaticPlane((0.0, lowest + 0.05, 0.0), (0.0, -1.0, 0.0))
+    with PhysicsWorld(posed.scene, planes=[far]) as world:
+        assert not find_support(world, posed).is_stable, "it would fall on it"

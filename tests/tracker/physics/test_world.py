@@ -1,9 +1,12 @@
 """What is held stays, what is not falls, and the same goes in twice to the same bits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import trimesh
 
-from tests.tracker.grips import BALL_RADIUS, PINCH, cube, gripped
+from tests.tracker.grips import BALL_RADIUS, PINCH, cube, gripped, rigid
 from tests.tracker.toys import tube
 from tracker.geometry import se3
 from tracker.model.scene import Scene
@@ -169,3 +172,23 @@ def test_closed_worlds_give_their_clients_back():
         world.close()
         world.close()
     assert len(clients) == 1
+
+
+@pytest.mark.parametrize("aside", [0.008, 0.016, 0.020])
+def test_a_bar_that_is_pinched_beside_its_middle_does_not_swing_between_patches(aside):
+    mesh = trimesh.creation.box(extents=[0.04, 0.03, 0.08])
+    grip = gripped(PINCH, (0.0, 0.0), rigid("bar", np.array(mesh.vertices), np.array(mesh.faces)))
+    pose = grip.pose.copy()
+    pose[grip.scene.pose_slices[1].start + 2] += aside
+    posed, long = grip.scene.pose_at(pose), replace(SEARCH, steps=100)
+    with PhysicsWorld(grip.scene) as world:
+        assert simulate(world, posed, long) < 0.003
+        if aside > 0.01:
+            assert simulate(world, posed, replace(long, patch_radius=0.0)) > 0.01, "between points it does"
+
+
+def test_spinning_friction_is_that_of_a_soft_finger():
+    assert SEARCH.spinning_friction == pytest.approx(SEARCH.friction * SEARCH.patch_radius / 3.0)
+    combined = 2.0 * SEARCH.friction * SEARCH.spinning_friction  # as Bullet combines two bodies
+    assert combined == pytest.approx(2.0 / 3.0 * SEARCH.patch_radius * SEARCH.contact_friction)
+    assert SD_OBMAN.spinning_friction == SD_SEED.spinning_friction == 0.0

@@ -20,6 +20,7 @@ TERMS = {
     "model_to_data_points": ModelToData(to_plane=False),
     "data_to_surface": DataToSurface(),
     "data_to_model": DataToModel(weight=1.0),
+    "data_to_model_vertices": DataToModel(weight=1.0, at_vertices=True, stride=1),
     "silhouette": Silhouette(weight=1.0),
     "uncovered": Uncovered(weight=1.0),
 }
@@ -147,3 +148,18 @@ def test_a_coarse_term_has_some_of_the_matches_and_no_others(term, rng):
     assert 0 < len(some) < 0.7 * len(whole)
     if not isinstance(term, DataToSurface | Silhouette | Uncovered):  # their grids of pixels are shifted
         assert {tuple(s) for s in some.reshape(-1, 6)} <= {tuple(s) for s in whole.reshape(-1, 6)}
+
+
+def test_a_contour_never_meets_the_opposite_contour_of_what_lies_beside_it():
+    drawn = drawn_tube()
+    aside = drawn.scene.retract(drawn.pose, np.r_[0.0, 0.015, 0.0, np.zeros(drawn.scene.num_dofs - 3)])
+    posed = drawn.scene.pose_at(aside)
+    context = drawn.context(posed)
+    moves = {}
+    for max_angle in (45.0, 180.0):
+        found = DataToModel(weight=1.0, max_pixels=40, stride=1, max_angle=max_angle).find(posed, context)
+        segments = found.segments(posed)
+        moves[max_angle] = segments[:, 1, 1] - segments[:, 0, 1]
+    assert np.median(moves[45.0]) < -0.010, "both contours go back by most of the 15 mm"
+    assert np.mean(moves[45.0] > -0.003) < 0.1, "the end of the tube apart"
+    assert np.mean(moves[180.0] > -0.003) > 0.2, "to whatever is nearest much of the tube stays where it is"

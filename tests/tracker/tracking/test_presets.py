@@ -26,7 +26,7 @@ def test_no_two_presets_are_the_same_and_forms_begin_with_one_of_them():
 
 
 def test_a_preset_that_there_is_not_is_refused_with_those_there_are():
-    with pytest.raises(TrackingError, match="fast, balanced, plausible"):
+    with pytest.raises(TrackingError, match="fast, balanced, plausible, t16"):
         find_preset("best")
 
 

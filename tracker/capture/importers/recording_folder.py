@@ -67,6 +67,8 @@ class RecordingFolder:
             frame_count=sequence.frame_count,
             hands=options.hands if options.hands is not None else sequence.hands,
             objects=sequence.objects,
+            gravity=sequence.gravity,
+            planes=sequence.planes,
             files=copies,
             annotations=annotations,
             problems=(*problems, *faults),

@@ -29,7 +29,7 @@ export function PresetChoice({ presets, chosen, onChoose }: PresetChoiceProps) {
         if (preset) onChoose(preset);
       }}
     >
-      <SimpleGrid cols={{ base: 1, sm: 3 }} spacing="sm" mt="xs">
+      <SimpleGrid cols={{ base: 1, sm: 2 }} spacing="sm" mt="xs">
         {presets.map((preset) => (
           <Radio.Card key={preset.name} value={preset.name} className={classes.card} aria-label={preset.label}>
             <Group gap="sm" wrap="nowrap" mb={4}>

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
@@ -9,7 +11,7 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.observation import Observation, Region, observe
 from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look
-from tracker.tracking.frame_fit import FitOptions
+from tracker.tracking.frame_fit import FitOptions, fit_frame
 from tracker.tracking.objective import Objective
 from tracker.tracking.quality import BROAD_MISFIT, ELSEWHERE, Quality
 from tracker.tracking.setup import TrackSetup
@@ -20,6 +22,9 @@ Array = npt.NDArray[np.float64]
 
 DESCENT = 14
 """Steps from the detected joints to a pose, before the depth has its say."""
+
+POLISH = 5
+"""Iterations at last without the joints: where nothing covers the hand its depth knows better where a finger is."""
 
 AGREES = 0.4
 """A fit whose joints are this near to the detected ones, `Quality.apart`, needs no other start."""
@@ -47,7 +52,8 @@ def try_where_seen(
         seen = look(sightings.frame, sightings.camera, setup, start)
         if seen is None:
             continue
-        other = attempt_fit(setup, seen, start, start, guided, options, sightings)
+        pose = fit_frame(setup.scene, seen, start, start, guided, options).pose
+        other = attempt_fit(setup, seen, pose, pose, objective, replace(options, iterations=POLISH), sightings)
         best = other if other.worth > best.worth else best
         if not _find_doubtful(best):
             break

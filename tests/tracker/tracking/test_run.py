@@ -82,6 +82,8 @@ def test_a_saved_track_holds_what_the_contract_says(recorded, run, tmp_path: Pat
         "object_status": (12, 0),
         "pose": (12, 37),
         "status": (12,),
+        "hand_names": (1,),
+        "hand_status": (12, 1),
         "seconds": (12,),
     }
     summary = json.loads((tmp_path / "summary.json").read_text())

@@ -108,7 +108,7 @@ def test_joints_that_were_seen_pull_and_the_rest_of_the_objective_stays():
     seen = find_sightings(Told(hand), frame([hand]), CAMERA, ("right",), {})
     scene = Scene((default_hand("right"),))
     objective = Objective()
-    guided = seen.add_to(objective, scene, ("right",), CAMERA)
+    guided = seen.add_to(objective, scene, ("right",))
     assert set(guided.terms) - set(objective.terms) == {"joints_right"}
     assert seen.hands["right"].measure(hand.points) == 0.0
     assert seen.hands["right"].measure(hand.points + 1000.0) == 1.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from tracker.observation import observe
 from tracker.tracking.finger_search import curl_fingers
@@ -52,3 +53,21 @@ def test_a_hand_turned_end_to_end_does_not_pass_its_fingers_off_as_a_forearm(rec
     axis = np.cross(joints[9] - joints[0], joints[5] - joints[17])
     turned = setup.scene.retract(pose, np.r_[joints[9] - joints[0], np.pi * axis / np.linalg.norm(axis), np.zeros(31)])
     assert judge(recorded, run, turned).merit < right.merit - 0.2
+
+
+@pytest.mark.parametrize(
+    ("misfit", "broad", "worst_finger", "is_lost"),
+    [
+        (0.0, 0.0, None, False),
+        (2e-4, 0.0, None, True),
+        (2e-3, 0.0, 1.0, False),
+        (2e-3, 2e-4, 0.2, False),
+        (2e-3, 2e-4, 0.9, True),
+    ],
+)
+def test_where_the_detector_saw_a_hand_it_and_the_depth_must_both_say_that_a_finger_is_elsewhere(
+    misfit, broad, worst_finger, is_lost
+):
+    followed = Quality(0.002, 0.9, 0.9, 0.9, 0.8, 0.9, misfit, broad, 4e-3, 0.1, worst_finger)
+    assert not followed.is_gone
+    assert followed.is_lost is is_lost

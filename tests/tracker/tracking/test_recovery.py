@@ -116,6 +116,8 @@ def test_one_hand_goes_and_the_other_is_followed(two_hands, monkeypatch, gone: i
     for index in range(6):
         state, result = follow_frame(sequence, setup, TOOLS, state, recover=True)
         statuses.append(result.status)
+        assert result.hand_status[1 - gone] == "ok"
+        assert result.hand_status[gone] == result.status
         off = errors(truth, setup, result.pose, index)
         assert off[1 - gone] < 2e-3, f"the other hand at frame {index}"  # m
         if result.status != "lost":

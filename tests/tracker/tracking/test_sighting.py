@@ -110,8 +110,18 @@ def test_joints_that_were_seen_pull_and_the_rest_of_the_objective_stays():
     objective = Objective()
     guided = seen.add_to(objective, scene, ("right",))
     assert set(guided.terms) - set(objective.terms) == {"joints_right"}
-    assert seen.hands["right"].measure(hand.points) == 0.0
-    assert seen.hands["right"].measure(hand.points + 1000.0) == 1.0
+
+
+def test_a_fit_is_measured_by_all_joints_and_by_the_finger_that_is_farthest_off():
+    hand = hand_at(160)
+    seen = find_sightings(Told(hand), frame([hand]), CAMERA, ("right",), {}).hands["right"]
+    assert seen.measure(hand.points) == (0.0, 0.0)
+    assert seen.measure(hand.points + 1000.0) == (1.0, 1.0)
+    bent = hand.points.copy()
+    bent[5:9] += 1000.0
+    assert seen.measure(bent) == pytest.approx((4 / 21, 1.0))
+    hidden = replace(seen, beliefs=np.where(np.isin(np.arange(21), (6, 7, 8)), COVERED, SEEN))
+    assert hidden.measure(bent)[1] == 0.0, "of a finger that is hidden nothing can be said"
 
 
 def test_a_state_keeps_what_was_detected(tmp_path):

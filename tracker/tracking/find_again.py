@@ -10,7 +10,7 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.observation import HAND, observe
-from tracker.tracking.attempt import UNSETTLED, Attempt, attempt_fit, look, try_again
+from tracker.tracking.attempt import Attempt, attempt_fit, look
 from tracker.tracking.depth_range import depth_range
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.leave_out import leave_out
@@ -19,13 +19,16 @@ from tracker.tracking.region import whole_image
 from tracker.tracking.seen_hands import place_where_seen
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.sighting import Sightings
-from tracker.tracking.start_automatic import Found, find_hand
+from tracker.tracking.start_automatic import STEP, Found, find_hand
 from tracker.tracking.tools import Tools
 
 Array = npt.NDArray[np.float64]
 
 COARSE = 4
 """Every so many pixels are looked at to see whether there is anything left to search."""
+
+STEPS = 8
+"""Frames that share a search of the whole image."""
 
 MIN_AREA = 1e-3
 """Less hand than this, m², is left over by an outline or shows a fingertip, not a hand."""
@@ -47,9 +50,11 @@ def find_seen(
 
 
 def find_again(
-    sightings: Sightings, setup: TrackSetup, tools: Tools, pose: Array, lost: tuple[int, ...]
+    sightings: Sightings, setup: TrackSetup, tools: Tools, pose: Array, lost: tuple[int, ...], step: int
 ) -> tuple[Attempt, tuple[int, ...]] | None:
     """The scene with lost hands where they were found, and the hands still lost; None if none was found.
+
+    A frame has time for a part of all places and directions only; STEPS frames that follow each other try all of them.
 
     Args:
         sightings: The frame, undistorted, and what the detector sees in it.
@@ -57,6 +62,7 @@ def find_again(
         tools: Of the run.
         pose: (D,) of the other models; of the lost hands where they were last.
         lost: Indices of the hands.
+        step: Which part, any number.
     """
     frame, camera = sightings.frame, sightings.camera
     if not _is_hand_left(frame, camera, setup, pose, lost):
@@ -64,12 +70,12 @@ def find_again(
     near_by = _settle(sightings, setup, tools, pose, ())
     if near_by is not None and not near_by.lost:
         return near_by, ()
-    found_pose, missing = _search(frame, camera, setup, pose, lost)
+    found_pose, missing = _search(frame, camera, setup, pose, lost, step)
     for still in dict.fromkeys((missing, *((*missing, index) for index in lost if index not in missing))):
         if len(still) == len(lost):
             break
         attempt = _settle(sightings, setup, tools, found_pose, still)
-        if attempt is not None and not (attempt.gone if still else attempt.lost):
+        if attempt is not None and not attempt.gone:
             return attempt, still
     return None
 
@@ -85,20 +91,21 @@ def _is_hand_left(frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, 
 
 
 def _search(
-    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, lost: tuple[int, ...]
+    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, lost: tuple[int, ...], step: int
 ) -> tuple[Array, tuple[int, ...]]:
     """The pose with hands where a search of the whole image puts them, and those of which there is no trace.
 
     The hand that is found best comes first; what it explains is not looked at again.
     """
     near, far = depth_range(frame)
+    part = slice(step % STEPS, None, STEPS)
     pose, missing = pose.copy(), list(lost)
     while missing:
         others = [index for index in range(len(setup.models)) if index not in missing]
         rest = leave_out(frame, camera, setup.scene, pose, others)
         candidates: dict[int, Found] = {}
         for index in missing:
-            found = find_hand(rest, camera, setup.models[index], setup.preprocessing, near, far)
+            found = find_hand(rest, camera, setup.models[index], setup.preprocessing, near, far, STEP, part)
             if found is not None and found.quality.agrees:
                 candidates[index] = found
         if not candidates:
@@ -112,7 +119,7 @@ def _search(
 def _settle(
     sightings: Sightings, setup: TrackSetup, tools: Tools, pose: Array, missing: tuple[int, ...]
 ) -> Attempt | None:
-    """Fit the scene without the missing hands from a pose (D,), and once more where that leaves something."""
+    """Fit the scene without the missing hands from a pose (D,)."""
     part = Part.without(setup, missing)
     start = part.take(pose)
     seen = look(sightings.frame, sightings.camera, part.setup, start)
@@ -121,9 +128,4 @@ def _settle(
     options = FitOptions(iterations=setup.options.iterations)
     objective = sightings.add_to(tools.objective, part.setup.scene, part.setup.names)
     attempt = attempt_fit(part.setup, seen, start, start, objective, options, sightings)
-    if attempt.misfit > UNSETTLED and not sightings.hands:
-        guided = tools.with_fingertips(seen)
-        for again in (start, attempt.pose):
-            other = try_again(part.setup, seen, again, tools.objective, guided, options, sightings)
-            attempt = other if other.worth > attempt.worth else attempt
     return part.widen(attempt, pose)

@@ -62,7 +62,7 @@ def recover_hands(
     if attempt is not None and not gone:
         may_search = recover and not sightings.is_looked_at and image.is_over
         if may_search and _is_doubtful(attempt.quality, state):
-            return _look_elsewhere(sightings, setup, tools, attempt, image)
+            return _look_elsewhere(sightings, setup, tools, state, attempt)
         return Recovery(attempt, (), (), image)
     if attempt is not None and attempt.gone:  # a hand that is not there has pulled at the others
         attempt = follow_part(sightings, Part.without(setup, gone), tools, state).attempt
@@ -71,23 +71,20 @@ def recover_hands(
         return Recovery(attempt, gone, (), image)
     pose = state.pose if attempt is None else attempt.pose
     found = find_seen(sightings, setup, tools, pose, gone)
-    # Where a detector looks it may see the hand again soon: wait first, search then, and wait longer.
-    if found is None and (not sightings.is_looked_at or (image.is_over and image.last > 0)):
-        found = find_again(sightings, setup, tools, pose, gone)
-    if sightings.is_looked_at and image.is_over:
-        image = image.after_search(found is not None and not found[1], LEAST_REST, LONGEST_REST)
+    if found is None:
+        found = find_again(sightings, setup, tools, pose, gone, state.next_frame)
     if found is None:
         return Recovery(attempt, gone, (), image)
     return Recovery(found[0], found[1], tuple(hand for hand in gone if hand not in found[1]), image)
 
 
 def _look_elsewhere(
-    sightings: Sightings, setup: TrackSetup, tools: Tools, attempt: Attempt, image: Patience
+    sightings: Sightings, setup: TrackSetup, tools: Tools, state: TrackState, attempt: Attempt
 ) -> Recovery:
     """Search the image for a hand that may well be elsewhere."""
-    found = find_again(sightings, setup, tools, attempt.pose, (attempt.worst,))
+    found = find_again(sightings, setup, tools, attempt.pose, (attempt.worst,), state.next_frame)
     is_better = found is not None and not found[1] and found[0].worth > attempt.worth + SCORE_GAIN
-    image = image.after_search(is_better, LEAST_REST, LONGEST_REST)
+    image = state.image.after_search(is_better, LEAST_REST, LONGEST_REST)
     if found is None or not is_better:
         return Recovery(attempt, (), (), image)
     return Recovery(found[0], (), (attempt.worst,), image)

@@ -47,8 +47,9 @@ class Search:
         turns: Directions of the fingers in the palm's plane.
         curls: Shares of the fingers' flexion tried, 0 open.
         likely: Merit below the best hypothesis at which one is still fitted rigidly.
+        rigid: At most so many of those are fitted rigidly.
         rough: Of those, fitted with their fingers on the coarse image.
-        bent: Of those, given a search of single fingers.
+        bent: Of those, given a search of single fingers; with none, fingers are left to who follows the hand.
         fine: Of those, fitted on the fine image.
         width: Columns of the coarse image.
         nearness: Merit lost per metre of depth: what is captured is usually held out.
@@ -59,12 +60,17 @@ class Search:
     turns: int = 16
     curls: tuple[float, ...] = (0.0, 0.45)
     likely: float = 0.25
+    rigid: int = 100
     rough: int = 24
     bent: int = 8
     fine: int = 4
     width: int = 160
     nearness: float = 0.5
     openness: float = 0.2
+
+
+STEP = Search(rigid=3, rough=2, bent=0, fine=1)
+"""What a frame that follows another has time for, of a part of all hypotheses."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +94,7 @@ def find_hand(
     near: float,
     far: float,
     search: Search | None = None,
+    part: slice = slice(None),
 ) -> Found | None:
     """The pose of one hand that explains the frame best, or None where there is nothing like a hand.
 
@@ -102,6 +109,7 @@ def find_hand(
         near: Least depth, m.
         far: Greatest depth, m.
         search: How widely to search.
+        part: Of the hypotheses, those that are looked at.
     """
     search = search or Search()
     scene = Scene((model,))
@@ -112,15 +120,16 @@ def find_hand(
     for candidate in find_palm_candidates(coarse, search.candidates):
         region = _around(candidate, camera, near, far)
         place = observe(frame, camera, region, how, stride)
-        poses = propose_poses(scene, candidate, camera, search)
+        poses = propose_poses(scene, candidate, camera, search)[part]
         hypotheses += [(judge.merit(place, pose), place, pose) for pose in poses]
     if not hypotheses:
         return None
     least = max(merit for merit, _, _ in hypotheses) - search.likely
-    rigid = [(place, _align(scene, place, pose)) for merit, place, pose in hypotheses if merit > least]
+    likely = sorted((one for one in hypotheses if one[0] > least), key=lambda one: -one[0])[: search.rigid]
+    rigid = [(place, _align(scene, place, pose)) for _, place, pose in likely]
     settled = [(place, _settle(scene, place, pose)) for place, pose in judge.rank(rigid)[: search.rough]]
-    best = judge.rank(settled)[: search.bent]
-    for _ in range(2):
+    best = judge.rank(settled)[: search.bent or search.fine]
+    for _ in range(2 if search.bent else 0):
         best = [(seen, _bend(scene, judge, seen, pose)) for seen, pose in best]
     found: Found | None = None
     found_merit = -np.inf
@@ -131,7 +140,7 @@ def find_hand(
         fine = observe(frame, camera, region, how, max(1, stride // 2))
         if fine.hand_count < MIN_PIXELS:
             continue
-        pose = _bend(scene, judge, fine, pose)
+        pose = _bend(scene, judge, fine, pose) if search.bent else pose
         pose = _refine(scene, fine, pose, Objective(), 20)
         merit = judge.merit(fine, pose)
         if merit > found_merit:

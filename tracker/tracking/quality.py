@@ -30,8 +30,9 @@ too thick make rims, a finger that is elsewhere makes an area."""
 BROAD_RIM = 0.0045
 """The same for the verdict: real sensors make such fringes."""
 
-ELSEWHERE = 0.6
-"""A finger whose joints are this far from where the hand detector saw them, `Sighting.measure`, is elsewhere."""
+ELSEWHERE = 0.8
+"""A finger whose joints are this far from where the hand detector saw them, `Sighting.measure`, is elsewhere. Fingers
+that marks find in their place are up to 0.75 away in infrared images, those that are elsewhere 0.9 and more."""
 
 MISFIT, BROAD_MISFIT = 1.1e-4, 6e-5
 """More than this area, m², where drawn and seen disagree means that some finger is elsewhere: by the depth image alone,

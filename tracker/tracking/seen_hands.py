@@ -13,7 +13,7 @@ from tracker.observation import Observation, Region, observe
 from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look
 from tracker.tracking.frame_fit import FitOptions, fit_frame
 from tracker.tracking.objective import Objective
-from tracker.tracking.quality import BROAD_MISFIT, ELSEWHERE, Quality
+from tracker.tracking.quality import BROAD_MISFIT, Quality
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.sighting import Sighting, Sightings
 from tracker.tracking.start_annotated import start_hand
@@ -28,6 +28,9 @@ POLISH = 5
 
 AGREES = 0.4
 """A fit whose joints are this near to the detected ones, `Quality.apart`, needs no other start."""
+
+FINGER_AGREES = 0.6
+"""Neither does one whose worst finger is, `Quality.worst_finger`."""
 
 MARGIN = 0.08
 """Room around detected joints, m."""
@@ -63,7 +66,7 @@ def try_where_seen(
 def _is_doubtful(quality: Quality) -> bool:
     """Whether a hand, or a finger, was seen elsewhere, or the depth image shows a good part of a finger elsewhere."""
     assert quality.apart is not None and quality.worst_finger is not None
-    is_elsewhere = quality.worst_finger > ELSEWHERE and quality.misfit > UNSETTLED
+    is_elsewhere = quality.worst_finger > FINGER_AGREES and quality.misfit > UNSETTLED
     return is_elsewhere or quality.apart > AGREES or quality.broad_misfit > 0.5 * BROAD_MISFIT
 
 

@@ -14,7 +14,7 @@ WEB := web/dist/.stamp
 TRACKER_SOURCES := $(shell find tracker -name '*.py')
 WEB_SOURCES := $(shell find web -type f -not -path '*/node_modules/*' -not -path '*/dist/*' -not -path '*/test-results/*' -not -name '*.tsbuildinfo')
 
-.PHONY: setup demo test test-python test-rooms test-browser test-web proofs proofs-rooms proofs-browser lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies clean
+.PHONY: setup demo test test-python test-rooms test-browser test-web proofs proofs-rooms proofs-browser lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies real clean
 .DELETE_ON_ERROR:
 
 setup: $(PROJECT) $(WEB) $(COMPILED)
@@ -109,6 +109,12 @@ bench: setup
 studies: setup
 	@test -n "$(DATA)" || { echo "studies: say where the data of T16 is: make studies DATA=FOLDER"; exit 2; }
 	$(BIN)/python -m benchmarks.studies $(DATA) --write
+	@test ! -d $(DATA)/../uvr_cube_white || $(MAKE) real DATA=$(DATA)/..
+
+# Real recordings against marks: docs/studies/real_marks.md. DATA holds the folders that benchmarks/real_marks/recordings names.
+real: setup
+	@test -n "$(DATA)" || { echo "real: say where the recordings are: make real DATA=FOLDER"; exit 2; }
+	$(BIN)/python -m benchmarks.real_marks $(DATA) --write
 
 clean:
 	rm -rf .venv web/node_modules web/dist

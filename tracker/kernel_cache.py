@@ -20,6 +20,7 @@ SHARED_KERNELS = (
     "geometry/triangle_tree.py",
     "geometry/triangles.py",
     "model/blend_kernels.py",
+    "observation/depth_edges.py",
     "observation/observation.py",
     "registration/curved_triangles.py",
     "registration/nearest_grid.py",

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 
 from tracker.cli.command import TRAINED
 from tracker.errors import TrackerError
-
-MAX_FACES = 1500
-"""As `tracker.model.files.MAX_FACES`, which would take its time to import."""
+from tracker.model.max_faces import MAX_FACES
 
 if TYPE_CHECKING:
     from tracker.model.articulated import ArticulatedModel

@@ -15,6 +15,7 @@ from tracker.model.gltf_container import read_gltf
 from tracker.model.gltf_files import load_gltf_model
 from tracker.model.mano_conventions import ManoConvention
 from tracker.model.mano_files import is_mano_npz, load_mano
+from tracker.model.max_faces import MAX_FACES
 from tracker.model.npz_arrays import NpzFields, list_npz_arrays, read_npz_arrays
 from tracker.model.npz_files import read_npz_model, save_npz_model
 from tracker.model.object_files import OBJECT_SUFFIXES, ObjectSize, is_skinned, load_object, measure_object
@@ -27,9 +28,6 @@ KINDS = (
 
 TRACKED = ManoConvention(tips="manopth", fix_left_shape=True)
 """How a MANO file is read for tracking: nobody's coefficients are compared, so the left hand's fault is mended."""
-
-MAX_FACES = 1500
-"""Heavier meshes are decimated to so many faces when they are loaded for tracking."""
 
 
 def load_model(path: Path, max_faces: int | None = MAX_FACES, metres_per_unit: float | None = None) -> ArticulatedModel:

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 from tracker.errors import TrackingError
-from tracker.model.files import MAX_FACES
+from tracker.model.max_faces import MAX_FACES
 
 TERMS = ("LO", "LO+C", "LO+S", "LO+SC", "LO+P", "LO+CP", "LO+SP", "LO+SCP")
 """Sets of terms that can be asked for, in the paper's letters: C collision, S salient points, P physics."""

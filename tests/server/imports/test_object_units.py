@@ -12,7 +12,8 @@ import trimesh
 
 from tests.server.conftest import Studio
 from tests.server.imports.test_routes import parts_of, upload
-from tracker import load_model, load_sequence
+from tracker import load_sequence
+from tracker.model import load_model
 
 API = "/api/v1"
 

@@ -1,0 +1,6 @@
+"""How fine a model's mesh may be; apart from `files`, whose imports take their time."""
+
+from __future__ import annotations
+
+MAX_FACES = 1500
+"""Heavier meshes are decimated to so many faces when they are loaded for tracking."""

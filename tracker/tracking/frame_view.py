@@ -26,6 +26,7 @@ from tracker.tracking.setup import TrackSetup
 from tracker.tracking.shown_collisions import ShownCollisions, show_collisions
 from tracker.tracking.shown_contacts import ShownContacts, show_contacts
 from tracker.tracking.shown_detections import ShownDetection, show_detections
+from tracker.tracking.sighting import find_sightings
 from tracker.tracking.surface_fit import measure_surface_fit
 from tracker.tracking.view_aids import ViewAids
 
@@ -148,8 +149,11 @@ class FrameView:
 
     @cached_property
     def _seen(self) -> Observation | None:
-        region = region_around(self._posed.vertices, self._camera)
-        return None if region is None else observe(self._frame, self._camera, region, self.aids.setup.preprocessing)
+        region, setup = region_around(self._posed.vertices, self._camera), self.aids.setup
+        if region is None:
+            return None
+        sightings = find_sightings(setup.hand_detector, self._frame, self._camera, setup.hand_names, {})
+        return observe(sightings.frame, self._camera, region, setup.preprocessing)
 
     @cached_property
     def _drawn(self) -> View | None:

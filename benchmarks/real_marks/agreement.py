@@ -48,7 +48,8 @@ def compare(marks: Mapping[int, Array], joints: Mapping[int, Array], lost: set[i
     """
     errors, false_alarms, misses = [], [], []
     for frame, wanted in marks.items():
-        off = np.linalg.norm(joints.get(frame, np.full((21, 2), np.inf)) - wanted, axis=1)
+        found = np.nan_to_num(joints.get(frame, np.full((21, 2), np.nan)), nan=np.inf)
+        off = np.linalg.norm(found - wanted, axis=1)
         tips = off[TIPS][~np.isnan(off[TIPS])]
         errors.append(tips)
         if frame in lost and tips.size and tips.max() <= limit:

@@ -16,6 +16,12 @@ def _refuse_truth(value: object) -> object:
 IsNumber = BeforeValidator(_refuse_truth)
 """For a choice of few numbers: pydantic takes true for `Literal[1]`."""
 
-Whole = Annotated[int, Strict()]
+
+def _take_whole(value: object) -> object:
+    """JSON has one kind of number: 5.0 is the whole number 5."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+Whole = Annotated[int, Strict(), BeforeValidator(_take_whole)]
 Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 FrameNumber = Annotated[Whole, Field(ge=0, le=10**9)]

@@ -81,7 +81,7 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
         threads=min(setup.options.threads, 2),
     )
     objective = tools.objective
-    if sightings.is_covered and not setup.object_names:
+    if (sightings.is_covered or is_first) and not setup.object_names:
         objective = sightings.add_to(objective, setup.scene, setup.names)
     if is_first:
         objective = with_marks(objective, setup.scene, setup.names, setup.marks, sightings.camera)

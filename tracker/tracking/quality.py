@@ -35,6 +35,10 @@ ELSEWHERE = 0.7
 59 of 126 frames of an infrared recording are called lost, 2 of 8 marked ones wrongly; with 0.8, 48, and 3 of the 8 are
 called `ok` with a fingertip in a wrong place. `uvr_cube_white` has 3 to 5 lost of 200 with any."""
 
+HAND_ELSEWHERE = 0.75
+"""A hand all of whose joints are that far from where it was seen is elsewhere, whatever the depth image says: a box
+passes for a palm."""
+
 MISFIT, BROAD_MISFIT = 1.1e-4, 6e-5
 """More than this area, m², where drawn and seen disagree means that some finger is elsewhere: by the depth image alone,
 and where the hand detector says so too."""
@@ -108,7 +112,8 @@ class Quality:
         """
         if self.worst_finger is None:
             return self.is_gone or self.misfit > MISFIT
-        return self.is_gone or (self.broad_misfit > BROAD_MISFIT and self.worst_finger > ELSEWHERE)
+        is_finger_elsewhere = self.broad_misfit > BROAD_MISFIT and self.worst_finger > ELSEWHERE
+        return self.is_gone or is_finger_elsewhere or (self.apart or 0.0) > HAND_ELSEWHERE
 
 
 def measure_quality(view: View, observation: Observation, model: int = 0) -> Quality:

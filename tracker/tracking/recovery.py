@@ -71,7 +71,7 @@ def recover_hands(
         return Recovery(attempt, gone, (), image)
     pose = state.pose if attempt is None else attempt.pose
     found = find_seen(sightings, setup, tools, pose, gone)
-    if found is None:
+    if found is None and not all(setup.names[hand] in sightings.hands for hand in gone):
         found = find_again(sightings, setup, tools, pose, gone, state.next_frame)
     if found is None:
         return Recovery(attempt, gone, (), image)

@@ -11,7 +11,7 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.observation import Observation, Region, observe
 from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look
-from tracker.tracking.frame_fit import FitOptions, fit_frame
+from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.objective import Objective
 from tracker.tracking.quality import BROAD_MISFIT, Quality
 from tracker.tracking.setup import TrackSetup
@@ -55,9 +55,11 @@ def try_where_seen(
         seen = look(sightings.frame, sightings.camera, setup, start)
         if seen is None:
             continue
-        pose = fit_frame(setup.scene, seen, start, start, guided, options).pose
-        other = attempt_fit(setup, seen, pose, pose, objective, replace(options, iterations=POLISH), sightings)
-        best = other if other.worth > best.worth else best
+        other = attempt_fit(setup, seen, start, start, guided, options, sightings)
+        free = attempt_fit(
+            setup, seen, other.pose, other.pose, objective, replace(options, iterations=POLISH), sightings
+        )
+        best = max((best, other, free), key=lambda attempt: attempt.worth)
         if not _find_doubtful(best):
             break
     return best

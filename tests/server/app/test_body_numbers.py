@@ -53,6 +53,10 @@ def test_no_body_takes_true_for_a_number() -> None:
     assert lax == []
 
 
+def test_a_whole_number_may_be_written_with_a_point() -> None:
+    assert TypeAdapter(FrameNumber).validate_json("283346853.0") == 283346853
+
+
 @pytest.mark.parametrize("sent", [True, False, "5", 5.5, None])
 def test_a_whole_number_is_a_number_of_json_and_nothing_else(sent: object) -> None:
     with pytest.raises(ValidationError):

@@ -13,7 +13,7 @@ from tracker.observation import Observation, Region, observe
 from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look
 from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.objective import Objective
-from tracker.tracking.quality import BROAD_MISFIT, Quality
+from tracker.tracking.quality import BROAD_MISFIT, HAND_ELSEWHERE, Quality
 from tracker.tracking.setup import TrackSetup
 from tracker.tracking.sighting import Sighting, Sightings
 from tracker.tracking.start_annotated import start_hand
@@ -66,10 +66,14 @@ def try_where_seen(
 
 
 def _is_doubtful(quality: Quality) -> bool:
-    """Whether a hand, or a finger, was seen elsewhere, or the depth image shows a good part of a finger elsewhere."""
+    """Whether the depth image shows a good part of a finger elsewhere, or the detector saw one that it does not settle.
+
+    A hand that was seen somewhere else altogether is doubtful whatever the depth image says.
+    """
     assert quality.apart is not None and quality.worst_finger is not None
-    is_elsewhere = quality.worst_finger > FINGER_AGREES and quality.misfit > UNSETTLED
-    return is_elsewhere or quality.apart > AGREES or quality.broad_misfit > 0.5 * BROAD_MISFIT
+    is_elsewhere = quality.worst_finger > FINGER_AGREES or quality.apart > AGREES
+    is_unsettled = is_elsewhere and quality.misfit > UNSETTLED
+    return is_unsettled or quality.apart > HAND_ELSEWHERE or quality.broad_misfit > 0.5 * BROAD_MISFIT
 
 
 def _find_doubtful(attempt: Attempt) -> list[int]:

@@ -50,7 +50,7 @@ export function JobPage() {
       <Group mb="lg" justify="space-between" wrap="nowrap" align="flex-start">
         <div style={{ minWidth: 0 }}>
           <Group gap="md" wrap="nowrap">
-            <Title order={1} className="one-line">
+            <Title order={1} className="few-lines">
               {formatJobKind(job.kind)} {job.title}
             </Title>
             <JobBadge state={job.state} />

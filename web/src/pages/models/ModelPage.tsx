@@ -63,7 +63,7 @@ export default function ModelPage() {
       <Group justify="space-between" align="flex-start" mb="lg" wrap="nowrap">
         <div style={{ minWidth: 0 }}>
           <Group gap="md" wrap="nowrap">
-            <Title order={1} className="one-line" title={model.name}>
+            <Title order={1} className="few-lines" title={model.name}>
               {model.name}
             </Title>
             <ModelKind model={model} />

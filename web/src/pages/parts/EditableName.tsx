@@ -41,7 +41,7 @@ export function EditableName({ recording }: { recording: Recording }) {
   }
   return (
     <Group gap="sm" wrap="nowrap">
-      <Title order={1} className="one-line" title={recording.name}>
+      <Title order={1} className="few-lines" title={recording.name}>
         {rename.isPending ? rename.variables : recording.name}
       </Title>
       <For role="lead">

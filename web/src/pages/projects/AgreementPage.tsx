@@ -40,7 +40,7 @@ export default function AgreementPage() {
     <div className="page">
       <Group justify="space-between" align="flex-start" mb="lg" wrap="nowrap">
         <div style={{ minWidth: 0 }}>
-          <Title order={1} className="one-line">
+          <Title order={1} className="few-lines">
             Agreement: {report.name}
           </Title>
           <Text className="quiet">

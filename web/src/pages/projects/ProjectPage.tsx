@@ -77,7 +77,7 @@ function Head({ project, mayChange, isLead }: { project: Project; mayChange: boo
     <Group mb="xl" justify="space-between" align="flex-start" wrap="nowrap">
       <div style={{ minWidth: 0 }}>
         <Group gap="sm" wrap="nowrap">
-          <Title order={1} className="one-line" title={project.name}>
+          <Title order={1} className="few-lines" title={project.name}>
             {project.name}
           </Title>
           {mayChange && (

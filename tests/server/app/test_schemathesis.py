@@ -147,7 +147,7 @@ def _feed(fed: Fed, operation: Any, mode: GenerationMode, examples: int) -> None
         turn += 1
         if mode is GenerationMode.POSITIVE and turn % 4:  # three of four requests are about things that are there
             fed.fill_in(case)
-        answer = case.call(base_url=BASE_URL)
+        answer = case.call(base_url=BASE_URL, timeout=60)  # s: a busy machine starts a viewer slowly
         case.validate_response(answer, checks=CHECKS.get_all())
 
     feed()

@@ -65,7 +65,9 @@ export function AssignmentBar() {
     const sent = { method: "POST", path: `/assignments/${assignment.id}/${verb}`, ...(body === undefined ? {} : { body }) } as const;
     change.mutate(verb === "comments" ? sent : { ...sent, revision: assignment.revision }, {
       onSuccess: () => {
-        setWriting(null);
+        // Live news of a comment may come before its answer: what the person opened since stays open.
+        const written: Writing = verb === "comments" ? "comment" : "return";
+        setWriting((now) => (now === written ? null : now));
         setSure(false);
       },
       onError: (error) => notifications.show({ color: "red", title: "That was not done", message: error.message }),
@@ -134,6 +136,7 @@ export function AssignmentBar() {
       </Text>
       {writing ? (
         <Words
+          key={writing}
           label={writing === "return" ? "What is to be changed" : `Comment on the ${state.hand} ${jointLabel(state.joint)}`}
           isBusy={change.isPending}
           onCancel={() => setWriting(null)}

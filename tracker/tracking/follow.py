@@ -86,7 +86,7 @@ def follow_frame(
         stop_unseen(setup, pose, _earlier(setup, state, pose, recovery), objects),
         _running_score(state, attempt, status),
         bool(gone),
-        followed.fingers,
+        followed.second_try,
         recovery.image,
         gone,
         {name: sighting.hand for name, sighting in sightings.hands.items()},

@@ -16,7 +16,7 @@ from tracker.tracking.objective import Objective
 from tracker.tracking.part import Part
 from tracker.tracking.patience import Patience
 from tracker.tracking.region import is_outgrown, region_around
-from tracker.tracking.seen_hands import try_where_seen
+from tracker.tracking.seen_hands import find_doubtful, try_where_seen
 from tracker.tracking.sighting import Sightings
 from tracker.tracking.start_annotated import with_marks
 from tracker.tracking.state import TrackState
@@ -33,8 +33,10 @@ UNEXPLAINED = 0.15
 SCORE_GAIN = 0.02
 """A search was worth it if it raised the score by this."""
 
-LEAST_REST, LONGEST_REST = 4, 64
-"""Frames to wait after fingers were searched in vain: the first time, and at most."""
+FINGER_REST, SEEN_REST = (4, 64), (2, 8)
+"""Frames to wait after a second try in vain, the first time and at most: after a search of fingers in the depth image,
+and after fits from detected joints. Meanwhile these are in the first fit: on `d405_take001` a frame takes half the
+time."""
 
 SEEN_ITERATIONS = 1.5
 """Fits from the detector's joints take so many times the iterations of others: they start farther off."""
@@ -52,28 +54,28 @@ class Followed:
 
     Attributes:
         attempt: At the whole scene, what is not of the part where it was; None where nothing of it is in sight.
-        fingers: When fingers may be searched again.
+        second_try: When there may be another.
         stages: Seconds by stage.
     """
 
     attempt: Attempt | None
-    fingers: Patience
+    second_try: Patience
     stages: dict[str, float]
 
 
 def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackState) -> Followed:
     """Fit a part of the scene from the predicted pose, and try again if that left something unexplained."""
     stages: dict[str, float] = {}
-    fingers = state.fingers.pass_frame()
+    second_try = state.second_try.pass_frame()
     if not part.kept:
-        return Followed(None, fingers, stages)
+        return Followed(None, second_try, stages)
     setup, previous = part.setup, part.take(state.pose)
     predicted = replace(state, pose=previous, earlier_pose=part.take(state.earlier_pose)).predict(setup.scene)
     started = perf_counter()
     seen = look(sightings.frame, sightings.camera, setup, predicted, MIN_PIXELS if part.has_hand else 0)
     stages["observing"] = perf_counter() - started
     if seen is None:
-        return Followed(None, fingers, stages)
+        return Followed(None, second_try, stages)
     is_first = state.next_frame == setup.options.first_frame
     options = FitOptions(
         iterations=setup.options.first_iterations if is_first else setup.options.iterations,
@@ -85,14 +87,17 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
         objective = sightings.add_to(objective, setup.scene, setup.names)
     if is_first:
         objective = with_marks(objective, setup.scene, setup.names, setup.marks, sightings.camera)
-    best = attempt_fit(setup, seen, predicted, previous, objective, options, sightings)
+    helped = objective if second_try.is_over else sightings.add_to(objective, setup.scene, setup.names)
+    best = attempt_fit(setup, seen, predicted, previous, helped, options, sightings)
     stages |= best.fit.stages
-    seen, best = _look_wider(sightings, part, seen, best, previous, objective, options)
+    seen, best = _look_wider(sightings, part, seen, best, previous, helped, options)
     if best.qualities:
         started = perf_counter()
         again = replace(options, iterations=round(SEEN_ITERATIONS * setup.options.iterations), stop_below=SETTLED)
-        best = try_where_seen(setup, sightings, best, objective, again)
-        starts = _find_finger_starts(sightings, part, state, fingers, best)
+        if sightings.is_looked_at and (is_first or second_try.is_over):
+            best = try_where_seen(setup, sightings, best, objective if is_first else tools.objective, again)
+            second_try = second_try.after_search(not find_doubtful(best), *SEEN_REST)
+        starts = _find_finger_starts(sightings, part, state, second_try, best)
         if starts:
             again = replace(options, iterations=setup.options.iterations)
             first, guided = best, tools.with_fingertips(seen)
@@ -102,18 +107,18 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
                 if best.misfit < UNSETTLED:
                     break
             is_better = best.misfit < UNSETTLED or best.worth > first.worth + SCORE_GAIN
-            fingers = fingers.after_search(is_better, LEAST_REST, LONGEST_REST)
+            second_try = second_try.after_search(is_better, *FINGER_REST)
             seen, best = _look_wider(sightings, part, seen, best, previous, objective, again)
         stages["second try"] = perf_counter() - started
         if tools.world is not None and setup is part.whole:
             started = perf_counter()
             best = hold_object(setup, tools, seen, objective, state, best, options)
             stages["physics"] = perf_counter() - started
-    return Followed(part.widen(best, state.pose), fingers, stages)
+    return Followed(part.widen(best, state.pose), second_try, stages)
 
 
 def _find_finger_starts(
-    sightings: Sightings, part: Part, state: TrackState, fingers: Patience, best: Attempt
+    sightings: Sightings, part: Part, state: TrackState, second_try: Patience, best: Attempt
 ) -> tuple[Array, ...]:
     """Poses (d,) from which fingers are searched in the depth image; none where there is no need or it is no use.
 
@@ -127,7 +132,7 @@ def _find_finger_starts(
     is_unsettled = is_whole and (best.quality.explained < 1.0 - UNEXPLAINED or best.misfit > UNSETTLED)
     if is_falling:
         return part.take(state.pose), best.pose
-    return (best.pose,) if is_unsettled and fingers.is_over else ()
+    return (best.pose,) if is_unsettled and second_try.is_over else ()
 
 
 def _look_wider(

@@ -47,7 +47,7 @@ def try_where_seen(
     A hand that the depth image settles needs no joints from a detector: they are wrong by some pixels. Where there is a
     doubt, the fit goes on with them from where it is, and if that does not help, from where they are.
     """
-    doubtful = _find_doubtful(best)
+    doubtful = find_doubtful(best)
     if not doubtful:
         return best
     guided = sightings.add_to(objective, setup.scene, setup.names)
@@ -60,7 +60,7 @@ def try_where_seen(
             setup, seen, other.pose, other.pose, objective, replace(options, iterations=POLISH), sightings
         )
         best = max((best, other, free), key=lambda attempt: attempt.worth)
-        if not _find_doubtful(best):
+        if not find_doubtful(best):
             break
     return best
 
@@ -76,7 +76,7 @@ def _is_doubtful(quality: Quality) -> bool:
     return is_unsettled or quality.apart > HAND_ELSEWHERE or quality.broad_misfit > 0.5 * BROAD_MISFIT
 
 
-def _find_doubtful(attempt: Attempt) -> list[int]:
+def find_doubtful(attempt: Attempt) -> list[int]:
     """Hands that were seen elsewhere, or that the depth image does not settle."""
     return [
         index for index, quality in attempt.qualities.items() if quality.apart is not None and _is_doubtful(quality)

@@ -31,7 +31,7 @@ class TrackState:
         score: Running quality score of good frames.
         is_lost: Whether a hand was nowhere in the last frame.
         lost_hands: Which, indices of the scene's models; none though one is lost means all.
-        fingers: When fingers are searched again after a search in vain.
+        second_try: When there is another second try after one in vain.
         image: When the whole image is.
         detected: Hands that the detector saw in the last frame, by name.
     """
@@ -41,7 +41,7 @@ class TrackState:
     earlier_pose: Array
     score: float = 0.0
     is_lost: bool = False
-    fingers: Patience = field(default_factory=Patience)
+    second_try: Patience = field(default_factory=Patience)
     image: Patience = field(default_factory=Patience)
     lost_hands: tuple[int, ...] = ()
     detected: Mapping[str, DetectedHand] = field(default_factory=dict)
@@ -78,7 +78,7 @@ class TrackState:
                 "earlier_pose": self.earlier_pose,
                 "score": np.array(self.score),
                 "is_lost": np.array(self.is_lost),
-                "rest": np.array([self.fingers.wait, self.image.wait, self.image.last, self.fingers.last]),
+                "rest": np.array([self.second_try.wait, self.image.wait, self.image.last, self.second_try.last]),
                 "lost_hands": np.array(self.lost_hands, dtype=np.int64),
                 "detected_names": np.array(list(self.detected), dtype=np.str_),
                 "detected": np.array([hand.to_row() for hand in self.detected.values()]).reshape(-1, ROW),

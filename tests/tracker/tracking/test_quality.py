@@ -55,6 +55,12 @@ def test_a_hand_turned_end_to_end_does_not_pass_its_fingers_off_as_a_forearm(rec
     assert judge(recorded, run, turned).merit < right.merit - 0.2
 
 
+@pytest.mark.parametrize(("misfit", "is_lost"), [(0.0, False), (5e-5, False), (1e-4, True)])
+def test_a_hand_that_was_seen_elsewhere_is_lost_only_where_the_depth_leaves_some_misfit(misfit, is_lost):
+    followed = Quality(0.002, 0.9, 0.9, 0.9, 0.8, 0.9, misfit, 0.0, 4e-3, 0.9, 1.0)
+    assert followed.is_lost is is_lost
+
+
 @pytest.mark.parametrize(
     ("misfit", "broad", "worst_finger", "is_lost"),
     [

@@ -127,10 +127,15 @@ def test_one_hand_goes_and_the_other_is_followed(two_hands, monkeypatch, gone: i
 
 def test_the_state_remembers_which_hand_is_lost(two_hands, tmp_path):
     _, _, _, state = two_hands
-    lost = replace(state, is_lost=True, lost_hands=(1,), fingers=Patience(1, 4), image=Patience(2, 3))
+    lost = replace(state, is_lost=True, lost_hands=(1,), second_try=Patience(1, 4), image=Patience(2, 3))
     lost.save(tmp_path / "state.npz")
     again = TrackState.load(tmp_path / "state.npz")
-    assert (again.is_lost, again.lost_hands, again.fingers, again.image) == (True, (1,), Patience(1, 4), Patience(2, 3))
+    assert (again.is_lost, again.lost_hands, again.second_try, again.image) == (
+        True,
+        (1,),
+        Patience(1, 4),
+        Patience(2, 3),
+    )
 
 
 @pytest.mark.parametrize("shift", [-0.12, -0.08, -0.05, 0.05, 0.08, 0.12])

@@ -156,10 +156,11 @@ def update_assignment(session: Session, account: Account, row: AssignmentRow, pa
             raise ConflictError(f"The assignment is {row.state}. Return it before its frames or annotator change.")
     if "account_id" in changes:
         check_worker(session, changes["account_id"])
+    sequence = get_sequence(session, row.sequence_id)  # before the row changes: a query would write frames unchecked
     for name, value in changes.items():
         setattr(row, name, value)
     if {"frame_first", "frame_last"} & changes.keys():
-        _check_frames(session, get_sequence(session, row.sequence_id), row)
+        _check_frames(session, sequence, row)
     _touch(session, row)
     record_act(session, account.id, "assignment.update", "assignment", row.id, **_facts(row))
     return row

@@ -87,7 +87,9 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
         objective = sightings.add_to(objective, setup.scene, setup.names)
     if is_first:
         objective = with_marks(objective, setup.scene, setup.names, setup.marks, sightings.camera)
-    helped = objective if second_try.is_over else sightings.add_to(objective, setup.scene, setup.names)
+    helped = objective
+    if not second_try.is_over and not setup.object_names:
+        helped = sightings.add_to(objective, setup.scene, setup.names)
     best = attempt_fit(setup, seen, predicted, previous, helped, options, sightings)
     stages |= best.fit.stages
     seen, best = _look_wider(sightings, part, seen, best, previous, helped, options)

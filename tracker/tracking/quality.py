@@ -31,14 +31,15 @@ BROAD_RIM = 0.0045
 """The same for the verdict: real sensors make such fringes."""
 
 ELSEWHERE = 0.7
-"""A finger whose joints are this far from where the hand detector saw them, `Sighting.measure`, is elsewhere. With 0.6,
-59 of 126 frames of an infrared recording are called lost, 2 of 8 marked ones wrongly; with 0.8, 48, and 3 of the 8 are
-called `ok` with a fingertip in a wrong place. `uvr_cube_white` has 3 to 5 lost of 200 with any."""
+"""A finger whose joints are this far from where the hand detector saw them, `Sighting.measure`, is elsewhere. Measured
+with onnxruntime and before second tries waited (today's counts: docs/studies/real_marks.md): with 0.6, 59 of 126 frames
+of an infrared recording are called lost, 2 of 8 marked ones wrongly; with 0.8, 48, and 3 of the 8 are called `ok` with
+a fingertip in a wrong place. `uvr_cube_white` had 3 to 5 lost of 200 with any."""
 
 HAND_ELSEWHERE = 0.75
 """A hand all of whose joints are that far from where it was seen is elsewhere where some misfit is left: a box passes
 for a palm, a mirrored hand for the hand. Where the depth image settles it the detector is wrong: 3 of 12 frames of
-`uvr_cube_white` that were called lost before had every joint in its place."""
+`uvr_cube_white` that were called lost before look right in what shows of the hand; they are not marked."""
 
 MISFIT, BROAD_MISFIT = 1.1e-4, 6e-5
 """More than this area, m², where drawn and seen disagree means that some finger is elsewhere: by the depth image alone,

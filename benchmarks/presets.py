@@ -13,7 +13,7 @@ from typing import Any
 
 from studies.twin_runs import Run
 
-from tracker.tracking.presets import PRESETS, TrackPreset
+from tracker.fitting.presets import PRESETS, TrackPreset
 
 log = logging.getLogger("presets")
 

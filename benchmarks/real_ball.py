@@ -14,13 +14,13 @@ import trimesh
 
 from tracker.capture.recorded_object import RecordedObject
 from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
+from tracker.fitting.frame_fit import draw
+from tracker.fitting.object_quality import measure_object_quality
+from tracker.fitting.region import region_around
 from tracker.model.files import load_model
 from tracker.observation import observe
 from tracker.rendering import render_view
-from tracker.tracking.find_scale import ScaleView, find_scale
-from tracker.tracking.frame_fit import draw
-from tracker.tracking.object_quality import measure_object_quality
-from tracker.tracking.region import region_around
+from tracker.search.find_scale import ScaleView, find_scale
 from tracker.tracking.track import Track
 from tracker.tracking.watch_objects import OBJECT_STATUSES
 

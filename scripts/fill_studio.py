@@ -72,8 +72,12 @@ def make_hand(folder: Path) -> GeneratedHand:
 
 
 def main() -> None:
-    folder = Path(sys.argv[1]).absolute()
-    folder.mkdir()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, help="a folder that is not there yet")
+    folder = parser.parse_args().folder.absolute()
+    if folder.exists():
+        parser.error(f"{folder} is there already; give a folder that is not there yet, or delete it")
+    folder.mkdir(parents=True)
     track, hand = make_track(folder / "recording", folder / "track"), make_hand(folder / "hand")
     app = create_app(Settings(data_dir=folder / "data"))
     with TestClient(app, base_url=BASE_URL) as client:

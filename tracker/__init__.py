@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from tracker.capture.triangulation import Triangulation, triangulate
     from tracker.cli import add_commands
     from tracker.detection.image_hands import DETECTOR_LABEL, find_image_hands
+    from tracker.detection.own_detector import OwnDetector, load_detector
     from tracker.detection.recorded_hands import (
         RecordedHands,
         choose_views,
@@ -80,6 +81,19 @@ if TYPE_CHECKING:
     from tracker.evaluation.report_html import write_html
     from tracker.evaluation.worst_picture import draw_item, encode_jpeg
     from tracker.export.export import EXPORT_KINDS, export_track
+    from tracker.fitting.options import TrackOptions
+    from tracker.fitting.presets import PRESETS, USUAL_PRESET, TrackPreset
+    from tracker.fitting.setup import TrackSetup
+    from tracker.fitting.tracking_faults import find_detector_faults, find_tracking_faults
+    from tracker.inspection.frame_view import (
+        UNKNOWN_COLOR,
+        FrameView,
+        ModelView,
+        describe_frame,
+        render_overlay,
+        render_unknown,
+    )
+    from tracker.inspection.view_aids import ViewAids
     from tracker.label_formats.formats import LABEL_FORMATS, LabelFormat, export_labels, import_labels
     from tracker.label_formats.image_names import list_image_names
     from tracker.label_formats.label_files import pack_files, read_label_files, save_label_files
@@ -112,17 +126,11 @@ if TYPE_CHECKING:
     from tracker.tracking.chunk import TrackChunk
     from tracker.tracking.follow import track_frames
     from tracker.tracking.frame_result import FrameResult
-    from tracker.tracking.frame_view import FrameView, ModelView, describe_frame, render_overlay
-    from tracker.tracking.options import TrackOptions
-    from tracker.tracking.presets import PRESETS, USUAL_PRESET, TrackPreset
     from tracker.tracking.quick_fit import MIN_FIT_JOINTS, QuickFit, fit_marked, view_track_hands
-    from tracker.tracking.setup import TrackSetup
     from tracker.tracking.start import start_tracking
     from tracker.tracking.start_plan import plan_start
     from tracker.tracking.state import TrackState
     from tracker.tracking.track import Track, join_chunks, load_track
-    from tracker.tracking.tracking_faults import find_tracking_faults
-    from tracker.tracking.view_aids import ViewAids
     from tracker.tracking.warm_up import warm_up
     from tracker.training.checkpoints import Checkpoints, pack_arrays, unpack_arrays
     from tracker.training.options import TrainingOptions
@@ -141,7 +149,10 @@ _HOMES = {
     "DetectedHand": "tracker.landmarks",
     "default_hand_detector": "tracker.landmarks",
     "plan_start": "tracker.tracking.start_plan",
-    "find_tracking_faults": "tracker.tracking.tracking_faults",
+    "find_tracking_faults": "tracker.fitting.tracking_faults",
+    "find_detector_faults": "tracker.fitting.tracking_faults",
+    "load_detector": "tracker.detection.own_detector",
+    "OwnDetector": "tracker.detection.own_detector",
     "find_training_faults": "tracker.training.training_faults",
     "find_bend_fault": "tracker.training.training_faults",
     "TrainingHand": "tracker.training.training_faults",
@@ -166,7 +177,7 @@ _HOMES = {
     "unpack_arrays": "tracker.training.checkpoints",
     "compare_tracks": "tracker.evaluation.comparison",
     "default_hand": "tracker.model.default_hand",
-    "describe_frame": "tracker.tracking.frame_view",
+    "describe_frame": "tracker.inspection.frame_view",
     "draw_item": "tracker.evaluation.worst_picture",
     "encode_jpeg": "tracker.evaluation.worst_picture",
     "evaluate_track": "tracker.evaluation.evaluation",
@@ -182,7 +193,7 @@ _HOMES = {
     "Frame": "tracker.capture.frame",
     "FrameError": "tracker.errors",
     "FrameResult": "tracker.tracking.frame_result",
-    "FrameView": "tracker.tracking.frame_view",
+    "FrameView": "tracker.inspection.frame_view",
     "HAND_EDGES": "tracker.model.joints",
     "HAND_JOINTS": "tracker.model.joints",
     "IMPORT_FORMATS": "tracker.capture.import_check",
@@ -225,10 +236,10 @@ _HOMES = {
     "make_anatomical_prior": "tracker.registration.anatomy",
     "make_gaussian_prior": "tracker.registration.pose_prior",
     "MIN_FIT_JOINTS": "tracker.tracking.quick_fit",
-    "ModelView": "tracker.tracking.frame_view",
+    "ModelView": "tracker.inspection.frame_view",
     "mirror_blend": "tracker.model.blend_mirroring",
     "pack_files": "tracker.label_formats.label_files",
-    "PRESETS": "tracker.tracking.presets",
+    "PRESETS": "tracker.fitting.presets",
     "QuickFit": "tracker.tracking.quick_fit",
     "read_label_files": "tracker.label_formats.label_files",
     "read_import_picture": "tracker.capture.import_picture",
@@ -241,7 +252,9 @@ _HOMES = {
     "RegistrationError": "tracker.errors",
     "RegistrationOptions": "tracker.registration.options",
     "RegistrationStart": "tracker.registration.registration",
-    "render_overlay": "tracker.tracking.frame_view",
+    "render_overlay": "tracker.inspection.frame_view",
+    "render_unknown": "tracker.inspection.frame_view",
+    "UNKNOWN_COLOR": "tracker.inspection.frame_view",
     "run_import": "tracker.capture.import_run",
     "save_annotations": "tracker.capture.annotations",
     "save_mano": "tracker.model.mano_files",
@@ -262,9 +275,9 @@ _HOMES = {
     "TrackChunk": "tracker.tracking.chunk",
     "TrackerError": "tracker.errors",
     "TrackingError": "tracker.errors",
-    "TrackOptions": "tracker.tracking.options",
-    "TrackPreset": "tracker.tracking.presets",
-    "TrackSetup": "tracker.tracking.setup",
+    "TrackOptions": "tracker.fitting.options",
+    "TrackPreset": "tracker.fitting.presets",
+    "TrackSetup": "tracker.fitting.setup",
     "TrackState": "tracker.tracking.state",
     "make_training_set": "tracker.training.training_set",
     "train_model": "tracker.training.train",
@@ -276,9 +289,9 @@ _HOMES = {
     "Triangulation": "tracker.capture.triangulation",
     "trained_hand": "tracker.model.trained_hand",
     "untrained_hand": "tracker.model.untrained_hand",
-    "USUAL_PRESET": "tracker.tracking.presets",
+    "USUAL_PRESET": "tracker.fitting.presets",
     "view_track_hands": "tracker.tracking.quick_fit",
-    "ViewAids": "tracker.tracking.view_aids",
+    "ViewAids": "tracker.inspection.view_aids",
     "warm_up": "tracker.tracking.warm_up",
     "JUDGING": "tracker.capture.source_choice",
     "SOURCE_CHOICES": "tracker.capture.source_choice",
@@ -312,6 +325,7 @@ __all__ = [
     "SIZES_NEEDED",
     "SOURCE_CHOICES",
     "STUDY_LEVELS",
+    "UNKNOWN_COLOR",
     "USUAL_PRESET",
     "Annotation",
     "AnnotationError",
@@ -341,6 +355,7 @@ __all__ = [
     "LabelSet",
     "ModelView",
     "ObjectSize",
+    "OwnDetector",
     "QuickFit",
     "RecordedHands",
     "Registration",
@@ -389,6 +404,7 @@ __all__ = [
     "extract_archive",
     "find_bend_fault",
     "find_counted",
+    "find_detector_faults",
     "find_hand_points",
     "find_image_hands",
     "find_origin",
@@ -409,6 +425,7 @@ __all__ = [
     "list_image_names",
     "load_annotations",
     "load_blend_model",
+    "load_detector",
     "load_mano",
     "load_recorded_hands",
     "load_registration",
@@ -431,6 +448,7 @@ __all__ = [
     "read_scan",
     "register_scan",
     "render_overlay",
+    "render_unknown",
     "run_import",
     "save_annotations",
     "save_blend_model",

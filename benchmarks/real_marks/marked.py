@@ -33,8 +33,9 @@ class MarkedRecording:
 
     Attributes:
         name: Of its folder.
-        about: `source` in the data folder, how to read it (`kind`), its hand, and `right_within_px`, up to which a
-            joint counts as right.
+        about: `source` in the data folder, how to read it (`kind`), its hand, `right_within_px`, up to which a joint
+            counts as right, and `whole`, first and last frame of each stretch that shows the hand whole, all where it
+            is missing; `holds`: `ball` where a ball is held.
         passes: What was marked the first and the second time.
     """
 
@@ -56,6 +57,11 @@ class MarkedRecording:
     def limit(self) -> float:
         """px."""
         return float(str(self.about["right_within_px"]))
+
+    def list_whole(self, count: int) -> set[int]:
+        """Of `count` frames, those in which no part of the hand is cut off by the image."""
+        stretches: list[list[int]] = self.about.get("whole", [[0, count - 1]])  # type: ignore[assignment]
+        return {frame for first, last in stretches for frame in range(first, last + 1)}
 
     @property
     def has_depth(self) -> bool:

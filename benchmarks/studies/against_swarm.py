@@ -12,10 +12,10 @@ import numpy as np
 from benchmarks.studies.twin_runs import Twin, find_first_motion, render_twin, start_twin
 from tracker.baselines import SwarmOptions, track_with_swarm
 from tracker.evaluation import compute_statistics, evaluate_against_truth
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow import track_frames
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.track import join_chunks
 
 

@@ -12,11 +12,11 @@ import numpy as np
 
 from benchmarks.studies.twin_runs import find_first_motion, measure, render_twin, start_twin
 from tracker.evaluation import evaluate_against_truth
+from tracker.fitting.options import TrackOptions
+from tracker.search.tools import make_tools
 from tracker.terms.residual import Term
 from tracker.tracking.as_written import CONTOURS, DATA_TERMS, follow_as_written
 from tracker.tracking.chunk import TrackChunk
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.tools import make_tools
 from tracker.tracking.track import join_chunks
 
 M2D, D2M = "model_to_data", "data_to_model"

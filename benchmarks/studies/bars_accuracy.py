@@ -11,7 +11,7 @@ from benchmarks.studies.study import HAND_OBJECT, Extent
 from benchmarks.studies.trial import Results, Trial
 from benchmarks.studies.true_penetration import TruePenetration
 from benchmarks.studies.twin_runs import SEQUENCES, Run
-from tracker.tracking.options import TrackOptions
+from tracker.fitting.options import TrackOptions
 
 DEFAULT = TrackOptions().terms
 """What a run has that asks for nothing else."""

@@ -17,7 +17,7 @@ from benchmarks.studies.memory import Memory
 from benchmarks.studies.study import Extent
 from benchmarks.studies.trial import ROOT, NotMeasured, Results
 from benchmarks.studies.twin_runs import Run, render_twin, run_twin, start_twin
-from tracker.tracking.options import TrackOptions
+from tracker.fitting.options import TrackOptions
 
 ONE_MS, ONE_RATIO, TWO_MS, TWO_THREADS_MS, PHYSICS_MS = 15.0, 1.4, 32.0, 20.0, 60.0
 MEMORY_FRAMES, MEMORY_MB, GROWTH_MB = 1500, 600.0, 20.0

@@ -10,11 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from benchmarks.studies.twin_runs import Twin, measure, render_twin, run_twin, start_twin
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
 from tracker.model.scene import PosedScene
 from tracker.physics import SD_OBMAN, SEARCH, find_settled_displacement, simulate
 from tracker.synthesis.actor import Actor
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
 
 STABLE = 0.003
 """An object that moves less stays, m (§3.2.6)."""

@@ -19,15 +19,15 @@ from benchmarks.studies.as_written import compare
 from benchmarks.studies.study import SETTING_STEP
 from benchmarks.studies.twin_runs import Twin, render_twin, start_twin
 from tracker.evaluation import evaluate_against_truth
+from tracker.fitting.objective import Objective
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
+from tracker.search.tools import make_tools
 from tracker.terms.data_to_model import DataToModel
 from tracker.terms.residual import Term
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow import follow_frame
-from tracker.tracking.objective import Objective
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import make_tools
 from tracker.tracking.track import join_chunks
 
 NAMES = ("20", "09", "04", "15", "01")

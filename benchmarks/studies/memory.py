@@ -15,9 +15,9 @@ from typing import Any
 
 from benchmarks.studies.trial import ROOT
 from benchmarks.studies.twin_runs import render_twin, start_twin
+from tracker.fitting.options import TrackOptions
+from tracker.search.tools import make_tools
 from tracker.tracking.follow import follow_frame
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.tools import make_tools
 
 EVERY = 100
 """Frames between two looks at the memory."""

@@ -25,10 +25,10 @@ import numpy as np  # noqa: E402
 from benchmarks.studies.twin_runs import SEQUENCES, Twin, measure, render_twin, run_twin  # noqa: E402
 from tracker.capture.annotations import Annotations, load_annotations  # noqa: E402
 from tracker.evaluation import evaluate_against_truth  # noqa: E402
+from tracker.fitting.options import TrackOptions  # noqa: E402
 from tracker.model import load_model, mirror  # noqa: E402
 from tracker.model.articulated import ArticulatedModel  # noqa: E402
 from tracker.model.joints import HAND_JOINTS  # noqa: E402
-from tracker.tracking.options import TrackOptions  # noqa: E402
 from tracker.tracking.start import start_tracking  # noqa: E402
 
 TUNED_ON = ("09", "15")

@@ -19,23 +19,23 @@ from benchmarks.studies.twin_runs import find_first_motion, measure, render_twin
 from benchmarks.studies.variants import AsPoints, CorrespondingVertices, SalientInEveryFrame
 from tracker.capture.sequence import Sequence
 from tracker.detection import default_detector
+from tracker.fitting.attempt import attempt_fit, look
+from tracker.fitting.frame_fit import FitOptions
+from tracker.fitting.objective import Objective
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
 from tracker.physics import PhysicsWorld, find_down, find_support
 from tracker.physics.protocol import SEARCH
 from tracker.physics.support import SupportOptions
+from tracker.search.start_annotated import with_marks
 from tracker.terms.collision import Collision
 from tracker.terms.data_to_model import DataToModel
 from tracker.terms.model_to_data import ModelToData
 from tracker.terms.physics import Physics
 from tracker.terms.residual import Term
 from tracker.terms.salient import Salient
-from tracker.tracking.attempt import attempt_fit, look
 from tracker.tracking.chunk import TrackChunk
-from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.frame_result import FrameResult
-from tracker.tracking.objective import Objective
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
-from tracker.tracking.start_annotated import with_marks
 from tracker.tracking.state import TrackState
 from tracker.tracking.track import join_chunks
 

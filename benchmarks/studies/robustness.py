@@ -17,8 +17,8 @@ from benchmarks.studies.blanked import blank_twin
 from benchmarks.studies.true_pose import disturb_hands, find_true_pose
 from benchmarks.studies.twin_runs import SEQUENCES, Run, Twin, measure, render_twin, run_twin, start_twin
 from tracker.evaluation import evaluate_against_truth
+from tracker.fitting.options import TrackOptions
 from tracker.tracking.follow import track_frames
-from tracker.tracking.options import TrackOptions
 from tracker.tracking.state import TrackState
 from tracker.tracking.track import join_chunks
 

@@ -6,12 +6,12 @@ import numpy as np
 import numpy.typing as npt
 
 from benchmarks.studies.twin_runs import Twin
+from tracker.fitting.setup import TrackSetup
 from tracker.geometry import se3
 from tracker.model.scene import Scene
 from tracker.solver.damped_step import compute_damped_step
 from tracker.terms.normal_equations import NormalEquations
 from tracker.terms.point_point import PointToPoint
-from tracker.tracking.setup import TrackSetup
 
 Array = npt.NDArray[np.float64]
 

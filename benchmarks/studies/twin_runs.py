@@ -20,14 +20,14 @@ from tracker.capture.annotations import load_annotations
 from tracker.capture.sequence import Sequence, load_sequence
 from tracker.capture.truth import Truth, load_truth
 from tracker.evaluation import compute_surface_distances, evaluate_against_truth
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
 from tracker.model import save_model
 from tracker.synthesis.performance import Performance
 from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.synthesis.twin import load_twin
 from tracker.terms.penetration import measure_penetration
 from tracker.tracking.follow import track_frames
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.start import start_tracking
 from tracker.tracking.state import TrackState
 from tracker.tracking.track import Track, join_chunks

@@ -16,6 +16,8 @@ from server.app import health
 from server.bin import routes as bin_routes
 from server.bin.kinds import BinKind
 from server.decisions import routes as decisions
+from server.detectors import routes as detectors
+from server.detectors.bin import DETECTORS
 from server.evaluations import routes as evaluations
 from server.exchange import routes as exchange
 from server.exchange import snapshot_routes
@@ -59,6 +61,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     token_routes.router,
     people_routes.router,
     hand_models.router,
+    detectors.router,
     sequences.router,
     frame_routes.router,
     annotations.router,
@@ -99,7 +102,7 @@ SCAN_FACTS: tuple[ScanFactFinder, ...] = (find_newest,)
 SCAN_RESIZED: tuple[Resized, ...] = (settle_current,)
 """What rooms above the scans do when the size of one was corrected."""
 
-BIN_KINDS: tuple[BinKind, ...] = (RECORDINGS, TRACKS, SCANS, HAND_MODELS, PROJECTS, REPLICA_SETS)
+BIN_KINDS: tuple[BinKind, ...] = (RECORDINGS, TRACKS, SCANS, HAND_MODELS, DETECTORS, PROJECTS, REPLICA_SETS)
 """What is put into the bin instead of being destroyed."""
 
 PLACE_GUARDS: tuple[PlaceGuard, ...] = (ASSIGNMENTS,)

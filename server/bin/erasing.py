@@ -41,6 +41,7 @@ FOLDERS = {
     "scans": "scans",
     "registrations": "registrations",
     "hand_models": "models",
+    "detectors": "detectors",
     "jobs": "jobs",
     "imports": "uploads",
 }

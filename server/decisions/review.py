@@ -34,18 +34,22 @@ Table = dict[tuple[str, str], int]
 
 
 def measure_throughput(session: Session, since: datetime) -> Throughput:
-    """What everybody decided since a moment, the busiest first."""
+    """What everybody decided since a moment and has not taken back, the busiest first."""
     query = select(DecisionRow).where(DecisionRow.created_at >= since).order_by(DecisionRow.created_at)
     by_person: dict[uuid.UUID, list[DecisionRow]] = defaultdict(list)
+    undone: set[uuid.UUID | None] = set()
     for row in session.scalars(query):
         by_person[row.account_id].append(row)
+        undone.add(row.undoes_id)
     names = find_names(session, by_person)
-    people = [_measure_person(id_, names[id_], rows) for id_, rows in by_person.items()]
+    people = [_measure_person(id_, names[id_], rows, undone) for id_, rows in by_person.items()]
     return Throughput(since=since, people=sorted(people, key=lambda person: -person.decisions))
 
 
-def _measure_person(id_: uuid.UUID, name: str, rows: list[DecisionRow]) -> PersonThroughput:
-    kinds = Counter(row.decision for row in rows)
+def _measure_person(
+    id_: uuid.UUID, name: str, rows: list[DecisionRow], undone: set[uuid.UUID | None]
+) -> PersonThroughput:
+    kinds = Counter(row.decision for row in rows if row.id not in undone)
     gaps = [(b.created_at - a.created_at).total_seconds() for a, b in pairwise(rows)]
     active = [gap for gap in gaps if gap <= LONGEST_LOOK_S]
     minutes = sum(active) / 60.0

@@ -124,11 +124,11 @@ class PersonThroughput(BaseModel):
 
     account_id: uuid.UUID
     name: str
-    decisions: int
+    decisions: int = Field(description="Without those that were taken back.")
     accept: int
     reject: int
     unsure: int
-    undone: int
+    undone: int = Field(description="How many they took back, older ones among them.")
     active_minutes: float = Field(description="Pauses of more than a minute count as none.")
     per_minute: float | None = Field(description="Decisions in an active minute; null before the second decision.")
 

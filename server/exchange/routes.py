@@ -32,6 +32,7 @@ from server.sequences.service import get_sequence
 from server.storage import Storage, StorageDep
 from server.storage.sent_json import read_options, reading_json
 from server.storage.upload import Upload, UploadLimits, work_on_upload
+from server.storage.upload_body import describe_upload_body
 from tracker import JOINT_ORDERS, LABEL_FORMATS, ExportedLabels, ImportHints, export_labels, pack_files
 
 router = APIRouter(tags=["labels"], responses=error_responses(404))
@@ -41,22 +42,12 @@ LIMITS = UploadLimits(files=100_000, total_bytes=256 * 1024 * 1024)
 MAX_RECORDINGS = 100
 MEDIA_TYPES = {".json": "application/json", ".csv": "text/csv; charset=utf-8", ".zip": "application/zip"}
 
-_FILES = {
-    "type": "array",
-    "items": {"type": "string", "format": "binary"},
-    "description": "The files, each file name its relative path; or one .zip.",
-}
+_FILES = "The files, each file name its relative path; or one .zip."
 _OPTIONS = {"type": "string", "description": "LabelImportOptions as JSON: what the files do not say."}
-
-
-def _describe_body(**more: dict[str, Any]) -> dict[str, Any]:
-    properties = {"files": _FILES, "options": _OPTIONS, **more}
-    schema = {"type": "object", "required": ["files"], "properties": properties}
-    return {"requestBody": {"required": True, "content": {"multipart/form-data": {"schema": schema}}}}
-
-
-_CHECK_BODY = _describe_body()
-_IMPORT_BODY = _describe_body(
+_CHECK_BODY = describe_upload_body(_FILES, options=_OPTIONS)
+_IMPORT_BODY = describe_upload_body(
+    _FILES,
+    options=_OPTIONS,
     check={"type": "string", "description": "`check` of the report that is confirmed."},
     policy={"type": "string", "enum": ["keep", "replace"], "description": "Of hands that are labelled otherwise."},
 )

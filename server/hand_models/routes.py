@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import uuid
 from pathlib import Path
-from typing import Any
 
 from fastapi import APIRouter, Depends, Request, Response
 
@@ -13,12 +12,12 @@ from server.accounts.service import AccountIdDep, LeadAccount, require_lead
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.download import name_download
-from server.errors import InvalidError, NotFoundError, error_responses
+from server.errors import NotFoundError, error_responses
 from server.hand_models import service, storing
 from server.hand_models.schemas import HandModelOptions, HandModelOut, HandModelReport, HandSkeleton
 from server.storage import StorageDep
-from server.storage.sent_json import reading_json
 from server.storage.upload import Upload, UploadLimits, work_on_upload
+from server.storage.upload_body import describe_upload_body, read_one_file
 from tracker import HAND_EDGES, HAND_JOINTS
 
 router = APIRouter(tags=["hands"], responses=error_responses())
@@ -26,24 +25,12 @@ router = APIRouter(tags=["hands"], responses=error_responses())
 REPORT_POLICY = "sandbox; default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 
 LIMITS = UploadLimits(files=1, total_bytes=1024**3)
-_BODY: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["files"],
-                    "properties": {
-                        "files": {"type": "string", "format": "binary", "description": "One .npz or .pkl."},
-                        "name": {"type": "string", "description": "Of the model; the file's when left out."},
-                        "side": {"type": "string", "enum": ["right", "left"]},
-                    },
-                }
-            }
-        },
-    }
-}
+_BODY = describe_upload_body(
+    "One .npz or .pkl.",
+    is_one=True,
+    name={"type": "string", "description": "Of the model; the file's when left out."},
+    side={"type": "string", "enum": ["right", "left"]},
+)
 
 
 @router.get("/hand-skeleton")
@@ -111,15 +98,12 @@ async def upload_hand_model(
     """Upload a hand model: Handloom's own npz, or MANO's npz or pickle. A pickle is read and never run."""
 
     def work(folder: Path, upload: Upload) -> HandModelOut:
-        if len(upload.names) != 1:
-            raise InvalidError(f"The upload holds {len(upload.names)} files; needed one model.")
-        with reading_json("The form", "a file, and a name and a side where they are known"):
-            options = HandModelOptions.model_validate(
-                {name: text for name, text in upload.fields.items() if text.strip()}
-            )
-        model = storing.read_upload(folder / upload.names[0], options.side)
+        path, options = read_one_file(
+            folder, upload, "model", HandModelOptions, "a file, and a name and a side where they are known"
+        )
+        model = storing.read_upload(path, options.side)
         with database.writing() as session:
-            row = storing.add_uploaded(session, storage, model, options.name or Path(upload.names[0]).stem, account_id)
+            row = storing.add_uploaded(session, storage, model, options.name or path.stem, account_id)
             return service.describe_hand_models(session, [row])[0]
 
     return await work_on_upload(request, storage, "model_uploads", LIMITS, work)

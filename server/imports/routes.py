@@ -31,33 +31,17 @@ from server.sequences.facts import FactsDep, describe_sequences
 from server.sequences.schemas import SequenceOut
 from server.storage import StorageDep
 from server.storage.upload import receive_upload
+from server.storage.upload_body import describe_upload_body
 from tracker import IMPORT_FORMATS, SENSOR_PRESETS, ImportOptions
 
 router = APIRouter(prefix="/imports", tags=["imports"], responses=error_responses())
 
 by_lead = [Depends(require_lead)]
 
-_BODY: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["files"],
-                    "properties": {
-                        "files": {
-                            "type": "array",
-                            "items": {"type": "string", "format": "binary"},
-                            "description": "The recording's files, each file name its relative path; or one .zip.",
-                        },
-                        "options": {"type": "string", "description": f"JSON. {OPTIONS_HELP}"},
-                    },
-                }
-            }
-        },
-    }
-}
+_BODY = describe_upload_body(
+    "The recording's files, each file name its relative path; or one .zip.",
+    options={"type": "string", "description": f"JSON. {OPTIONS_HELP}"},
+)
 
 
 def get_desk(connection: HTTPConnection, database: DatabaseDep, storage: StorageDep) -> ImportDesk:

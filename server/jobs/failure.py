@@ -10,6 +10,9 @@ from server.errors import StudioError
 PATH = re.compile(r"(?<![\w./])(?:[A-Za-z]:)?/(?:[^\s/'\",;]+/)+")
 """The folders of an absolute path: what stands before its last part."""
 
+RECORDING = re.compile(r"\bsequences/[0-9a-f]{8}(?:-[0-9a-f]{4}){3}-[0-9a-f]{12}/")
+"""Where the studio keeps a recording: nobody knows it by that id, and the job says which one it is."""
+
 
 def describe_error(error: Exception, number: str, root: Path) -> str:
     """What went wrong, for people.
@@ -30,5 +33,7 @@ def describe_error(error: Exception, number: str, root: Path) -> str:
 
 
 def hide_paths(text: str, root: Path) -> str:
-    """A text without the folders that files lie in: of files of the studio the part below its data folder stays."""
-    return PATH.sub("", text.replace(f"{root.resolve()}/", "").replace(f"{root}/", ""))
+    """A text without the folders that files lie in: of files of the studio the part below its data folder stays, of
+    those of a recording the part within the recording."""
+    below = text.replace(f"{root.resolve()}/", "").replace(f"{root}/", "")
+    return PATH.sub("", RECORDING.sub("", below))

@@ -8,9 +8,10 @@ from typing import Literal
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from server.detectors.models import DetectorRow
 from server.hand_models.models import HandModelRow
 from server.jobs.schemas import JobForm, JobFormField, JobPreset
-from server.jobs.service import HAND_MODEL, TRAINED_HAND
+from server.jobs.service import DETECTOR, HAND_MODEL, TRAINED_HAND
 
 TYPE_NAMES: dict[type, Literal["integer", "number", "boolean", "text"]] = {
     int: "integer",
@@ -21,7 +22,7 @@ TYPE_NAMES: dict[type, Literal["integer", "number", "boolean", "text"]] = {
 
 
 def track_form(session: Session) -> JobForm:
-    """One field for each option, one for the hand model, and the presets."""
+    """One field for each option, one for the hand model, one for the fingertip detector, and the presets."""
     from tracker import PRESETS, USUAL_PRESET, TrackOptions
 
     defaults = TrackOptions().to_json()
@@ -44,27 +45,43 @@ def track_form(session: Session) -> JobForm:
             )
             for option in dataclasses.fields(TrackOptions)
         ]
-        + [_choose_hand(session)],
+        + [_choose_hand(session), _choose_detector(session)],
         presets=[JobPreset.model_validate(preset) for preset in PRESETS],
         usual_preset=USUAL_PRESET,
     )
 
 
-MOST_MODELS = 100
+MOST_OFFERED = 100
 """Of those that were trained or uploaded, the newest are offered."""
 
 
 def _choose_hand(session: Session) -> JobFormField:
-    query = select(HandModelRow.id, HandModelRow.name).where(HandModelRow.deleted_at.is_(None))
-    rows = session.execute(query.order_by(HandModelRow.created_at.desc(), HandModelRow.id).limit(MOST_MODELS)).all()
+    text = "What the hands are taken to be; the other hand is its mirror image."
+    built_in = {"": "The default hand", TRAINED_HAND: "The hand learnt from scans"}
+    return _choose(HAND_MODEL, "Hand model", text, built_in | _list_newest(session, HandModelRow))
+
+
+def _choose_detector(session: Session) -> JobFormField:
+    text = "Your own, added on the page Models, looks in every frame."
+    own = _list_newest(session, DetectorRow)
+    return _choose(DETECTOR, "Fingertip detector", text, {"": "The one that comes with Handloom"} | own)
+
+
+def _list_newest(session: Session, row: type[HandModelRow] | type[DetectorRow]) -> dict[str, str]:
+    """Ids and names of what was stored and not deleted."""
+    query = select(row.id, row.name).where(row.deleted_at.is_(None)).order_by(row.created_at.desc(), row.id)
+    return {str(found.id): found.name for found in session.execute(query.limit(MOST_OFFERED))}
+
+
+def _choose(name: str, label: str, text: str, choices: dict[str, str]) -> JobFormField:
     return JobFormField(
-        name=HAND_MODEL,
-        label="Hand model",
+        name=name,
+        label=label,
         type="text",
         default="",
-        help="What the hands are taken to be; the other hand is its mirror image.",
-        choices=["", TRAINED_HAND, *(str(row.id) for row in rows)],
-        choice_labels=["The default hand", "The hand learnt from scans", *(row.name for row in rows)],
+        help=text,
+        choices=list(choices),
+        choice_labels=list(choices.values()),
         low=None,
         high=None,
         unit=None,

@@ -30,7 +30,7 @@ def make_check(session: Session, obstacles: Sequence[str], notes: Sequence[str] 
     """The answer to a form that asks; says too when a job would wait for want of a worker."""
     now = workers.find_database_time(session)
     if not any(workers.is_alive(worker, now) for worker in workers.list_workers(session)):
-        notes = [*notes, "No worker is running: the job waits until one is started with `handloom worker`."]
+        notes = [*notes, "No worker is running: the job waits until one is started with “handloom worker”."]
     return JobCheck(can_start=not obstacles, obstacles=list(obstacles), notes=list(notes))
 
 

@@ -12,6 +12,8 @@ from sqlalchemy.orm import Session
 
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor
+from server.detectors.models import DetectorRow
+from server.detectors.service import get_detector
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.hand_models.service import get_hand_model
 from server.jobs.models import ENDED_STATES, JobLogRow, JobRow, WorkerRow
@@ -23,9 +25,11 @@ FRAME_KINDS = ("track", "detect")
 """Those that go through the frames of a recording."""
 
 HAND_MODEL = "hand_model_id"
+DETECTOR = "detector_id"
+STUDIO_PARAMS = (HAND_MODEL, DETECTOR)
+"""Among the params of a tracking job: the tracker's options know no models and no detectors of the studio."""
 TRAINED_HAND = "trained"
-"""In place of an id: the trained hand that comes with Handloom."""
-"""Among the params of a tracking job: the tracker's options know no models of the studio."""
+"""In place of a hand model's id: the trained hand that comes with Handloom."""
 
 LOG_PAGE = 1000
 
@@ -133,14 +137,21 @@ def create_job(
 
 def check_track_params(session: Session, sequence_id: UUID, params: dict[str, Any]) -> dict[str, Any]:
     """The options in full, as they will be used; raises when the recording cannot be tracked so."""
-    from tracker import TrackOptions, find_tracking_faults
+    from tracker import TrackOptions, find_detector_faults, find_tracking_faults
 
     row = get_sequence(session, sequence_id)
-    options = TrackOptions.from_json({name: value for name, value in params.items() if name != HAND_MODEL})
+    options = TrackOptions.from_json({name: value for name, value in params.items() if name not in STUDIO_PARAMS})
     with_depth = [camera["id"] for camera in row.cameras if camera["has_depth"]]
-    if faults := find_tracking_faults(row.frame_count, row.hands, with_depth, options):
+    faults = find_tracking_faults(row.frame_count, row.hands, with_depth, options)
+    detector = _find_detector(session, params.get(DETECTOR))
+    if detector is not None and not faults:
+        tracked = options.camera or with_depth[0]
+        has_color = any(camera["has_color"] for camera in row.cameras if camera["id"] == tracked)
+        faults = find_detector_faults(detector.looks_at, has_color, options)
+    if faults:
         raise CannotStartError(" ".join(faults), obstacles=faults)
-    return options.to_json() | _check_hand_model(session, params.get(HAND_MODEL))
+    own = {} if detector is None else {DETECTOR: str(detector.id)}
+    return options.to_json() | _check_hand_model(session, params.get(HAND_MODEL)) | own
 
 
 def check_detection(session: Session, sequence_id: UUID) -> SequenceRow:
@@ -158,13 +169,22 @@ def _check_hand_model(session: Session, value: Any) -> dict[str, str]:
         return {}
     if value == TRAINED_HAND:
         return {HAND_MODEL: TRAINED_HAND}
-    try:
-        model_id = UUID(str(value))
-    except ValueError:
-        raise InvalidError(
-            f"{HAND_MODEL} is {str(value)[:80]!r}; needed a hand model's id, 'trained', or nothing."
-        ) from None
+    model_id = _read_id(HAND_MODEL, value, "a hand model's id, 'trained', or nothing")
     return {HAND_MODEL: str(get_hand_model(session, model_id).id)}
+
+
+def _find_detector(session: Session, value: Any) -> DetectorRow | None:
+    """A stored fingertip detector by its id as a param; None for the one that comes along."""
+    if value in ("", None):
+        return None
+    return get_detector(session, _read_id(DETECTOR, value, "a fingertip detector's id, or nothing"))
+
+
+def _read_id(name: str, value: Any, needed: str) -> UUID:
+    try:
+        return UUID(str(value))
+    except ValueError:
+        raise InvalidError(f"{name} is {str(value)[:80]!r}; needed {needed}.") from None
 
 
 def cancel_job(session: Session, job_id: UUID) -> JobRow:

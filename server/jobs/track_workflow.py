@@ -12,12 +12,13 @@ from dbos import DBOS
 from sqlalchemy import select
 
 from server.annotations.service import export_annotations
+from server.detectors import service as detectors
 from server.hand_models.service import get_hand_model
 from server.hand_models.storing import find_file
 from server.jobs.files import JobFiles
 from server.jobs.models import JobRow
 from server.jobs.run import JobRun, WorkerContext
-from server.jobs.service import HAND_MODEL, TRAINED_HAND
+from server.jobs.service import DETECTOR, HAND_MODEL, TRAINED_HAND
 from server.jobs.tracking import TrackingJob
 from server.sequences.service import get_sequence
 from server.tracks.service import add_track
@@ -79,7 +80,8 @@ class _TrackRun(JobRun):
         recording = self.context.storage.refresh("sequences", self._sequence_id)
         with self.context.database.reading() as session:
             content_key = get_sequence(session, self._sequence_id, deleted_too=True).content_key
-        return TrackingJob(recording, self.row.params, self.files, content_key, self._find_hand_model())
+        files = (self._find_hand_model(), self._find_detector())
+        return TrackingJob(recording, self.row.params, self.files, content_key, *files)
 
     def list_others(self) -> list[tuple[str, JobFiles]]:
         """Jobs of the recording that ended without success, the newest first: their files are kept."""
@@ -106,6 +108,14 @@ class _TrackRun(JobRun):
             return None
         with self.context.database.reading() as session:
             return find_file(self.context.storage, get_hand_model(session, UUID(model_id), deleted_too=True))
+
+    def _find_detector(self) -> tuple[str, Path] | None:
+        detector_id = self.row.params.get(DETECTOR)
+        if not detector_id:
+            return None
+        with self.context.database.reading() as session:
+            row = detectors.get_detector(session, UUID(detector_id), deleted_too=True)
+            return row.name, detectors.find_file(self.context.storage, row)
 
     def snapshot(self) -> dict[str, Any]:
         """Keep the annotations as they are now: doing a step again must not see later ones."""

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from server.errors import StudioError
 from server.jobs.files import JobFiles
 from server.jobs.progress import TRACKING_ENDS, JobProgress
-from server.jobs.service import HAND_MODEL, TRAINED_HAND
+from server.jobs.service import HAND_MODEL, STUDIO_PARAMS, TRAINED_HAND
 
 if TYPE_CHECKING:
     from tracker import ArticulatedModel, TrackOptions
@@ -43,12 +43,14 @@ class TrackingJob:
     """Of the recording: changes with any byte of it."""
     hand_model: Path | None = None
     """File of the hand model to track with; None for a hand that comes with Handloom."""
+    detector: tuple[str, Path] | None = None
+    """Name and file of the lab's own fingertip detector; None for the one that comes with Handloom."""
 
     @property
     def options(self) -> TrackOptions:
         from tracker import TrackOptions
 
-        return TrackOptions.from_json({name: value for name, value in self.params.items() if name != HAND_MODEL})
+        return TrackOptions.from_json({name: value for name, value in self.params.items() if name not in STUDIO_PARAMS})
 
     def load_recording(self) -> Recording:
         from tracker import load_sequence
@@ -74,7 +76,7 @@ class TrackingJob:
             progress: Is told.
             others: Jobs that may have done just this before: what each is called, and its files.
         """
-        from tracker import load_annotations, plan_start, start_tracking
+        from tracker import load_annotations, load_detector, plan_start, start_tracking
 
         manifest = self.files.read_manifest("start")
         if manifest is not None:
@@ -94,6 +96,7 @@ class TrackingJob:
             self.load_hands(),
             annotations,
             lambda stage, share: progress.part((0.0, begins), stage, share),
+            None if self.detector is None else load_detector(self.detector[1], self.detector[0]),
         )
         self.files.write(self.files.setup, setup.save)
         self.files.write(self.files.state(0), state.save)

@@ -50,8 +50,10 @@ def _check_empty(label: Label, looked: Looked) -> Iterator[Finding]:
             others = (
                 f"; so {'is' if more == 1 else 'are'} {more} other {'joint' if more == 1 else 'joints'}" if more else ""
             )
-            reason = f"The {joint_name(worst)} is {distance[worst]:.0f} px or more from {of_what}{others}."
-            yield Finding(label, "background", float(distance[worst] / limit), tuple(map(int, joints)), reason)
+            reason = f"The {joint_name(worst)} is {distance[worst]:.0f} px from {of_what}{others}."
+            yield Finding(
+                label, "background", min(10.0, float(distance[worst] / limit)), tuple(map(int, joints)), reason
+            )
 
 
 def _check_behind(label: Label, K: Array, looked: Looked) -> Iterator[Finding]:

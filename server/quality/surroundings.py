@@ -16,8 +16,8 @@ Mask = npt.NDArray[np.bool_]
 
 WINDOW = 3
 """Depth is looked at this far around a joint, px: a label may lie beside the silhouette by as much."""
-FAR = 40
-"""Something to be seen is looked for this far around a joint, px."""
+NEAR = 40
+"""Something to be seen is looked for this far around a joint first, px, then in the whole image."""
 BLACK = 12
 """Largest value of a channel that counts as black: a background that was cut out, and what JPEG makes of it."""
 MASKED_SHARE = 0.3
@@ -31,9 +31,9 @@ class Surroundings:
     Attributes:
         depths: (21, K) sorted depths within WINDOW of each joint, m; NaN where there are none, or where it is not
             visible.
-        to_depth: (21,) px to the nearest pixel that has depth, at most FAR; NaN where it is not known.
-        to_content: (21,) px to the nearest pixel that shows anything, in an image whose background was cut out, at
-            most FAR; NaN where it is not known.
+        to_depth: (21,) px to the nearest pixel that has depth; NaN where it is not known.
+        to_content: (21,) px to the nearest pixel that shows anything, in an image whose background was cut out; NaN
+            where it is not known.
     """
 
     depths: Array
@@ -102,11 +102,16 @@ def _cut(image: npt.NDArray, at: Array, reach: int) -> npt.NDArray:
 
 
 def _measure(mask: Mask, at: Array) -> float:
-    """px from a position to the nearest pixel of a mask, at most FAR; NaN outside the image."""
+    """px from a position to the nearest pixel of a mask, at most the image's diagonal; NaN outside the image."""
     height, width = mask.shape
     if not (-0.5 <= at[0] < width - 0.5 and -0.5 <= at[1] < height - 0.5):
         return np.nan
-    rows, columns = np.nonzero(_cut(mask, at, FAR))
-    corner = max(0, round(at[1]) - FAR), max(0, round(at[0]) - FAR)
-    distances = np.hypot(rows + corner[0] - at[1], columns + corner[1] - at[0])
-    return min(float(FAR), float(distances.min(initial=FAR)))
+    diagonal = float(np.hypot(height, width))
+    for reach in (NEAR, max(height, width)):
+        rows, columns = np.nonzero(_cut(mask, at, reach))
+        corner = max(0, round(at[1]) - reach), max(0, round(at[0]) - reach)
+        distances = np.hypot(rows + corner[0] - at[1], columns + corner[1] - at[0])
+        nearest = float(distances.min(initial=diagonal))
+        if nearest <= reach:
+            return nearest
+    return diagonal

@@ -37,6 +37,7 @@ from server.scans.schemas import (
 from server.scans.units import find_revision_unit
 from server.storage import StorageDep
 from server.storage.upload import Upload, UploadLimits, work_on_upload
+from server.storage.upload_body import describe_upload_body
 from tracker import ArchiveLimits, extract_archive
 
 router = APIRouter(prefix="/scans", tags=["scans"], responses=error_responses())
@@ -49,31 +50,14 @@ GEOMETRY: dict[int | str, dict[str, Any]] = {
         "description": "Arrays, as `docs/curation.md` describes them.",
     }
 }
-_BODY: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["files"],
-                    "properties": {
-                        "files": {
-                            "type": "array",
-                            "items": {"type": "string", "format": "binary"},
-                            "description": "PLY, OBJ or STL files, perhaps with a `scans.json`; or one .zip of them.",
-                        },
-                        "options": {
-                            "type": "string",
-                            "description": "JSON: `collection`, and for scans that no `scans.json` names `subject`, "
-                            "`pose`, `side`, `metres_per_unit`; `units`, metres per unit by the path of a file.",
-                        },
-                    },
-                }
-            }
-        },
-    }
-}
+_BODY = describe_upload_body(
+    "PLY, OBJ or STL files, perhaps with a `scans.json`; or one .zip of them.",
+    options={
+        "type": "string",
+        "description": "JSON: `collection`, and for scans that no `scans.json` names `subject`, "
+        "`pose`, `side`, `metres_per_unit`; `units`, metres per unit by the path of a file.",
+    },
+)
 
 
 async def get_shelf(connection: HTTPConnection) -> service.ScanShelf:

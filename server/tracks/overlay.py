@@ -7,7 +7,7 @@ import threading
 import uuid
 from collections import OrderedDict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import cv2
 import numpy as np
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 OPEN_TRACKS = 4
 """Tracks whose arrays stay in memory."""
 
+Kind = Literal["mesh", "unknown"]
+
 STYLE = 1
 """Part of the file names; raise it when overlays are drawn differently."""
 
@@ -31,19 +33,21 @@ class Overlays:
         self._open: OrderedDict[Path, tuple[Sequence, Track, dict[int, int]]] = OrderedDict()
         self._lock = threading.Lock()
 
-    def find(self, track_folder: Path, recording: Path, frame: int, camera: str) -> Path:
-        """The PNG of one frame, (H, W) RGBA, drawn now if need be."""
+    def find(self, track_folder: Path, recording: Path, frame: int, camera: str, kind: Kind = "mesh") -> Path:
+        """The PNG of one frame, (H, W) RGBA, drawn now if need be: of the meshes, or what is unknown."""
         sequence, track, rows = self._load(track_folder, recording)
         cameras = [c.id for c in sequence.cameras]
         if camera not in cameras:
             raise NotFoundError(f"The recording has no camera {camera!r}; it has {', '.join(cameras)}.")
         if frame not in rows:
             raise NotFoundError(f"The track has no frame {frame}; it has {min(rows)} to {max(rows)}.")
-        path = track_folder / "overlays" / f"{STYLE}-{cameras.index(camera)}-{frame:06d}.png"
+        name = f"{STYLE}-{cameras.index(camera)}-{frame:06d}.png"
+        path = track_folder / "overlays" / (name if kind == "mesh" else f"{kind}-{name}")
         if not path.exists():
-            from tracker import render_overlay
+            from tracker import render_overlay, render_unknown
 
-            image = render_overlay(sequence, track.setup, track.pose[rows[frame]], frame, camera)
+            render = render_overlay if kind == "mesh" else render_unknown
+            image = render(sequence, track.setup, track.pose[rows[frame]], frame, camera)
             _write_png(path, image)
         return path
 

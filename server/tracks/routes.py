@@ -115,6 +115,23 @@ def get_track_overlay(
 
 
 @router.get(
+    "/tracks/{track_id}/cameras/{camera}/frames/{frame}/unknown.png",
+    response_class=FileResponse,
+    responses={200: {"content": {"image/png": {}}}} | error_responses(404),
+)
+def get_track_unknown(
+    track: SeenTrack, camera: str, frame: FramePath, storage: StorageDep, overlays: OverlaysDep
+) -> FileResponse:
+    """What the run left out near the hands as neither hand nor a model, in one colour on transparent ground.
+
+    Only the depth camera that was tracked in shows any.
+    """
+    folder = storage.folder("tracks", track.id)
+    path = overlays.find(folder, storage.folder("sequences", track.sequence_id), frame, camera, "unknown")
+    return FileResponse(path, media_type="image/png", headers={"Cache-Control": IMMUTABLE})
+
+
+@router.get(
     "/tracks/{track_id}/files/{name}",
     response_class=FileResponse,
     responses={200: {"content": {"application/octet-stream": {}}}} | error_responses(404),

@@ -22,6 +22,9 @@ DEEPEST_MM = 5.0
 ERROR_ANCHORS = np.array([(62, 118, 208), (98, 170, 200), (226, 205, 120), (232, 122, 74), (214, 48, 49)], dtype=float)
 """From none to much, as in web/src/model/errorColor.ts."""
 
+LIFT = 0.003
+"""m towards the camera; enough for the unknown not to flicker with the cloud that it is part of."""
+
 UNSEEN_COLOR = (120, 126, 134)
 """Skin that the camera cannot see."""
 
@@ -43,6 +46,11 @@ def draw_evidence(nodes: SceneNodes, view: FrameView, layers: Layers) -> None:
         _draw_collisions(nodes, view)
     if layers.contacts:
         _draw_contacts(nodes, view)
+    if layers.unknown and len(view.unknown.points):
+        color = _repeat(_unknown_color(), len(view.unknown.points))
+        away = view.T_world_camera[:3, 3] - view.unknown.points
+        lifted = view.unknown.points + LIFT * away / np.linalg.norm(away, axis=1, keepdims=True)
+        nodes.points("/unknown", lifted, color, size=0.0012)
     if layers.distances:
         for model, distances in zip(view.models, view.surface_fit, strict=True):
             colors = error_colors(1000.0 * distances / FULL_MM)
@@ -55,6 +63,7 @@ def describe_evidence(view: FrameView, layers: Layers) -> dict[str, Any]:
         "detections": _describe_detections(view) if layers.detections else None,
         "collisions": _describe_collisions(view) if layers.collisions else None,
         "contacts": _describe_contacts(view) if layers.contacts else None,
+        "unknown": _describe_unknown(view) if layers.unknown else None,
         "distances": _describe_distances(view) if layers.distances else None,
     }
 
@@ -112,9 +121,10 @@ def _repeat(color: tuple[int, int, int], count: int) -> npt.NDArray[np.uint8]:
 
 
 def _describe_detections(view: FrameView) -> dict[str, Any]:
-    names = view.aids.setup.names
+    names, own = view.aids.setup.names, view.aids.setup.own_detector
     return {
         "is_of_run": "S" in view.aids.setup.options.term_letters,
+        "own_detector": None if own is None else own.name,
         "items": [
             {
                 "hand": names[item.model] if item.model >= 0 else None,
@@ -166,6 +176,22 @@ def _describe_contacts(view: FrameView) -> dict[str, Any]:
             }
             for part in found.contacts
         ],
+    }
+
+
+def _unknown_color() -> tuple[int, int, int]:
+    from tracker import UNKNOWN_COLOR
+
+    return UNKNOWN_COLOR
+
+
+def _describe_unknown(view: FrameView) -> dict[str, Any]:
+    found = view.unknown
+    return {
+        "color": "#{:02x}{:02x}{:02x}".format(*_unknown_color()),
+        "pixels": len(found.points),
+        "before": found.before,
+        "by_color": found.by_color,
     }
 
 

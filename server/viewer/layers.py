@@ -64,6 +64,7 @@ class Layers:
     detections: bool = False
     collisions: bool = False
     contacts: bool = False
+    unknown: bool = False
     distances: bool = False
     hidden_terms: frozenset[str] = field(default_factory=frozenset)
     dark: bool = True
@@ -109,6 +110,7 @@ LAYER_NAMES = (
     "detections",
     "collisions",
     "contacts",
+    "unknown",
     "distances",
     "dark",
 )
@@ -121,6 +123,7 @@ VIEW_ATTRIBUTES = {
     "detections": "detections",
     "collisions": "collisions",
     "contacts": "contacts",
+    "unknown": "unknown",
     "distances": "surface_fit",
 }
 """Layer to what of a `FrameView` it shows."""

@@ -97,7 +97,7 @@ async def relay_viewer_socket(websocket: WebSocket, session_id: uuid.UUID, sessi
         session.pages -= 1
 
 
-ANSWERED = ("frame", "terms", "detections", "collisions", "contacts", "distances", "milliseconds")
+ANSWERED = ("frame", "terms", "detections", "collisions", "contacts", "unknown", "distances", "milliseconds")
 
 
 def _changes(show: Show | None) -> dict[str, Any]:

@@ -21,6 +21,7 @@ class Show(BaseModel):
     detections: StrictBool | None = Field(None, description="Fingertips found in the image.")
     collisions: StrictBool | None = Field(None, description="Crossing triangles and penetrating vertices.")
     contacts: StrictBool | None = Field(None, description="Finger parts that could hold the object.")
+    unknown: StrictBool | None = Field(None, description="What is neither hand nor a model, in a colour of its own.")
     distances: StrictBool | None = Field(None, description="The meshes in colours of their distance to the data.")
     dark: StrictBool | None = Field(None, description="Dark ground.")
 
@@ -62,6 +63,9 @@ class DetectionsView(BaseModel):
     """Fingertips found in the frame that is shown."""
 
     is_of_run: bool = Field(description="Whether the run used such detections itself.")
+    own_detector: str | None = Field(
+        description="Name of the lab's own detector that found them; null for the one that comes with Handloom."
+    )
     items: list[DetectionView]
 
 
@@ -106,6 +110,17 @@ class ContactsView(BaseModel):
     parts: list[ContactPart] = Field(description="Those within 10 mm that were considered, nearest first.")
 
 
+class UnknownView(BaseModel):
+    """What the run left out near the hands, as neither hand nor a model, in the frame that is shown."""
+
+    color: str = Field(description="As in CSS.")
+    pixels: int = Field(description="Of the depth image.")
+    before: int = Field(description="Those of them that hide the hand.")
+    by_color: bool = Field(
+        description="Whether colour told hand from other things; otherwise only what hides the hand is known."
+    )
+
+
 class ModelDistance(BaseModel):
     """How far a model's visible skin is from the data."""
 
@@ -135,5 +150,6 @@ class ViewerSessionOut(BaseModel):
     detections: DetectionsView | None = Field(description="Null while hidden.")
     collisions: CollisionsView | None = Field(description="Null while hidden.")
     contacts: ContactsView | None = Field(description="Null while hidden.")
+    unknown: UnknownView | None = Field(description="Null while hidden.")
     distances: DistancesView | None = Field(description="Null while hidden.")
     milliseconds: float = Field(description="That the scene took.")

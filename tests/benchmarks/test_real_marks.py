@@ -45,3 +45,8 @@ def test_both_passes_mark_the_same_frames_and_agree_in_most_joints(folder):
     apart = recording.measure_passes()
     assert np.median(apart) < 3.0  # px
     assert np.mean(apart <= recording.limit) > 0.85
+
+
+def test_frames_that_cut_the_hand_off_are_named_and_all_others_count():
+    assert MarkedRecording.load(FOLDER / "d405_take001_cam0").list_whole(126) == {*range(2, 10), *range(30, 121)}
+    assert MarkedRecording.load(FOLDER / "uvr_cube_white").list_whole(200) == set(range(200))

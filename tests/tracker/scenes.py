@@ -9,14 +9,14 @@ import numpy as np
 from tests.tracker.toys import tube
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
+from tracker.fitting.frame_fit import label_scene
+from tracker.fitting.region import region_around
 from tracker.geometry import se3
 from tracker.model.default_hand import default_hand
 from tracker.model.scene import PosedScene, Scene
 from tracker.observation import Observation, Preprocessing, observe
 from tracker.rendering import render_depth, render_view
 from tracker.terms.residual import FrameContext
-from tracker.tracking.frame_fit import label_scene
-from tracker.tracking.region import region_around
 
 K = np.array([[300.0, 0.0, 159.5], [0.0, 300.0, 119.5], [0.0, 0.0, 1.0]])
 

@@ -294,6 +294,15 @@ class HeldBack:
             self.held.pop(0).continue_()
 
 
+def wait_for_held(page: Any, held: list[Any], count: int) -> None:
+    """Word of a held request comes later than the page sent it."""
+    for _ in range(500):
+        if len(held) >= count:
+            return
+        page.wait_for_timeout(20)
+    raise AssertionError(f"{len(held)} of {count} requests were held")
+
+
 @dataclass(frozen=True)
 class Fingers:
     """Touches that Playwright has no words for; places are px of the window."""

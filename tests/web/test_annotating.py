@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import uuid
 
@@ -69,7 +70,14 @@ def test_a_colleagues_change_is_never_overwritten_silently(studio, recording, op
     assert stored["revision"] == second["revision"]
 
     card.get_by_role("button", name="By joint …").click()
-    card.get_by_role("radiogroup", name="wrist").get_by_text("theirs").click()
+    page.set_viewport_size({"width": 1280, "height": 340})
+    choice = card.get_by_role("radiogroup", name="wrist")
+    choice.scroll_into_view_if_needed()
+    box, timeline = choice.bounding_box(), page.get_by_role("button", name="Zoom the timeline in").bounding_box()
+    assert box["y"] + box["height"] <= timeline["y"], "cards too high for the picture scroll; they cover no timeline"
+    middle = [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2]
+    assert choice.evaluate("(choice, at) => choice.contains(document.elementFromPoint(...at))", middle)
+    choice.get_by_text("theirs").click()
     card.get_by_role("button", name="Keep this choice").click()
     expect(card).to_be_hidden()
     picture.wait_until_saved()
@@ -141,6 +149,28 @@ def test_gestures_and_keys_do_what_the_map_says(studio, recording, open_page, pi
     page.keyboard.press("Control+=")
     page.wait_for_timeout(100)
     assert picture.element.get_attribute("data-view") == fitted
+
+    # Fingertips of a fist lie close together: a click beside a joint is not taken for one that chooses it.
+    page.keyboard.press("f")
+    picture.wait()
+    assert 6 < 8 * json.loads(fitted)["scale"] < 10
+    picture.click(100, 100)
+    picture.click(108, 100)
+    assert points(frame=4)[:3] == [[100, 100, 2], [108, 100, 2], [0, 0, 0]]
+    next_click = page.get_by_test_id("next-click")
+    expect(next_click).to_have_text("Next click places the right thumb mcp")
+    page.mouse.move(*picture.at(109, 101))
+    expect(next_click).to_have_text("Next click chooses the right thumb cmc; with Shift it places the right thumb mcp")
+    page.keyboard.down("Shift")
+    picture.click(109, 101)
+    page.keyboard.up("Shift")
+    assert points(frame=4)[:4] == [[100, 100, 2], [108, 100, 2], [109, 101, 2], [0, 0, 0]]
+    picture.click(100, 100)
+    expect(page.get_by_role("button", name=re.compile("^wrist"))).to_have_attribute("aria-current", "step")
+    page.mouse.move(*picture.at(300, 100))
+    expect(next_click).to_have_text("Next click moves the right wrist here")
+    picture.drag((107, 99), (150, 150))
+    assert points(frame=4)[1] == [150, 150, 2], "a drag still takes hold from farther off"
 
 
 def test_a_joint_can_be_marked_without_a_mouse(studio, recording, open_page, picture_of):

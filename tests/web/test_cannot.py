@@ -39,8 +39,11 @@ def colour_only(studio: Any, synthesized: Any, tmp_path_factory: pytest.TempPath
 def expect_refused(dialog: Any, button: str, reason: str | re.Pattern[str]) -> None:
     from playwright.sync_api import expect
 
-    expect(dialog.get_by_role("status", name="Can this be started").get_by_text(reason)).to_be_visible()
+    told = dialog.get_by_role("status", name="Can this be started").get_by_text(reason)
+    expect(told).to_be_visible()
     expect(dialog.get_by_role("button", name=button, exact=True)).to_be_disabled()
+    for part in (told, dialog.get_by_role("button", name=button, exact=True)):
+        expect(part).to_be_in_viewport(ratio=0.95)  # however long the form is
 
 
 def take_both(open_page: Any, screenshots: Any, page: Any, name: str) -> None:
@@ -73,6 +76,7 @@ def test_a_recording_that_cannot_be_tracked_is_not_offered_to_be(
     page.goto("/jobs")
     page.get_by_role("button", name="Track several …").click()
     dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_text("Choose recordings above")).to_be_in_viewport(ratio=0.95)
     dialog.get_by_label("Filter recordings by name").fill("colour only")
     expect(dialog.get_by_text("None of its cameras has depth images", exact=False)).to_be_visible()
     expect(dialog.get_by_role("checkbox", name="Colour only")).to_be_disabled()

@@ -76,6 +76,13 @@ def test_two_tracks_are_chosen_compared_and_the_address_holds_it_all(studio, jud
     expect(differing.get_by_role("row").nth(1)).to_have_text(re.compile("Iterations.*5.*2"))
     page.wait_for_timeout(300)
     screenshots.take(page, "31-evaluations")
+    page.set_viewport_size({"width": 1200, "height": 720})
+    table = page.get_by_role("table", name="Error of each track")
+    assert table.evaluate("(table) => table.parentElement.scrollWidth - table.parentElement.clientWidth") == 0
+    assert table.get_by_role("columnheader").evaluate_all(
+        "(cells) => cells.filter((cell) => cell.offsetHeight > 48).length"
+    ) == 0
+    page.set_viewport_size({"width": 1280, "height": 720})
 
     second.get_by_role("radio").click()
     expect(second.get_by_role("radio")).to_be_checked()

@@ -61,6 +61,9 @@ def test_labels_are_kept_compared_restored_exported_and_imported(
     assert f"compare={made['id']}" in page.url
     screenshots.take(page, "labels-compare")
 
+    cut = page.get_by_role("link", name="coco_keypoints").locator(".mantine-Button-label")
+    room = cut.evaluate("(label) => label.clientHeight / parseFloat(getComputedStyle(label).fontSize)")
+    assert room > 1.3, "underscores and tails of letters are seen"
     with page.expect_download() as export:
         page.get_by_role("link", name="coco_keypoints").click()
     labels = Path(export.value.path()).read_text()

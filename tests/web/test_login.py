@@ -19,7 +19,16 @@ from typing import Any
 import httpx
 import pytest
 
-from tests.web.conftest import ROOT, Picture, Screenshots, Studio, Synthesized, _lacking, _wait_until_up
+from tests.web.conftest import (
+    ROOT,
+    Picture,
+    Screenshots,
+    Studio,
+    Synthesized,
+    _lacking,
+    _wait_until_up,
+    wait_for_held,
+)
 from tests.web.hands import fill_studio
 from tests.web.test_curation import wait_for_hand
 
@@ -311,15 +320,6 @@ def test_a_page_of_the_person_before_cannot_write_as_the_next(
     assert [item["author"] for item in lab.annotations() if item["frame"] == 5] == ["Anna"]
 
 
-def wait_for_held(page: Any, held: list[Any], count: int) -> None:
-    """Word of a held request comes later than the page sent it."""
-    for _ in range(500):
-        if len(held) >= count:
-            return
-        page.wait_for_timeout(20)
-    raise AssertionError(f"{len(held)} of {count} requests were held")
-
-
 def test_saved_is_said_when_nothing_waits_and_not_before(
     lab: Lab, open_lab: OpenLab, synthesized: Synthesized, screenshots: Screenshots
 ) -> None:
@@ -378,6 +378,51 @@ def test_saved_is_said_when_nothing_waits_and_not_before(
     assert [item["frame"] for item in lab.get(f"/sequences/{lab.recording_id}/key-frames")["items"]] == [8]
 
 
+def test_logging_out_says_what_waits_and_when_it_did_not_succeed(
+    lab: Lab, open_lab: OpenLab, synthesized: Synthesized, screenshots: Screenshots
+) -> None:
+    from playwright.sync_api import expect
+
+    page = open_lab()
+    picture = annotate(page, lab, 12)
+    log_in(page, "Anna")
+    picture.wait()
+
+    def leave() -> None:
+        page.get_by_role("button", name="Account of Anna").click()
+        page.get_by_role("menuitem", name="Log out").click()
+
+    # Without a network nobody is logged out, and the page stays.
+    page.context.set_offline(True)
+    leave()
+    expect(page.get_by_role("alert").filter(has_text="You are still logged in")).to_be_visible()
+    expect(picture.element).to_be_visible()
+    screenshots.take(page, "still-logged-in-dark-1280")
+    page.context.set_offline(False)
+
+    held: list[Any] = []
+    page.route("**/annotations/cam0/12/right*", lambda route: held.append(route))
+    picture.click(*synthesized.joints[0])
+    wait_for_held(page, held, 1)
+    leave()
+    dialog = page.get_by_role("dialog", name="Log out")
+    expect(dialog).to_contain_text("1 change of yours is not on the server yet.")
+    screenshots.take(page, "log-out-waits-dark-1280")
+    dialog.get_by_role("button", name="Stay").click()
+    expect(dialog).to_have_count(0)
+    leave()
+    dialog.get_by_role("button", name="Log out all the same").click()
+    log_in(page, "Anna")
+    page.unroute("**/annotations/cam0/12/right*")
+    page.goto(f"/recordings/{lab.recording_id}/annotate?frame=12")
+    picture.wait_until_saved()
+    assert lab_points(lab, 12) == 1
+
+    # With everything saved nothing is asked.
+    leave()
+    page.get_by_role("button", name="Log in").wait_for()
+
+
 def test_two_people_see_each_other_and_what_the_other_does_as_it_is_stored(
     lab: Lab, open_lab: OpenLab, synthesized: Synthesized, screenshots: Screenshots
 ) -> None:
@@ -415,6 +460,19 @@ def test_two_people_see_each_other_and_what_the_other_does_as_it_is_stored(
     expect(hers.get_by_label("Frame", exact=True)).to_have_value("10")
     screenshots.take(hers, "live-dark-1280")
     screenshots.take(his, "live-light-1920")
+
+    # The history that she has open follows too.
+    hers.get_by_role("tab", name="History").click()
+    versions = hers.get_by_role("list", name="Versions, newest first").get_by_role("listitem")
+    expect(versions).to_have_count(1)
+    ben.click(5, 5)
+    expect(versions).to_have_count(2)
+    wrong = hers.get_by_text("On the background")
+    expect(wrong).to_be_visible()
+    his.keyboard.press("Control+z")
+    expect(versions).to_have_count(3)
+    expect(wrong).to_have_count(0)
+    hers.get_by_role("tab", name="Joints").click()
 
     # She has something unsaved of that hand: hers stays, and she chooses.
     held: list[Any] = []

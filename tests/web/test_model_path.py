@@ -209,7 +209,7 @@ def test_scans_become_a_model_that_is_judged_and_registers_again(studio, scans, 
     study = report["study"]
     assert (study["people"], study["scans"], report["people"]) == ([f"S{TESTED_ON}"], 2, len(TRAINED_ON))
     kept = page.get_by_role("region", name="People kept for testing")
-    expect(kept.get_by_text(f"2 scans of S{TESTED_ON}")).to_be_visible()
+    expect(kept.get_by_text(f"2 scans of subject S{TESTED_ON}")).to_be_visible()
     for title, group, key in (
         ("Scan to mesh", "models", "scan_to_mesh_mm"),
         ("Vertices", "models", "vertices_mm"),

@@ -10,7 +10,7 @@ import zipfile
 
 import pytest
 
-from tests.web.conftest import Fingers
+from tests.web.conftest import Fingers, HeldBack, wait_for_held
 from tests.web.test_accessibility import PAGES
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(420)]
@@ -37,6 +37,14 @@ TOO_WIDE = """() =>
   [document.scrollingElement, document.querySelector("main")].some((element) => element.scrollWidth > innerWidth)"""
 
 
+# Choices whose words are cut off, as a long name beside them may do.
+CUT_CHOICES = """() => [...document.querySelectorAll("main .mantine-SegmentedControl-root")]
+  .filter((element) => element.scrollWidth > element.clientWidth + 1)
+  .map((element) => element.innerText)"""
+
+LONG_NAME = ("Opening hand, seen by one camera, " * 4)[:120].strip()
+"""As people name recordings when they say everything in the name."""
+
 NOTHING_LOADS = "() => !document.querySelector('main .mantine-Skeleton-root, main [aria-busy=true]')"
 
 
@@ -45,9 +53,7 @@ def track(studio, synthesized):
     """A tracked recording with an annotation, made through the API."""
     with synthesized.archive.open("rb") as file:
         made = studio.send("POST", "/imports", files={"files": ("opening-hand.zip", file)}).json()
-    recording = studio.send(
-        "POST", f"/imports/{made['id']}/confirm", json={"name": "Opening hand, seen by one camera"}
-    ).json()
+    recording = studio.send("POST", f"/imports/{made['id']}/confirm", json={"name": LONG_NAME}).json()
     points = [[x, y, 2] for x, y in synthesized.joints]
     studio.send(
         "PUT",
@@ -86,6 +92,7 @@ def test_every_page_fits_and_every_control_has_a_name(studio, track, open_page, 
         screenshots.take(page, f"{name}-{width}-{scheme}")
         assert not page.evaluate(TOO_WIDE), f"{name} scrolls sideways at {width} px"
         assert page.evaluate(NAMELESS) == [], f"{name} has controls without a name"
+        assert page.evaluate(CUT_CHOICES) == [], f"{name} has choices that are cut off"
 
 
 # What of the header is cut off, or not to be hit by a finger.
@@ -113,11 +120,15 @@ def test_every_page_fits_a_phone_and_a_narrow_window(studio, track, open_page, s
         "track": f"/tracks/{track['id']}?frame=3",
         "judged": f"/evaluations?recordings={recording}",
     }
-    wide, cut, small = [], {}, {}
+    wide, away, cut, small = [], [], {}, {}
     for name, address in addresses.items():
         page.goto(address)
         page.locator("main h1, main h2, [data-picture] canvas").first.wait_for()
         page.wait_for_function(NOTHING_LOADS)
+        if name == "job":
+            page.get_by_label("Log of the job").get_by_text("writing the track").wait_for()
+        if page.evaluate("Math.max(document.scrollingElement.scrollTop, document.querySelector('main').scrollTop)"):
+            away.append(name)
         screenshots.take(page, f"{name}-{width}")
         if page.evaluate(TOO_WIDE):
             wide.append(name)
@@ -126,6 +137,7 @@ def test_every_page_fits_a_phone_and_a_narrow_window(studio, track, open_page, s
         if is_phone and (found := page.evaluate(SMALL_TARGETS)):
             small[name] = found
     assert not wide, f"these scroll sideways at {width} px"
+    assert not away, "these open somewhere below their top"
     assert not cut, "parts of the header are cut off"
     assert not small, "a finger misses these"
     for room in ("Recordings", "Annotate", "Projects", "Tracks", "Scans", "Curate", "Models", "Evaluations", "Jobs"):
@@ -199,6 +211,38 @@ def test_a_job_tells_the_error_that_the_page_of_its_track_tells(studio, track, s
         assert f"{mean:.2f}" in shown, shown
 
 
+def test_what_is_still_loading_is_not_said_to_be_nothing(studio, track, open_page, screenshots):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    late = HeldBack(page, re.compile(r"/api/v1/(tracks\?|jobs\?|registrations/counts|tracks/[^/]+/evaluation)"))
+    page.goto(f"/recordings/{track['sequence_id']}")
+    expect(page.get_by_role("heading", name="Tracks")).to_be_visible()
+    wait_for_held(page, late.held, 2)
+    expect(page.get_by_text("Not tracked yet")).to_have_count(0)
+    screenshots.take(page, "loading-recording")
+    late.release()
+    expect(page.get_by_role("link", name=track["name"])).to_be_visible()
+
+    late.is_open = False
+    page.goto(f"/jobs/{track['job_id']}")
+    result = page.get_by_role("region", name="Result")
+    expect(result.get_by_text("Error, px")).to_be_visible()
+    wait_for_held(page, late.held, 1)
+    assert "–" not in result.inner_text(), result.inner_text()
+    screenshots.take(page, "loading-job")
+    late.release()
+    error = studio.get(f"/tracks/{track['id']}/evaluation")["joint_error_px"]["mean"]
+    expect(result.get_by_text(f"{error:.2f}", exact=True)).to_be_visible()
+
+    late.is_open = False
+    page.goto("/curate")
+    expect(page.get_by_role("combobox", name="Queue")).to_be_visible()
+    wait_for_held(page, late.held, 1)
+    expect(page.get_by_text("0 of 0 decided")).to_have_count(0)
+    late.release()
+
+
 def test_files_that_cannot_be_imported_get_a_report_that_says_what_to_do(studio, open_page, screenshots, tmp_path):
     from playwright.sync_api import expect
 
@@ -236,7 +280,12 @@ def test_what_is_gone_is_said_with_a_way_on(open_page, screenshots):
         page.goto(address)
         expect(page.get_by_role("alert")).to_contain_text("could not be")
         expect(page.get_by_role("button", name="Try again")).to_be_visible()
+        expect(page.get_by_role("alert").get_by_role("link", name=re.compile("^To the "))).to_be_visible()
     screenshots.take(page, "11-gone")
+    for cut_off in (f"/recordings/{nobody[:-3]}", "/jobs/abc", f"/models/{nobody[:8]}", f"/scans/{nobody}0"):
+        page.goto(cut_off)
+        expect(page.get_by_role("heading", name="There is no page at this address")).to_be_visible()
+        expect(page.get_by_text("The link may be cut off")).to_be_visible()
 
 
 def test_a_deleted_recording_comes_back(studio, recording, open_page):
@@ -251,6 +300,25 @@ def test_a_deleted_recording_comes_back(studio, recording, open_page):
     page.get_by_role("button", name="Undo").click()
     expect(page.get_by_role("main").locator(f'a[href="/recordings/{recording["id"]}"]')).to_be_visible()
     assert studio.get(f"/sequences/{recording['id']}")["name"] == recording["name"]
+
+
+def test_a_page_whose_thing_was_deleted_does_not_ask_for_it_again(studio, track, recording, open_page):
+    """It is left at once; asked again, what is gone would be answered by 404, with a notice or without."""
+    from playwright.sync_api import expect
+
+    page = open_page()
+    refused: list[str] = []
+    page.on("response", lambda answer: refused.append(answer.url) if answer.status == 404 else None)
+    for room, thing in (("tracks", track), ("recordings", recording)):
+        address = f"/{room}/{thing['id']}"
+        page.goto(address)
+        page.wait_for_load_state("networkidle")
+        page.get_by_role("button", name="More").click()
+        page.get_by_role("menuitem", name="Delete").click()
+        expect(page).to_have_url(re.compile(f"/{room}$"))
+        page.get_by_role("button", name="Undo").click()
+        expect(page.get_by_role("main").locator(f'a[href="{address}"]').first).to_be_visible()
+        assert refused == []
 
 
 def test_search_and_help_open_by_key_and_lead_somewhere(recording, open_page, screenshots):

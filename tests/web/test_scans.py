@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from tests.web.conftest import wait_for_held
 from tests.web.hands import write_scans
 from tracker import load_scan, measure_size, save_scan
 
@@ -85,8 +86,8 @@ def test_scans_dropped_on_the_page_are_added_and_each_that_cannot_be_used_says_w
     drop(page, archive.name, archive.read_bytes())
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Collection").fill("dropped")
-    add = dialog.get_by_role("button", name="Add 1 file")
-    dialog.get_by_text("Confirm the guessed size, or choose the unit.").wait_for()
+    add = dialog.get_by_role("button", name="Add 2 scans")
+    expect(dialog.get_by_text("Confirm the guessed size, or choose the unit.")).to_be_in_viewport(ratio=0.95)
     expect(add).to_be_disabled()
     screenshots.take(page, "scans-add")
     dialog.get_by_label("The sizes are right").check()
@@ -99,7 +100,7 @@ def test_scans_dropped_on_the_page_are_added_and_each_that_cannot_be_used_says_w
 
     drop(page, "broken.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nend_header\n")
     dialog.get_by_text("None of these files is a scan.").wait_for()
-    expect(add).to_be_disabled()
+    expect(dialog.get_by_role("button", name="Add 0 scans")).to_be_disabled()
     expect(dialog.get_by_role("alert")).to_contain_text("broken.ply")
     expect(dialog.get_by_role("alert")).to_contain_text("found an element 'vertex' without properties; needed a PLY")
     screenshots.take(page, "scans-refused")
@@ -124,7 +125,7 @@ def test_a_unit_is_said_beside_a_hand_before_anything_is_stored_and_corrected_af
     drop(page, "own_unit.ply", (tmp_path / "own_unit.ply").read_bytes())
     dialog = page.get_by_role("dialog")
     expect(dialog.get_by_text("Guess", exact=True)).to_be_visible()
-    add = dialog.get_by_role("button", name="Add 1 file")
+    add = dialog.get_by_role("button", name="Add 1 scan")
     expect(add).to_be_disabled()
     dialog.get_by_label("Collection").fill("units")
 
@@ -149,6 +150,8 @@ def test_a_unit_is_said_beside_a_hand_before_anything_is_stored_and_corrected_af
     page = open_scan(open_page, added)
     panel = page.get_by_role("region", name="Unit and size")
     panel.get_by_role("button", name="Correct the unit …").click()
+    unit = panel.get_by_role("combobox", name="Unit of the files")
+    assert unit.evaluate("(field) => field.clientWidth > 120"), "its words have room beside the two numbers"
     panel.get_by_label("1 unit is, in mm").fill("27")
     screenshots.take(page, "scan-unit")
     panel.get_by_role("button", name="Set the unit").click()
@@ -242,8 +245,7 @@ def test_a_stroke_that_is_taken_back_while_the_crop_is_on_its_way_is_the_next_th
     save_button = page.get_by_role("button", name="Save")
     page.keyboard.press("Control+s")
     save_button.locator(".mantine-Loader-root").wait_for()
-    while not held:  # the page has sent it; word of it may come later
-        page.wait_for_timeout(20)
+    wait_for_held(page, held, 1)
     if leaves:
         page.keyboard.press("ArrowLeft")
         page.get_by_role("heading", name=scans[1]["name"]).wait_for()

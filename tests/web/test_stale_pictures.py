@@ -223,6 +223,7 @@ def test_without_a_network_each_picture_is_asked_for_seldom_and_comes_by_itself_
     page.keyboard.press("v")
     page.keyboard.press("v")
     expect(note_of(page)).to_contain_text("The picture of frame 15 could not be loaded")
+    expect(note_of(page)).to_contain_text("The studio does not answer. Check this computer's network")
     expect(note_of(page)).to_contain_text("It is asked for again by itself")
     page.wait_for_timeout(4000)  # so many seconds without a network
     screenshots.take(page, "no-network")

@@ -70,6 +70,10 @@ def test_a_good_suggestion_is_a_hand_in_one_action(studio, tracked, truth, open_
     picture = open_annotator(page, tracked, picture_of)
     line = page.get_by_test_id("suggested-by")
     expect(line).to_contain_text("Suggested by Track 1")
+    page.keyboard.press("Shift+U")
+    expect(line).to_contain_text("Suggestions are hidden")
+    page.keyboard.press("Shift+U")
+    expect(line).to_contain_text("Suggested by Track 1")
     screenshots.take(page, "40-suggested")
     assert find_annotations(studio, tracked) == [], "a suggestion is no annotation"
 
@@ -101,7 +105,7 @@ def test_joints_are_accepted_singly_and_a_double_click_takes_the_hand(studio, tr
     expect(page.get_by_role("tab", name="right 2/21")).to_be_visible()
 
     page.keyboard.press("Shift+U")
-    expect(page.get_by_test_id("suggested-by")).to_contain_text("Nothing suggested")
+    expect(page.get_by_test_id("suggested-by")).to_contain_text("Suggestions are hidden")
     page.keyboard.press("Shift+A")
     expect(page.get_by_role("tab", name="right 2/21")).to_be_visible()
     page.keyboard.press("Shift+U")
@@ -205,3 +209,6 @@ def test_the_hand_detector_suggests_in_the_moment_and_for_the_whole_recording(
     page.get_by_label("Suggestions", exact=True).click()
     expect(page.get_by_text("The hand detector suggests nothing: Busy. Your joints are safe.")).to_be_visible()
     screenshots.take(page, "44-detector-fails")
+    page.unroute_all()
+    page.keyboard.press("Escape")
+    expect(line).to_contain_text("Suggested by Hand detector")  # asked again by itself

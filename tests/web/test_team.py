@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from server.accounts.secrets import hash_secret
-from tests.web.conftest import Fingers
+from tests.web.conftest import Fingers, wait_for_held
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
@@ -152,7 +152,8 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     work.keyboard.press("Control+Enter")
     expect(bar).to_contain_text("Submits as soon as everything is saved")
     screenshots.take(work, "team-submits-when-saved")
-    assert held and not asked, "the last joint is still on its way"
+    wait_for_held(work, held, 1)
+    assert not asked, "the last joint is still on its way"
     for route in held:
         route.continue_()
     work.unroute("**/annotations/cam0/1/right*")
@@ -162,6 +163,9 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     assert len(lead.send("GET", f"/sequences/{recording['id']}/annotations")["items"]) == 2
     points = lead.send("GET", f"/sequences/{recording['id']}/annotations/cam0/1/right")["points"]
     assert sum(v > 0 for _, _, v in points) == 1, "a click into locked work does nothing"
+    tools = work.get_by_role("toolbar", name="Tools")
+    for tool in ("Occluded, or visible again", "Clear the joint", "Clear the whole hand", "Swap left and right"):
+        expect(tools.get_by_role("button", name=tool)).to_be_disabled()
 
     page.goto("/projects")
     waiting = page.get_by_role("region", name="My work").get_by_test_id("work").filter(has_text="in review").last
@@ -177,18 +181,18 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     page.keyboard.press("Alt+c")
     expect(review.get_by_role("textbox", name="Comment on")).to_be_focused()
     page.keyboard.type("The wrist is lower.")
-    answers: list[Any] = []  # live news of the comment come before its answer
-    page.route("**/assignments/*/comments", lambda route: answers.append((route, route.fetch())))
+    sent: list[Any] = []
+    page.route("**/assignments/*/comments", lambda route: sent.append(route))
     page.keyboard.press("Enter")
+    wait_for_held(page, sent, 1)
+    [comment] = sent
+    answer = comment.fetch()  # live news of the comment come before its answer
     page.get_by_role("tab", name="Comments").click()
     expect(page.get_by_role("group", name="Comments")).to_contain_text("The wrist is lower.")
     page.get_by_label("Colour of frame 1").focus()
     page.keyboard.press("Alt+r")
     reason = review.get_by_role("textbox", name="What is to be changed")
     expect(reason).to_be_focused()
-    while not answers:
-        page.wait_for_timeout(20)
-    [(comment, answer)] = answers
     with page.expect_response("**/assignments/*/comments"):
         comment.fulfill(response=answer)
     page.wait_for_timeout(200)
@@ -212,6 +216,15 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     expect(work.get_by_label("Frame", exact=True)).to_have_value("1")
     said.get_by_role("button", name="Resolve").first.click()
     expect(said.get_by_text("resolved by")).to_be_visible()
+
+    work.keyboard.press("Alt+c")
+    work.keyboard.type("Is it hidden?")
+    work.keyboard.press("Control+b")
+    work.keyboard.press("Control+Enter")  # sends what was written; it does not hand the work in
+    expect(said).to_contain_text("Is it hidden?")
+    expect(bar.get_by_role("textbox", name="Comment on")).to_have_count(0)
+    expect(work.get_by_label("Frame", exact=True)).to_have_value("1")
+    expect(bar).not_to_contain_text("undecided joints")
     bar.get_by_role("button", name="Submit").click()
     expect(bar).to_contain_text("undecided joints")
     bar.get_by_role("button", name="Submit").click()
@@ -241,7 +254,13 @@ def test_a_reviewer_looks_through_the_work_comments_and_accepts_by_touch(
     before = lead.send("GET", f"/sequences/{recording['id']}/annotations")["items"]
 
     page = open_as(lead, width=390, height=844, is_phone=True)
-    page.goto(f"/recordings/{recording['id']}/annotate?frame=0")
+    page.goto("/projects")
+    mine = page.get_by_role("region", name="My work").get_by_test_id("work").filter(has_text=ann.name)
+    for part in (mine.get_by_text(f"{recording['name']}, frames 0–1"), mine.get_by_role("link", name="Review it")):
+        box = part.bounding_box()
+        assert box["width"] > 200 and box["x"] >= 0 and box["x"] + box["width"] <= 390, "all of it is on the phone"
+    screenshots.take(page, "team-work-phone")
+    mine.get_by_role("link", name="Review it").tap()
     picture, fingers = picture_of(page), Fingers(page)
     picture.wait()
     frame = page.get_by_label("Frame", exact=True)

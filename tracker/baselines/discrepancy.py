@@ -6,12 +6,12 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from tracker.fitting.frame_fit import label_scene
 from tracker.geometry import se3
 from tracker.model.kinematics import move_bones_into, skin_into
 from tracker.model.scene import Scene
 from tracker.observation import Observation
 from tracker.rendering.zbuffer import project_into, rasterize_into
-from tracker.tracking.frame_fit import label_scene
 
 Array = npt.NDArray[np.float64]
 

@@ -13,14 +13,15 @@ from tracker.baselines.discrepancy import Discrepancy
 from tracker.baselines.swarm import Bounds, Found, search_with_swarm
 from tracker.baselines.swarm_options import SwarmOptions
 from tracker.capture.sequence import Sequence
+from tracker.fitting.frame_fit import draw
+from tracker.fitting.measure_quality import measure_quality
+from tracker.fitting.quality import Quality
+from tracker.fitting.region import region_around
+from tracker.fitting.setup import TrackSetup
 from tracker.model.scene import Scene
 from tracker.observation import Observation, observe
 from tracker.tracking.chunk import TrackChunk
-from tracker.tracking.frame_fit import draw
 from tracker.tracking.frame_result import FrameResult
-from tracker.tracking.quality import Quality, measure_quality
-from tracker.tracking.region import region_around
-from tracker.tracking.setup import TrackSetup
 
 Array = npt.NDArray[np.float64]
 

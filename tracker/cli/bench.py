@@ -11,7 +11,7 @@ from tracker.cli.bench_registration import add_registration
 from tracker.cli.command import add_json, run_guarded
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError
-from tracker.tracking.options import TrackOptions
+from tracker.fitting.options import TrackOptions
 
 if TYPE_CHECKING:
     from tracker.synthesis.performance import Performance

@@ -38,8 +38,8 @@ def calibrate(args: argparse.Namespace) -> dict[str, Any]:
 
     from tracker.capture.annotations import load_annotations
     from tracker.capture.sequence import load_sequence
+    from tracker.fitting.options import TrackOptions
     from tracker.model import save_model
-    from tracker.tracking.options import TrackOptions
     from tracker.tracking.start import start_tracking
 
     if args.out.suffix != ".npz":

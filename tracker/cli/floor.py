@@ -9,13 +9,13 @@ from typing import TypeVar
 import numpy as np
 
 from tracker.capture.sequence import Sequence
+from tracker.fitting.frame_fit import FitOptions, draw, label_scene
+from tracker.fitting.region import region_around
 from tracker.observation import observe
 from tracker.physics import find_support
+from tracker.search.tools import Tools, make_tools
 from tracker.solver.damped_step import compute_damped_step
 from tracker.terms.residual import FrameContext
-from tracker.tracking.frame_fit import FitOptions, draw, label_scene
-from tracker.tracking.region import region_around
-from tracker.tracking.tools import Tools, make_tools
 from tracker.tracking.track import Track
 
 REPEATS = 7

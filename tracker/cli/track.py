@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tracker.cli.command import add_json, choose_frames, parse_hand, parse_named_file, parse_range, run_guarded
 from tracker.cli.hands import load_hands, load_objects
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError, say_count
-from tracker.tracking.presets import PRESETS, find_preset
-
-if TYPE_CHECKING:
-    from tracker.capture.sequence import Sequence
-    from tracker.detection import Forest
-    from tracker.tracking.options import TrackOptions
+from tracker.fitting.presets import PRESETS, find_preset
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
@@ -71,8 +65,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "--detector",
         type=Path,
         metavar="FILE",
-        help="a fingertip detector that `handloom train-detector` wrote, for terms with S; otherwise the one that "
-        "comes along",
+        help="a fingertip detector that `handloom train-detector` wrote (.npz): it looks for fingertips in every "
+        "frame, for terms with S; otherwise the one that comes along looks where a frame goes badly",
     )
     parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
     parser.add_argument("--no-recovery", action="store_true", help="do not look for a lost hand")
@@ -92,8 +86,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 def track(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.capture.annotations import load_annotations
     from tracker.capture.sequence import load_sequence
+    from tracker.detection import load_detector
+    from tracker.fitting.options import TrackOptions
     from tracker.tracking.follow import track_frames
-    from tracker.tracking.options import TrackOptions
     from tracker.tracking.start import start_tracking
     from tracker.tracking.track import join_chunks
 
@@ -122,7 +117,7 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         annotations = load_annotations(path) if path is not None and path.exists() else None
     elif str(args.annotations) != "none":
         annotations = load_annotations(args.annotations)
-    fingertips = None if args.detector is None else _load_detector(args.detector, sequence, options)
+    detector = None if args.detector is None else load_detector(args.detector)
     if args.out.exists() and not args.out.is_dir():
         raise TrackerError(f"{args.out}: is a file; --out needs a folder.")
     line = ProgressLine(f"tracking {sequence.name}")
@@ -135,8 +130,8 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         },
         annotations,
         lambda stage, share: line.show(0.0, stage),
+        detector,
     )
-    setup = replace(setup, fingertips=fingertips)
     state, chunk = track_frames(
         sequence,
         setup,
@@ -147,20 +142,6 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
     track = join_chunks(sequence, setup, [chunk])
     track.save(args.out)
     return {"out": str(args.out), **json.loads((args.out / "summary.json").read_text())}
-
-
-def _load_detector(path: Path, sequence: Sequence, options: TrackOptions) -> Forest:
-    """The detector of a file, if the run can use it."""
-    from tracker.detection import load_forest
-    from tracker.tracking.setup import choose_camera
-
-    if "S" not in options.term_letters:
-        raise TrackerError(f"--detector {path}: the terms {options.terms} use no fingertips; ask for --terms LO+SC.")
-    forest = load_forest(path)
-    camera = sequence.camera(choose_camera(sequence, options))
-    if forest.kind == "color" and not camera.has_color:
-        raise TrackerError(f"--detector {path}: looks at colour, which the camera {camera.id} has not.")
-    return forest
 
 
 def show(result: dict[str, Any]) -> str:

@@ -91,15 +91,12 @@ def _cut_out(
     if region is None:
         return None
     observation = observe(frame, camera, region, Preprocessing(use_skin=use_skin))
-    rows = slice(region.row, region.row + region.height)
-    columns = slice(region.column, region.column + region.width)
-    color = None if frame.color is None else np.ascontiguousarray(frame.color[rows, columns])
     tips = np.concatenate([item.points[list(TIPS)] for item in hands])
     tips = tips[tips[:, 2] != ABSENT]
     return AnnotatedImage(
         name,
         region,
-        PatchImage.of(observation, color),
+        PatchImage.of(observation),
         tips[:, :2] - np.array([region.column, region.row]),
         tips[:, 2] == VISIBLE,
     )

@@ -81,17 +81,15 @@ def find_fingertips(
     forest: Forest,
     observation: Observation,
     options: DetectOptions = DEFAULT_OPTIONS,
-    color: npt.NDArray[np.uint8] | None = None,
 ) -> tuple[Detection, ...]:
     """Fingertips among the pixels of an observation that may be hand, most confident first.
 
     Args:
         forest: A trained detector.
-        observation: A region of one depth image.
+        observation: A region of one depth image; with its colour for a forest that looks at colour.
         options: How to look.
-        color: (H, W, 3) uint8 RGB of the region, sampled as the observation is; for a forest that looks at colour.
     """
-    peaks = find_in_image(forest, PatchImage.of(observation, color), options)
+    peaks = find_in_image(forest, PatchImage.of(observation), options)
     region, K = observation.region, observation.K
     stride = max(1, round(region.width / observation.depth.shape[1]))
     first = np.array([region.column, region.row], dtype=np.float64)

@@ -17,6 +17,10 @@ from tracker.model.npz_arrays import NpzFields, read_npz_arrays
 
 FORMAT = "handloom fingertip detector 1"
 MAX_TREES = 1000
+MAX_FILE_BYTES = 32 * 2**20
+"""Ten times what the paper's options make."""
+
+NEEDED = "a fingertip detector as `handloom train-detector` writes it (.npz)"
 
 
 def save_forest(forest: Forest, path: Path) -> None:
@@ -36,7 +40,7 @@ def save_forest(forest: Forest, path: Path) -> None:
     write_atomically(Path(path), data.getvalue())
 
 
-@reads(ModelFileError, "a detector as Handloom writes it")
+@reads(ModelFileError, NEEDED)
 def load_forest(path: Path) -> Forest:
     """A detector from a file.
 
@@ -44,9 +48,12 @@ def load_forest(path: Path) -> Forest:
         ModelFileError: It is no detector, or a damaged one.
     """
     path = Path(path)
+    _check_kind(path)
     fields = NpzFields(path, read_npz_arrays(path))
+    if "format" not in fields:
+        raise ModelFileError(path, "an archive of something else", NEEDED)
     if fields.texts("format", 1) != (FORMAT,):
-        raise ModelFileError(path, f"the format {fields.texts('format', 1)[0][:60]!r}", repr(FORMAT))
+        raise ModelFileError(path, f"the format {fields.texts('format', 1)[0][:60]!r}", NEEDED)
     kind = fields.texts("kind", 1)[0]
     if kind not in ("depth", "color"):
         raise ModelFileError(path, f"the kind {kind[:60]!r}", "'depth' or 'color'")
@@ -76,6 +83,23 @@ def load_forest(path: Path) -> Forest:
         probability.astype(np.float32),
         votes.astype(np.float32),
     )
+
+
+def _check_kind(path: Path) -> None:
+    """Refuse by its first bytes and its size what no parser need look at."""
+    if not path.is_file():
+        path.open("rb").close()  # says why
+        raise ModelFileError(path, "no regular file", NEEDED)
+    with path.open("rb") as file:
+        is_archive = file.read(4) == b"PK\x03\x04"
+    size = path.stat().st_size
+    if path.suffix.lower() == ".onnx":
+        needed = f"{NEEDED}; neural networks are not read"
+        raise ModelFileError(path, "an ONNX file by its name", needed)
+    if not is_archive:
+        raise ModelFileError(path, f"{size} bytes that are no .npz archive" if size else "an empty file", NEEDED)
+    if size > MAX_FILE_BYTES:
+        raise ModelFileError(path, f"a file of {size} bytes", f"{NEEDED}, at most {MAX_FILE_BYTES} bytes")
 
 
 def _starts(fields: NpzFields, name: str, total: int) -> npt.NDArray[np.int64]:

@@ -46,9 +46,7 @@ def _expect(hand: DetectedHand, seen: Array, focal: float) -> Array:
     """(21,) m, depth of the hand's surface at each joint, from its shape and from what most joints' pixels show."""
     if np.isnan(seen).all():
         return seen
-    pixels, metres = hand.points - hand.points.mean(axis=0), hand.points_3d[:, :2] - hand.points_3d[:, :2].mean(axis=0)
-    scale = float(np.sum(pixels * metres) / max(np.sum(metres**2), 1e-12))  # px a metre of the networks' own hand
-    deeper = scale * float(np.nanmedian(seen)) / focal * hand.points_3d[:, 2]
+    deeper = hand.pixels_per_metre * float(np.nanmedian(seen)) / focal * hand.points_3d[:, 2]
     return np.nanmedian(seen - deeper) + deeper
 
 

@@ -108,7 +108,7 @@ def _build_level(
         grey = np.pad(grey, PAD, constant_values=NOTHING)
     else:
         assert image.color is not None, "a forest that looks at colour needs a colour image"
-        intensity = cv2.cvtColor(image.color, cv2.COLOR_RGB2GRAY).astype(np.uint8)
+        intensity = cv2.cvtColor(np.ascontiguousarray(image.color), cv2.COLOR_RGB2GRAY).astype(np.uint8)
         grey = np.pad(_resample_intensity(intensity, height, width, spacing), PAD, mode="edge")
     centers = np.argwhere(is_center).astype(np.int32)
     depths = depth_image[is_center]

@@ -31,11 +31,8 @@ class PatchImage:
         assert self.color is None or self.color.shape == (*self.depth.shape, 3)
 
     @classmethod
-    def of(cls, observation: Observation, color: npt.NDArray[np.uint8] | None = None) -> PatchImage:
-        """The hand's pixels of an observation; what colour tells to be something else is taken out of the depth.
-
-        Colour (H, W, 3) RGB must be sampled as the observation is.
-        """
+    def of(cls, observation: Observation) -> PatchImage:
+        """The hand's pixels of an observation; what colour tells to be something else is taken out of the depth."""
         mask = (observation.labels & HAND) > 0
         depth = np.where(mask, observation.depth, np.float32(0.0))
-        return cls(depth, mask, float(observation.K[0, 0]), color)
+        return cls(depth, mask, float(observation.K[0, 0]), observation.color)

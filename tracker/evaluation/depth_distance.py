@@ -9,10 +9,10 @@ import numpy.typing as npt
 
 from tracker.capture.sequence import Sequence
 from tracker.evaluation.surface_distance import compute_surface_distances
+from tracker.fitting.region import region_around
+from tracker.fitting.setup import TrackSetup
 from tracker.model.joints import HAND_JOINTS
 from tracker.observation import HAND, observe
-from tracker.tracking.region import region_around
-from tracker.tracking.setup import TrackSetup
 
 Array = npt.NDArray[np.float64]
 

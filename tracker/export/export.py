@@ -9,7 +9,7 @@ import numpy as np
 
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.sequence import Sequence
-from tracker.errors import TrackingError
+from tracker.errors import TrackingError, say_count
 from tracker.export.csv_files import write_csv
 from tracker.export.gltf_animation import write_glb
 from tracker.export.mano_parameters import find_mano_parameters
@@ -60,4 +60,6 @@ def _check(track: Track, sequence: Sequence) -> None:
         )
     bad = track.frame[~np.isfinite(track.pose).all(axis=1)]
     if len(bad):
-        raise TrackingError(f"The track has no pose in {len(bad)} frames, the first of them {bad[0]}; track it again.")
+        raise TrackingError(
+            f"The track has no pose in {say_count(len(bad), 'frame')}, first in frame {bad[0]}; track it again."
+        )

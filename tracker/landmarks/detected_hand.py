@@ -63,6 +63,13 @@ class DetectedHand:
         """What `to_row` gave."""
         return cls(row[:42].reshape(21, 2), row[42:105].reshape(21, 3), float(row[105]), float(row[106]))
 
+    @property
+    def pixels_per_metre(self) -> float:
+        """How large the networks' own hand, `points_3d`, is in the image."""
+        pixels = self.points - self.points.mean(axis=0)
+        metres = self.points_3d[:, :2] - self.points_3d[:, :2].mean(axis=0)
+        return float(np.sum(pixels * metres) / max(np.sum(metres**2), 1e-12))
+
     def is_same(self, other: DetectedHand) -> bool:
         """Whether two finds are of one hand: their joints are apart by little of its size."""
         apart = float(np.linalg.norm(self.points - other.points, axis=1).mean())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, cached_property
 from threading import Lock
@@ -51,6 +51,7 @@ class HandDetector:
         hands: int = 2,
         before: Sequence[DetectedHand] = (),
         turns: Sequence[int] = (0,),
+        accept: Callable[[DetectedHand], bool] | None = None,
     ) -> list[DetectedHand]:
         """The hands of an image.
 
@@ -62,21 +63,27 @@ class HandDetector:
             before: What was found in the image before.
             turns: By so many quarters, counterclockwise, the image is turned to look for palms, in this order until all
                 hands are found. The network knows hands that point up best; a turn costs as much as a look.
+            accept: Whether something found is a hand; what is not is not given back; a palm there may still tell one.
 
         Returns:
             Those that were followed first, in their order.
         """
         image = _brighten(as_color(image))
         found: list[DetectedHand] = []
+
+        def add(hand: DetectedHand | None, earlier: DetectedHand | None = None) -> None:
+            if hand is not None and (accept is None or accept(hand)):
+                self._add(found, hand, earlier)
+
         for hand in before:
-            self._add(found, self._look(image, hand.next_square), hand)
+            add(self._look(image, hand.next_square), hand)
         for turn in turns:
             if len(found) < hands:
                 with self._lock:
                     squares = find_palms(self._palms, image, turn)
                 for square in squares:
-                    if len(found) < hands:
-                        self._add(found, self._look_twice(image, square))
+                    if len(found) < hands and not any(square.is_near(hand.next_square) for hand in found):
+                        add(self._look_twice(image, square))
         return found
 
     def _add(self, found: list[DetectedHand], hand: DetectedHand | None, before: DetectedHand | None = None) -> None:

@@ -10,6 +10,9 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
+NEAR = 0.15
+"""Share of its size that the square of a hand and that of its palm may be apart."""
+
 
 @dataclass(frozen=True)
 class Square:
@@ -24,6 +27,10 @@ class Square:
     center: Array
     size: float
     angle: float = 0.0
+
+    def is_near(self, other: Square) -> bool:
+        """Whether two squares are around one hand: their centers are apart by little of their size."""
+        return float(np.linalg.norm(self.center - other.center)) < NEAR * min(self.size, other.size)
 
     @classmethod
     def around(cls, points: Array, angle: float, shift: float, scale: float) -> Square:

@@ -78,6 +78,7 @@ class Observation:
         nearest_pixel: (2, H, W, 2) int16 row and column of the nearest pixel that may be hand, and may be other; pixels
             in the depth shadow of a hand that have the colour of skin may be hand.
         edges: (2, H, W) uint8 1 at depth discontinuities of hand, and of other.
+        color: (H, W, 3) uint8 RGB, sampled as the rest is; None where the frame has none.
     """
 
     region: Region
@@ -89,6 +90,7 @@ class Observation:
     labels: npt.NDArray[np.uint8]
     nearest_pixel: npt.NDArray[np.int16]
     edges: npt.NDArray[np.uint8]
+    color: npt.NDArray[np.uint8] | None = None
 
     def thin(self, stride: int) -> Observation:
         """Every `stride`-th pixel, for scoring poses; nearest pixels are left out."""
@@ -106,6 +108,7 @@ class Observation:
             labels=labels,
             nearest_pixel=nowhere,
             edges=np.zeros((2, *labels.shape), dtype=np.uint8),
+            color=None if self.color is None else self.color[every],
         )
 
     @property
@@ -139,8 +142,8 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, st
     K[0, 2] -= region.column
     K[1, 2] -= region.row
     K[:2] /= stride
-    color = None if frame.color is None or not how.use_skin else frame.color[rows, columns]
-    labels, is_skin = _label(inside, color, how.skin_threshold)
+    color = None if frame.color is None else frame.color[rows, columns]
+    labels, is_skin = _label(inside, color if how.use_skin else None, how.skin_threshold)
     if frame.is_hand is not None and how.use_skin:
         labels = np.where(inside, np.where(frame.is_hand[rows, columns], np.uint8(HAND), np.uint8(OTHER)), np.uint8(0))
     points = np.zeros((*depth.shape, 3), dtype=np.float32)
@@ -160,6 +163,7 @@ def observe(frame: Frame, camera: Camera, region: Region, how: Preprocessing, st
         labels,
         np.stack([pixels for pixels, _ in nearest]),
         np.stack([edges for _, edges in nearest]),
+        color,
     )
 
 

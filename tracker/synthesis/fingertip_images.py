@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -47,5 +48,5 @@ def _cut_out(rendered: HandImage, number: int, hand_only: bool) -> AnnotatedImag
     observation = observe(frame, camera, region, Preprocessing())
     inside = (slice(top, top + region.height), slice(left, left + region.width))
     color = np.ascontiguousarray(rendered.color[inside])
-    image = PatchImage.of(observation, color)
+    image = PatchImage.of(replace(observation, color=color))
     return AnnotatedImage(f"render {number}", region, image, rendered.tips - np.array([left, top]), rendered.is_visible)

@@ -10,6 +10,7 @@ from numba import njit
 from tracker.model.scene import PosedScene
 from tracker.observation import HAND
 from tracker.observation.depth_edges import find_fall
+from tracker.terms.drawn_frame import Matches
 from tracker.terms.nearby_pixels import find_nearby_pixels
 from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
@@ -61,63 +62,29 @@ class DataToModel:
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToLine:
         """Match discontinuities of the drawn model to those of the image."""
-        view, observation = context.view, context.observation
-        room = max(1, int(np.count_nonzero(view.face >= 0)))
-        ids = np.empty((room, 3), dtype=np.int32)
-        barycentric = np.empty((room, 3))
-        directions = np.empty((room, 3))
-        moments = np.empty((room, 3))
-        count = _find_into(
-            ids,
-            barycentric,
-            directions,
-            moments,
-            posed.scene.arrays.faces,
-            context.face_labels,
-            _find_vertex_pixels(view.projected, view.inverse_depth) if self.at_vertices else NOWHERE,
-            view.projected,
-            view.inverse_depth,
-            view.face,
-            observation.depth,
-            observation.labels,
-            observation.edges,
-            view.K,
-            observation.T_world_camera,
-            self.stride,
-            self.jump,
-            find_nearby_pixels(self.max_pixels),
-            self.max_distance,
-            np.cos(np.deg2rad(self.max_angle)),
-        )
-        weights = np.full(count, self.weight)
-        return PointToLine(ids[:count], barycentric[:count], directions[:count], moments[:count], weights)
+        view = context.view
+        matches = Matches.room(max(1, int(np.count_nonzero(view.face >= 0))))
+        vertex_at = _find_vertex_pixels(view.projected, view.inverse_depth) if self.at_vertices else NOWHERE
+        nearby, cosine = find_nearby_pixels(self.max_pixels), np.cos(np.deg2rad(self.max_angle))
+        count = _find_into(matches, context.drawn, vertex_at, self.stride, self.jump, nearby, self.max_distance, cosine)
+        ids, barycentric, moments, directions = matches.first(count)
+        return PointToLine(ids, barycentric, directions, moments, np.full(count, self.weight))
 
 
 @njit(cache=True, nogil=True)
-def _find_into(
-    ids,
-    barycentric,
-    directions,
-    moments,
-    faces,
-    face_labels,
-    vertex_at,
-    projected,
-    inverse_depth,
-    face,
-    depth,
-    labels,
-    edges,
-    K,
-    T,
-    stride,
-    jump,
-    nearby,
-    max_distance,
-    min_cosine,
-):
+def _find_into(matches, drawn, vertex_at, stride, jump, nearby, max_distance, min_cosine):
+    ids, barycentric, moments, directions = matches
+    face, face_labels, inverse_depth, depth, labels, edges, T = (
+        drawn.face,
+        drawn.face_labels,
+        drawn.inverse_depth,
+        drawn.depth,
+        drawn.labels,
+        drawn.edges,
+        drawn.T,
+    )
     height, width = labels.shape
-    fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
+    fx, fy, cx, cy = drawn.K[0, 0], drawn.K[1, 1], drawn.K[0, 2], drawn.K[1, 2]
     count = 0
     for row in range(1, height - 1):
         for column in range(1, width - 1):
@@ -157,11 +124,11 @@ def _find_into(
             if ex * ex + ey * ey + (mean - z) ** 2 > max_distance * max_distance:
                 continue
             length = np.sqrt(rx * rx + ry * ry + 1.0)
-            corners = faces[f]
+            corners = drawn.faces[f]
             if len(vertex_at) > 0:
                 barycentric[count, 0], barycentric[count, 1], barycentric[count, 2] = 1.0, 0.0, 0.0
             else:
-                barycentric_into(barycentric[count], corners, projected, column, row)
+                barycentric_into(barycentric[count], corners, drawn.projected, column, row)
             d = directions[count]
             for i in range(3):
                 ids[count, i] = corners[i] if len(vertex_at) == 0 else vertex_at[row, column]

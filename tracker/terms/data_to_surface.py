@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
+from tracker.terms.drawn_frame import Matches
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -39,60 +40,26 @@ class DataToSurface:
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane:
         """Match data pixels to the drawn surface."""
-        view, observation = context.view, context.observation
-        height, width = observation.labels.shape
-        room = ((height + self.stride - 1) // self.stride) * ((width + self.stride - 1) // self.stride)
-        ids = np.empty((room, 3), dtype=np.int32)
-        barycentric = np.empty((room, 3))
-        targets = np.empty((room, 3))
-        normals = np.empty((room, 3))
-        count = _find_into(
-            ids,
-            barycentric,
-            targets,
-            normals,
-            self.stride,
-            posed.scene.arrays.faces,
-            context.face_labels,
-            view.face_normals,
-            view.projected,
-            view.inverse_depth,
-            view.face,
-            observation.points,
-            observation.normals,
-            observation.depth,
-            observation.labels,
-            view.K,
-            self.max_distance,
-            np.cos(np.deg2rad(self.max_angle)),
-        )
-        weights = np.full(count, self.weight)
-        return PointToPlane(ids[:count], barycentric[:count], targets[:count], normals[:count], weights)
+        height, width = context.observation.labels.shape
+        matches = Matches.room((height // self.stride + 1) * (width // self.stride + 1))
+        count = _find_into(matches, context.drawn, self.stride, self.max_distance, np.cos(np.deg2rad(self.max_angle)))
+        ids, barycentric, targets, normals = matches.first(count)
+        return PointToPlane(ids, barycentric, targets, normals, np.full(count, self.weight))
 
 
 @njit(cache=True, nogil=True)
-def _find_into(
-    ids,
-    barycentric,
-    targets,
-    target_normals,
-    stride,
-    faces,
-    face_labels,
-    face_normals,
-    projected,
-    inverse_depth,
-    face,
-    points,
-    normals,
-    depth,
-    labels,
-    K,
-    max_distance,
-    min_cosine,
-):
+def _find_into(matches, drawn, stride, max_distance, min_cosine):
+    ids, barycentric, targets, target_normals = matches
+    face, face_labels, face_normals, inverse_depth, labels, normals = (
+        drawn.face,
+        drawn.face_labels,
+        drawn.face_normals,
+        drawn.inverse_depth,
+        drawn.labels,
+        drawn.normals,
+    )
     height, width = labels.shape
-    fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
+    fx, fy, cx, cy = drawn.K[0, 0], drawn.K[1, 1], drawn.K[0, 2], drawn.K[1, 2]
     count = 0
     for row in range(stride // 2, height, stride):
         for column in range(stride // 2, width, stride):
@@ -102,7 +69,7 @@ def _find_into(
             nx, ny, nz = normals[row, column, 0], normals[row, column, 1], normals[row, column, 2]
             if nx == 0.0 and ny == 0.0 and nz == 0.0:
                 continue
-            z = depth[row, column]
+            z = drawn.depth[row, column]
             x, y = (column - cx) / fx * z, (row - cy) / fy * z
             pixel = z / fx
             best = max_distance * max_distance
@@ -127,11 +94,11 @@ def _find_into(
                         f = face[r, c]
                         if f < 0 or label & face_labels[f] == 0:
                             continue
-                        drawn = 1.0 / inverse_depth[r, c]
-                        dz = drawn - z
+                        at = 1.0 / inverse_depth[r, c]
+                        dz = at - z
                         if dz * dz >= best:
                             continue
-                        dx, dy = (c - cx) / fx * drawn - x, (r - cy) / fy * drawn - y
+                        dx, dy = (c - cx) / fx * at - x, (r - cy) / fy * at - y
                         distance = dx * dx + dy * dy + dz * dz
                         if distance < best:
                             n = face_normals[f]
@@ -141,11 +108,11 @@ def _find_into(
                 ring += 1
             if best_row >= 0:
                 matched = face[best_row, best_column]
-                corners = faces[matched]
-                barycentric_into(barycentric[count], corners, projected, best_column, best_row)
+                corners = drawn.faces[matched]
+                barycentric_into(barycentric[count], corners, drawn.projected, best_column, best_row)
                 for i in range(3):
                     ids[count, i] = corners[i]
-                    targets[count, i] = points[row, column, i]
+                    targets[count, i] = drawn.points[row, column, i]
                     target_normals[count, i] = face_normals[matched, i]
                 count += 1
     return count

@@ -47,27 +47,10 @@ class ModelToData:
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane | PointToPoint:
         """Match visible vertices to the cloud."""
-        view, observation = context.view, context.observation
-        vertices = len(posed.vertices)
-        ids = np.empty(vertices, dtype=np.int32)
-        targets = np.empty((vertices, 3))
-        count = _find_into(
-            ids,
-            targets,
-            self.stride,
-            posed.vertices,
-            posed.normals,
-            context.vertex_labels,
-            view.projected,
-            view.inverse_depth,
-            observation.points,
-            observation.normals,
-            observation.labels,
-            view.K[0, 0],
-            self.max_distance,
-            np.cos(np.deg2rad(self.max_angle)),
-            self.visible_within,
-        )
+        ids = np.empty(len(posed.vertices), dtype=np.int32)
+        targets = np.empty((len(posed.vertices), 3))
+        cosine = np.cos(np.deg2rad(self.max_angle))
+        count = _find_into(ids, targets, context.drawn, self.stride, self.max_distance, cosine, self.visible_within)
         ids, targets = ids[:count], targets[:count]
         corners = np.repeat(ids[:, None], 3, axis=1)
         barycentric = np.zeros((count, 3))
@@ -79,23 +62,15 @@ class ModelToData:
 
 
 @njit(cache=True, nogil=True)
-def _find_into(
-    ids,
-    targets,
-    stride,
-    vertices,
-    vertex_normals,
-    vertex_labels,
-    projected,
-    inverse_depth,
-    points,
-    normals,
-    labels,
-    focal,
-    max_distance,
-    min_cosine,
-    visible_within,
-):
+def _find_into(ids, targets, drawn, stride, max_distance, min_cosine, visible_within):
+    vertices, vertex_normals, projected, points, normals, labels = (
+        drawn.vertices,
+        drawn.vertex_normals,
+        drawn.projected,
+        drawn.points,
+        drawn.normals,
+        drawn.labels,
+    )
     height, width = labels.shape
     count = 0
     for v in range(0, len(vertices), stride):
@@ -105,15 +80,15 @@ def _find_into(
         column, row = int(np.rint(projected[v, 0])), int(np.rint(projected[v, 1]))
         if row < 0 or column < 0 or row >= height or column >= width:
             continue
-        drawn = inverse_depth[row, column]
-        if drawn > 0.0 and 1.0 / inverse > 1.0 / drawn + visible_within:
+        at = drawn.inverse_depth[row, column]
+        if at > 0.0 and 1.0 / inverse > 1.0 / at + visible_within:
             continue
         nx, ny, nz = vertex_normals[v, 0], vertex_normals[v, 1], vertex_normals[v, 2]
         if nx == 0.0 and ny == 0.0 and nz == 0.0:
             continue
         x, y, z = vertices[v, 0], vertices[v, 1], vertices[v, 2]
-        wanted = vertex_labels[v]
-        pixel = 1.0 / (inverse * focal)  # width of a pixel at the vertex's depth, m
+        wanted = drawn.vertex_labels[v]
+        pixel = 1.0 / (inverse * drawn.K[0, 0])  # width of a pixel at the vertex's depth, m
         best = max_distance * max_distance
         best_row, best_column = -1, -1
         ring = 0

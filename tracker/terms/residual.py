@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy.typing as npt
 from tracker.model.scene import PosedScene
 from tracker.observation import Observation
 from tracker.rendering import View
+from tracker.terms.drawn_frame import DrawnFrame
 from tracker.terms.normal_equations import NormalEquations
 
 Array = npt.NDArray[np.float64]
@@ -74,6 +76,31 @@ class FrameContext:
     observation: Observation
     vertex_labels: npt.NDArray[np.uint8]
     face_labels: npt.NDArray[np.uint8]
+
+    @cached_property
+    def drawn(self) -> DrawnFrame:
+        """The arrays of all this, for kernels."""
+        view, seen, posed = self.view, self.observation, self.view.posed
+        return DrawnFrame(
+            faces=posed.scene.arrays.faces,
+            face_labels=self.face_labels,
+            face_normals=view.face_normals,
+            vertices=posed.vertices,
+            vertex_normals=posed.normals,
+            vertex_labels=self.vertex_labels,
+            is_palm=posed.scene.is_palm,
+            projected=view.projected,
+            inverse_depth=view.inverse_depth,
+            face=view.face,
+            points=seen.points,
+            normals=seen.normals,
+            depth=seen.depth,
+            labels=seen.labels,
+            edges=seen.edges,
+            nearest=seen.nearest_pixel,
+            K=view.K,
+            T=seen.T_world_camera,
+        )
 
 
 class Term(Protocol):

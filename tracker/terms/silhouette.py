@@ -9,6 +9,7 @@ from numba import njit
 
 from tracker.model.scene import PosedScene
 from tracker.observation import HAND
+from tracker.terms.drawn_frame import Matches
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -40,71 +41,30 @@ class Silhouette:
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane:
         """Look for drawn pixels in free space."""
-        view, observation = context.view, context.observation
-        height, width = observation.labels.shape
-        room = ((height + self.stride - 1) // self.stride) * ((width + self.stride - 1) // self.stride)
-        ids = np.empty((room, 3), dtype=np.int32)
-        barycentric = np.empty((room, 3))
-        targets = np.empty((room, 3))
-        normals = np.empty((room, 3))
-        count = _find_into(
-            ids,
-            barycentric,
-            targets,
-            normals,
-            self.stride,
-            posed.scene.arrays.faces,
-            context.face_labels,
-            posed.vertices,
-            view.projected,
-            view.inverse_depth,
-            view.face,
-            observation.depth,
-            observation.labels,
-            observation.nearest_pixel,
-            view.K,
-            observation.T_world_camera,
-            self.hidden_within,
-            self.max_distance,
-        )
-        weights = np.full(count, self.weight)
-        return PointToPlane(ids[:count], barycentric[:count], targets[:count], normals[:count], weights)
+        height, width = context.observation.labels.shape
+        matches = Matches.room((height // self.stride + 1) * (width // self.stride + 1))
+        count = _find_into(matches, context.drawn, self.stride, self.hidden_within, self.max_distance)
+        ids, barycentric, targets, normals = matches.first(count)
+        return PointToPlane(ids, barycentric, targets, normals, np.full(count, self.weight))
 
 
 @njit(cache=True, nogil=True)
-def _find_into(
-    ids,
-    barycentric,
-    targets,
-    normals,
-    stride,
-    faces,
-    face_labels,
-    vertices,
-    projected,
-    inverse_depth,
-    face,
-    depth,
-    labels,
-    nearest,
-    K,
-    T,
-    hidden_within,
-    max_distance,
-):
+def _find_into(matches, drawn, stride, hidden_within, max_distance):
+    ids, barycentric, targets, normals = matches
+    face, face_labels, labels, depth, T = drawn.face, drawn.face_labels, drawn.labels, drawn.depth, drawn.T
     height, width = labels.shape
-    fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
+    fx, fy, cx, cy = drawn.K[0, 0], drawn.K[1, 1], drawn.K[0, 2], drawn.K[1, 2]
     count = 0
     for row in range(stride // 2, height, stride):
         for column in range(stride // 2, width, stride):
             f = face[row, column]
             if f < 0 or labels[row, column] & face_labels[f] != 0:
                 continue
-            z = 1.0 / inverse_depth[row, column]
+            z = 1.0 / drawn.inverse_depth[row, column]
             if labels[row, column] != 0 and depth[row, column] < z + hidden_within:
                 continue
             kind = 0 if face_labels[f] & HAND != 0 else 1
-            to_row, to_column = nearest[kind, row, column, 0], nearest[kind, row, column, 1]
+            to_row, to_column = drawn.nearest[kind, row, column, 0], drawn.nearest[kind, row, column, 1]
             if to_row < 0 or (to_row == row and to_column == column):
                 continue
             dx, dy = (to_column - column) / fx * z, (to_row - row) / fy * z
@@ -116,14 +76,14 @@ def _find_into(
             along = (dx * rx + dy * ry) / (rx * rx + ry * ry + 1.0)
             ux, uy, uz = dx - along * rx, dy - along * ry, -along
             scale = 1.0 / np.sqrt(ux * ux + uy * uy + uz * uz)
-            corners = faces[f]
-            barycentric_into(barycentric[count], corners, projected, column, row)
+            corners = drawn.faces[f]
+            barycentric_into(barycentric[count], corners, drawn.projected, column, row)
             for i in range(3):
                 ids[count, i] = corners[i]
                 normal = (T[i, 0] * ux + T[i, 1] * uy + T[i, 2] * uz) * scale
                 point = 0.0
                 for corner in range(3):
-                    point += barycentric[count, corner] * vertices[corners[corner], i]
+                    point += barycentric[count, corner] * drawn.vertices[corners[corner], i]
                 normals[count, i] = normal
                 targets[count, i] = point + pull * normal
             count += 1

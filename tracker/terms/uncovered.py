@@ -8,10 +8,14 @@ import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
+from tracker.terms.drawn_frame import Matches
 from tracker.terms.nearby_pixels import find_nearby_pixels
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
+
+BLOCK = 4
+"""Side of the blocks in which the search first asks whether anything is drawn near, px."""
 
 
 @dataclass(frozen=True)
@@ -50,83 +54,41 @@ class Uncovered:
 
     def find(self, posed: PosedScene, context: FrameContext) -> PointToPlane:
         """Look for data pixels that nothing covers."""
-        view, observation = context.view, context.observation
-        faces, labels = posed.scene.arrays.faces, observation.labels
-        is_palm = posed.scene.is_palm
-        room = (labels.shape[0] // self.stride + 1) * (labels.shape[1] // self.stride + 1)
-        ids = np.empty((room, 3), dtype=np.int32)
-        barycentric = np.empty((room, 3))
-        targets = np.empty((room, 3))
-        normals = np.empty((room, 3))
-        count = _find_into(
-            ids,
-            barycentric,
-            targets,
-            normals,
-            self.stride,
-            faces,
-            context.face_labels,
-            context.vertex_labels[: posed.scene.landmark_slices[0].start],
-            is_palm,
-            posed.vertices,
-            view.projected,
-            view.inverse_depth,
-            view.face,
-            observation.points,
-            observation.depth,
-            labels,
-            view.K,
-            observation.T_world_camera,
-            find_nearby_pixels(self.max_pixels),
-            self.within,
-            self.far_stride,
-            self.max_distance,
-        )
-        weights = np.full(count, self.weight)
-        return PointToPlane(ids[:count], barycentric[:count], targets[:count], normals[:count], weights)
+        height, width = context.observation.labels.shape
+        matches = Matches.room((height // self.stride + 1) * (width // self.stride + 1))
+        nearby = find_nearby_pixels(self.max_pixels)
+        count = _find_into(matches, context.drawn, self.stride, nearby, self.within, self.far_stride, self.max_distance)
+        ids, barycentric, targets, normals = matches.first(count)
+        return PointToPlane(ids, barycentric, targets, normals, np.full(count, self.weight))
 
 
 @njit(cache=True, nogil=True)
-def _find_into(
-    ids,
-    barycentric,
-    targets,
-    normals,
-    stride,
-    faces,
-    face_labels,
-    vertex_labels,
-    is_palm,
-    vertices,
-    projected,
-    inverse_depth,
-    face,
-    points,
-    depth,
-    labels,
-    K,
-    T,
-    nearby,
-    within,
-    far_stride,
-    max_distance,
-):
+def _find_into(matches, drawn, stride, nearby, within, far_stride, max_distance):
+    ids, barycentric, targets, normals = matches
+    face, face_labels, inverse_depth, labels, vertices, is_palm, T = (
+        drawn.face,
+        drawn.face_labels,
+        drawn.inverse_depth,
+        drawn.labels,
+        drawn.vertices,
+        drawn.is_palm,
+        drawn.T,
+    )
     height, width = labels.shape
-    fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
+    fx, fy, cx, cy = drawn.K[0, 0], drawn.K[1, 1], drawn.K[0, 2], drawn.K[1, 2]
     wanted = 0
     for f in range(len(face_labels)):
         wanted |= face_labels[f]
+    is_near_drawn = _find_blocks_near_drawn(face, np.abs(nearby).max())
     count = 0
     for row in range(stride // 2, height, stride):
         for column in range(stride // 2, width, stride):
             label = labels[row, column]
-            if label & wanted == 0 or _covers(
-                face, face_labels, inverse_depth, row, column, label, depth[row, column], within
-            ):
+            z = drawn.depth[row, column]
+            if label & wanted == 0 or _covers(face, face_labels, inverse_depth, row, column, label, z, within):
                 continue
-            z = depth[row, column]
             to_row, to_column = -1, -1
-            for step in range(1, len(nearby)):
+            for step in range(1, len(nearby) if is_near_drawn[row // BLOCK, column // BLOCK] else 1):
                 r, c = row + nearby[step, 0], column + nearby[step, 1]
                 if r < 0 or c < 0 or r >= height or c >= width:
                     continue
@@ -134,17 +96,17 @@ def _find_into(
                     to_row, to_column = r, c
                     break
             if to_row >= 0:
-                corners = faces[face[to_row, to_column]]
+                corners = drawn.faces[face[to_row, to_column]]
                 if is_palm[corners[0]] or is_palm[corners[1]] or is_palm[corners[2]]:
                     continue
                 # Across the viewing ray, so that depth stays as it is.
-                drawn = 1.0 / inverse_depth[to_row, to_column]
-                dx, dy = (column - to_column) / fx * drawn, (row - to_row) / fy * drawn
+                at = 1.0 / inverse_depth[to_row, to_column]
+                dx, dy = (column - to_column) / fx * at, (row - to_row) / fy * at
                 rx, ry = (to_column - cx) / fx, (to_row - cy) / fy
                 along = (dx * rx + dy * ry) / (rx * rx + ry * ry + 1.0)
                 ux, uy, uz = dx - along * rx, dy - along * ry, -along
                 length = np.sqrt(ux * ux + uy * uy + uz * uz)
-                barycentric_into(barycentric[count], corners, projected, to_column, to_row)
+                barycentric_into(barycentric[count], corners, drawn.projected, to_column, to_row)
                 for i in range(3):
                     ids[count, i] = corners[i]
                     normals[count, i] = (T[i, 0] * ux + T[i, 1] * uy + T[i, 2] * uz) / length
@@ -154,14 +116,13 @@ def _find_into(
                     targets[count, i] = point + length * normals[count, i]
                 count += 1
             elif row % far_stride == stride // 2 and column % far_stride == stride // 2:
-                point = points[row, column]
+                point = drawn.points[row, column]
                 nearest, distance = -1, max_distance * max_distance
-                for v in range(len(vertex_labels)):
-                    if vertex_labels[v] & label == 0:
-                        continue
-                    x, y, w = vertices[v, 0] - point[0], vertices[v, 1] - point[1], vertices[v, 2] - point[2]
+                px, py, pz = np.float64(point[0]), np.float64(point[1]), np.float64(point[2])
+                for v in range(len(is_palm)):
+                    x, y, w = vertices[v, 0] - px, vertices[v, 1] - py, vertices[v, 2] - pz
                     squared = x * x + y * y + w * w
-                    if squared < distance:
+                    if squared < distance and drawn.vertex_labels[v] & label != 0:
                         nearest, distance = v, squared
                 if nearest < 0 or is_palm[nearest] or distance == 0.0:
                     continue
@@ -173,6 +134,31 @@ def _find_into(
                     normals[count, i] = (point[i] - vertices[nearest, i]) / distance
                 count += 1
     return count
+
+
+@njit(cache=True, nogil=True)
+def _find_blocks_near_drawn(face, radius):
+    """Whether anything can be drawn within `radius` px of each block: most of a forearm has nothing to look for."""
+    rows, columns = (face.shape[0] - 1) // BLOCK + 1, (face.shape[1] - 1) // BLOCK + 1
+    reach = (radius - 1) // BLOCK + 1
+    near = np.zeros((rows, columns), dtype=np.uint8)
+    for row in range(rows):
+        for column in range(columns):
+            if _is_drawn(face, row * BLOCK, column * BLOCK):
+                for r in range(max(0, row - reach), min(rows, row + reach + 1)):
+                    for c in range(max(0, column - reach), min(columns, column + reach + 1)):
+                        near[r, c] = 1
+    return near
+
+
+@njit(cache=True, nogil=True)
+def _is_drawn(face, row, column):
+    """Whether anything is drawn in the block that begins there."""
+    for r in range(row, min(face.shape[0], row + BLOCK)):
+        for c in range(column, min(face.shape[1], column + BLOCK)):
+            if face[r, c] >= 0:
+                return True
+    return False
 
 
 @njit(cache=True, nogil=True)

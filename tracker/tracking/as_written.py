@@ -16,7 +16,13 @@ import numpy as np
 
 from tracker.capture.sequence import Sequence
 from tracker.detection import find_fingertips
+from tracker.fitting.attempt import MIN_PIXELS, attempt_fit
+from tracker.fitting.frame_fit import FitOptions
+from tracker.fitting.objective import Objective
+from tracker.fitting.region import region_around
+from tracker.fitting.setup import TrackSetup
 from tracker.observation import Observation, observe
+from tracker.search.tools import Tools
 from tracker.terms.collision import Collision
 from tracker.terms.data_to_model import DataToModel
 from tracker.terms.joint_prior import Bending
@@ -24,15 +30,9 @@ from tracker.terms.model_to_data import ModelToData
 from tracker.terms.physics import Supported
 from tracker.terms.residual import Term
 from tracker.terms.salient import Salient
-from tracker.tracking.attempt import MIN_PIXELS, attempt_fit
-from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.frame_result import FrameResult
-from tracker.tracking.objective import Objective
 from tracker.tracking.recovery import list_hands
-from tracker.tracking.region import region_around
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import Tools
 from tracker.tracking.watch_objects import watch_objects
 
 COLLISION_WEIGHT = 10.0

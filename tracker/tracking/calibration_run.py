@@ -1,4 +1,4 @@
-"""Calibrate the hands of a run: follow the scene for two seconds, fit the shapes to frames that differ, and again."""
+"""Calibrate the hands of a run: follow the scene for 60 frames, fit the shapes to good ones that differ, and again."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.sequence import Sequence
+from tracker.fitting.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
+from tracker.fitting.objective import Objective
+from tracker.fitting.region import region_around
+from tracker.fitting.setup import TrackSetup
+from tracker.fitting.sighting import find_sightings
 from tracker.observation import observe
+from tracker.search.seen_hands import FINGER_AGREES
+from tracker.search.tools import Tools
 from tracker.terms.marked_joints import mark_joints
-from tracker.tracking.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
 from tracker.tracking.follow import follow_frame
-from tracker.tracking.objective import Objective
-from tracker.tracking.region import region_around
-from tracker.tracking.setup import TrackSetup
-from tracker.tracking.sighting import find_sightings
+from tracker.tracking.frame_result import FrameResult
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import Tools
 
 log = logging.getLogger(__name__)
 
@@ -28,9 +30,6 @@ Progress = Callable[[str, float], None]
 
 WELL_EXPLAINED = 0.8
 """A frame says something about a hand's shape when this share of the hand's pixels is explained."""
-
-FALLEN = 0.9
-"""Following ends where the merit falls below this share of the first frame's."""
 
 WHOLE = 0.9
 """Share of a hand's own movement that is left out when poses are compared; what remains tells views apart."""
@@ -45,23 +44,19 @@ class Pass:
     """One time through the beginning of the recording.
 
     Attributes:
-        seconds: So much of it is followed.
-        frames: So many are fitted to.
+        followed: So many frames at most.
+        fitted: So many of these at most.
         options: How.
     """
 
-    seconds: float
-    frames: int
+    followed: int
+    fitted: int
     options: CalibrationOptions
-
-    def count_frames(self, there: int, fps: float) -> int:
-        """Of `there` frames, so many are followed."""
-        return max(1, min(there, round(self.seconds * fps)))
 
 
 PASSES = (
-    Pass(1.0, 8, CalibrationOptions(rounds=4, coarse_rounds=4)),
-    Pass(2.0, 16, CalibrationOptions()),
+    Pass(30, 8, CalibrationOptions(rounds=4, coarse_rounds=4)),
+    Pass(60, 16, CalibrationOptions()),
 )
 """The first makes the second follow better."""
 
@@ -88,17 +83,18 @@ def calibrate_hands(
         tell: Told the stage and its share done.
     """
     for number, each in enumerate(PASSES, 1):
-        last = each.count_frames(len(frames), sequence.fps)
         following, fitting = name_pass("following", number), name_pass("fitting the shape", number)
-        poses = _follow(sequence, setup, frames[:last], pose, lambda share, stage=following: tell(stage, share))
-        chosen = _choose(setup, poses, each.frames)
-        seen = [_look(sequence, setup, frames, place, poses[place]) for place in chosen]
+        first, poses = _follow(
+            sequence, setup, frames[: each.followed], pose, lambda share, stage=following: tell(stage, share)
+        )
+        chosen = _choose(setup, poses, each.fitted)
+        seen = [_look(sequence, setup, frames[place], poses[place], place == 0) for place in chosen]
         known = [frame for frame in seen if frame is not None]
-        if not known or seen[0] is None:
+        if not known:
             break
         found = calibrate_shapes(setup.scene, known, each.options, lambda share, stage=fitting: tell(stage, share))
         setup = replace(setup, models=found.models)
-        pose = found.poses[0]
+        pose = found.poses[0] if chosen[0] == 0 and seen[0] is not None else first
         for name, values in zip(setup.names, found.values, strict=True):
             largest = sorted(values.items(), key=lambda item: -abs(item[1]))[:12]
             if values:
@@ -108,28 +104,33 @@ def calibrate_hands(
 
 def _follow(
     sequence: Sequence, setup: TrackSetup, frames: range, pose: Array, tell: Callable[[float], None]
-) -> dict[int, Array]:
-    """Place in `frames` to the pose (D,) of those that went well, while it goes well; the first is always there."""
+) -> tuple[Array, dict[int, Array]]:
+    """The pose (D,) in the first frame, and place in `frames` to the pose of each that tells what shape a hand has."""
     state = TrackState(frames[0], pose, pose)
     tools = Tools(Objective(), None, None)
-    poses: dict[int, Array] = {}
-    first_merit = 0.0
+    first, poses = pose, {}
     for place in range(len(frames)):
-        state, result = follow_frame(sequence, setup, tools, state, recover=False)
-        quality = result.quality
-        if place == 0:
-            first_merit = 0.0 if quality is None else quality.merit
-        elif result.status != "ok" or quality is None or quality.merit < FALLEN * first_merit:
-            break
-        if place == 0 or (quality is not None and quality.explained >= WELL_EXPLAINED):
+        state, result = follow_frame(sequence, setup, tools, state, recover=setup.hand_detector is not None)
+        first = state.pose if place == 0 else first
+        if _tells_shape(setup, result) or (place == 0 and setup.marks):
             poses[place] = state.pose
         tell((place + 1) / len(frames))
-    return poses
+    return first, poses
+
+
+def _tells_shape(setup: TrackSetup, result: FrameResult) -> bool:
+    """Whether every hand is in its place and explained; a finger that is elsewhere would bend the shape."""
+    quality = result.quality
+    if result.status == "lost" or quality is None or quality.explained < WELL_EXPLAINED:
+        return False
+    return quality.worst_finger is None or quality.worst_finger <= FINGER_AGREES
 
 
 def _choose(setup: TrackSetup, poses: dict[int, Array], count: int) -> list[int]:
-    """At most so many places, in order: the first, and always the one that is least like those already chosen."""
+    """At most so many places, in order: the earliest, and always the one that is least like those already chosen."""
     places = sorted(poses)
+    if not places:
+        return []
     looks = []
     for place in places:
         posed = setup.scene.pose_at(poses[place])
@@ -142,8 +143,9 @@ def _choose(setup: TrackSetup, poses: dict[int, Array], count: int) -> list[int]
     return sorted(places[index] for index in chosen)
 
 
-def _look(sequence: Sequence, setup: TrackSetup, frames: range, place: int, pose: Array) -> CalibrationFrame | None:
-    frame, camera = setup.read(sequence, frames[place])
+def _look(sequence: Sequence, setup: TrackSetup, index: int, pose: Array, is_first: bool) -> CalibrationFrame | None:
+    """What is seen and marked in a frame; None where too little of a hand shows."""
+    frame, camera = setup.read(sequence, index)
     frame = find_sightings(setup.hand_detector, frame, camera, setup.hand_names, {}).frame
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
@@ -151,7 +153,7 @@ def _look(sequence: Sequence, setup: TrackSetup, frames: range, place: int, pose
     seen = observe(frame, camera, region, setup.preprocessing)
     if seen.hand_count < FEWEST_PIXELS:
         return None
-    marks = {} if place > 0 else setup.marks
+    marks = setup.marks if is_first else {}
     joints = {
         model: mark_joints(setup.scene, model, marks[name], camera)
         for model, name in enumerate(setup.names)

@@ -10,17 +10,17 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.sequence import Sequence
+from tracker.fitting.attempt import Attempt
+from tracker.fitting.setup import TrackSetup
+from tracker.fitting.sighting import find_sightings
+from tracker.search.part import Part
+from tracker.search.tools import Tools, make_tools
 from tracker.tracking.as_written import follow_as_written
-from tracker.tracking.attempt import Attempt
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow_part import follow_part
 from tracker.tracking.frame_result import FrameResult
-from tracker.tracking.part import Part
 from tracker.tracking.recovery import Recovery, list_hands, recover_hands
-from tracker.tracking.setup import TrackSetup
-from tracker.tracking.sighting import find_sightings
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import Tools, make_tools
 from tracker.tracking.watch_objects import stop_unseen, watch_objects
 
 Array = npt.NDArray[np.float64]

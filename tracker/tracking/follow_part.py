@@ -8,19 +8,19 @@ from time import perf_counter
 import numpy as np
 import numpy.typing as npt
 
+from tracker.fitting.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look, try_again
+from tracker.fitting.frame_fit import FitOptions
+from tracker.fitting.objective import Objective
+from tracker.fitting.region import is_outgrown, region_around
+from tracker.fitting.sighting import Sightings
 from tracker.observation import Observation
-from tracker.tracking.attempt import MIN_PIXELS, UNSETTLED, Attempt, attempt_fit, look, try_again
-from tracker.tracking.frame_fit import FitOptions
+from tracker.search.part import Part
+from tracker.search.seen_hands import find_doubtful, try_where_seen
+from tracker.search.start_annotated import with_marks
+from tracker.search.tools import Tools
 from tracker.tracking.hold import hold_object
-from tracker.tracking.objective import Objective
-from tracker.tracking.part import Part
 from tracker.tracking.patience import Patience
-from tracker.tracking.region import is_outgrown, region_around
-from tracker.tracking.seen_hands import find_doubtful, try_where_seen
-from tracker.tracking.sighting import Sightings
-from tracker.tracking.start_annotated import with_marks
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import Tools
 
 Array = npt.NDArray[np.float64]
 
@@ -35,8 +35,8 @@ SCORE_GAIN = 0.02
 
 FINGER_REST, SEEN_REST = (4, 64), (2, 8)
 """Frames to wait after a second try in vain, the first time and at most: after a search of fingers in the depth image,
-and after fits from detected joints. Meanwhile these are in the first fit: on `d405_take001` a frame takes half the
-time."""
+and after fits from detected joints, which a lost hand does not wait for. Meanwhile these are in the first fit: on
+`d405_take001` a frame takes half the time."""
 
 SEEN_ITERATIONS = 1.5
 """Fits from the detector's joints take so many times the iterations of others: they start farther off."""
@@ -82,13 +82,14 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
         stop_below=0.001 * setup.options.stop_below_mm,
         threads=min(setup.options.threads, 2),
     )
-    objective = tools.objective
-    if (sightings.is_covered or is_first) and not setup.object_names:
+    every_frame = tools.objective if setup.own_detector is None else tools.with_fingertips(seen)
+    objective = every_frame
+    if sightings.is_covered or is_first:
         objective = sightings.add_to(objective, setup.scene, setup.names)
     if is_first:
         objective = with_marks(objective, setup.scene, setup.names, setup.marks, sightings.camera)
     helped = objective
-    if not second_try.is_over and not setup.object_names:
+    if not second_try.is_over:
         helped = sightings.add_to(objective, setup.scene, setup.names)
     best = attempt_fit(setup, seen, predicted, previous, helped, options, sightings)
     stages |= best.fit.stages
@@ -96,8 +97,8 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
     if best.qualities:
         started = perf_counter()
         again = replace(options, iterations=round(SEEN_ITERATIONS * setup.options.iterations), stop_below=SETTLED)
-        if sightings.is_looked_at and (is_first or second_try.is_over):
-            best = try_where_seen(setup, sightings, best, objective if is_first else tools.objective, again)
+        if sightings.is_looked_at and (is_first or second_try.is_over or best.lost):
+            best = try_where_seen(setup, sightings, best, objective if is_first else every_frame, again)
             second_try = second_try.after_search(not find_doubtful(best), *SEEN_REST)
         starts = _find_finger_starts(sightings, part, state, second_try, best)
         if starts:

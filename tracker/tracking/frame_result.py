@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tracker.tracking.quality import Quality
+from tracker.fitting.quality import Quality
 from tracker.tracking.watch_objects import WatchedObject
 
 STATUSES = ("ok", "lost", "recovered")

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from tracker.fitting.attempt import Attempt, attempt_fit
+from tracker.fitting.frame_fit import FitOptions
+from tracker.fitting.objective import Objective
+from tracker.fitting.setup import TrackSetup
 from tracker.observation import Observation
 from tracker.physics import Support, SupportOptions, find_settled_displacement, find_support
+from tracker.search.tools import Tools
 from tracker.terms.physics import Physics
-from tracker.tracking.attempt import Attempt, attempt_fit
-from tracker.tracking.frame_fit import FitOptions
-from tracker.tracking.objective import Objective
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import Tools
 
 
 @dataclass(frozen=True)

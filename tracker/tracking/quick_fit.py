@@ -10,15 +10,15 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.errors import TrackingError, say_count
+from tracker.fitting.frame_fit import FitOptions, fit_frame
+from tracker.fitting.objective import Objective
+from tracker.fitting.region import region_around, region_around_joints
 from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import PosedScene, Scene
-from tracker.observation import Observation, Preprocessing, Region, observe, undistort
+from tracker.observation import Observation, Preprocessing, observe, undistort
 from tracker.rendering import render_view
-from tracker.tracking.frame_fit import FitOptions, fit_frame
-from tracker.tracking.objective import Objective
-from tracker.tracking.region import region_around
-from tracker.tracking.start_annotated import start_hand, undistort_points, with_marks
+from tracker.search.start_annotated import start_hand, undistort_points, with_marks
 from tracker.tracking.track import Track
 
 Array = npt.NDArray[np.float64]
@@ -118,23 +118,9 @@ def find_hidden(posed: PosedScene, points: Array, camera: Camera) -> npt.NDArray
 def _look(frame: Frame, camera: Camera, marks: Array) -> Observation | None:
     """The depth around the marked joints; None where there is none at any of them."""
     assert frame.depth is not None
-    visible = marks[marks[:, 2] == 2]
-    columns = np.clip(np.round(visible[:, 0]), 0, camera.width - 1).astype(int)
-    rows = np.clip(np.round(visible[:, 1]), 0, camera.height - 1).astype(int)
-    depths = frame.depth[rows, columns]
-    depths = depths[depths > 0]
-    if not depths.size:
-        return None
-    depth = float(np.median(depths))
-    placed = marks[marks[:, 2] > 0]
-    reach = REACH * camera.K[0, 0] / depth
-    left, top = (max(0, int(value)) for value in placed[:, :2].min(axis=0) - reach)
-    right, bottom = (int(value) + 1 for value in placed[:, :2].max(axis=0) + reach)
-    width, height = min(camera.width, right) - left, min(camera.height, bottom) - top
-    if width < 16 or height < 16:
-        return None
-    region = Region(top, left, height, width, max(0.05, depth - REACH), depth + REACH)
-    return observe(frame, camera, region, Preprocessing())
+    known, visible = marks[marks[:, 2] > 0, :2], marks[marks[:, 2] == 2, :2]
+    region = region_around_joints(known, visible, frame.depth, camera, REACH, REACH)
+    return None if region is None else observe(frame, camera, region, Preprocessing())
 
 
 def _settle(scene: Scene, frame: Frame, camera: Camera, marks: Array, pose: Array) -> Array:

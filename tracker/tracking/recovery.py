@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tracker.tracking.attempt import Attempt
-from tracker.tracking.find_again import find_again, find_seen
+from tracker.fitting.attempt import Attempt
+from tracker.fitting.quality import Quality
+from tracker.fitting.setup import TrackSetup
+from tracker.fitting.sighting import Sightings
+from tracker.search.find_again import find_again, find_seen
+from tracker.search.part import Part
+from tracker.search.tools import Tools
 from tracker.tracking.follow_part import SCORE_DROP, SCORE_GAIN, follow_part
-from tracker.tracking.part import Part
 from tracker.tracking.patience import Patience
-from tracker.tracking.quality import Quality
-from tracker.tracking.setup import TrackSetup
-from tracker.tracking.sighting import Sightings
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import Tools
 
 DOUBTFUL = 0.25
 """With this share of hand pixels unexplained the whole image is searched, now and then."""

@@ -10,27 +10,30 @@ import numpy.typing as npt
 
 from tracker.capture.annotations import Annotations
 from tracker.capture.sequence import Sequence
+from tracker.detection import OwnDetector
+from tracker.errors import TrackingError
+from tracker.fitting.calibration import propose_shapes
+from tracker.fitting.frame_fit import FitOptions, draw, fit_frame
+from tracker.fitting.measure_quality import measure_quality
+from tracker.fitting.objective import Objective
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.region import choose_stride, region_around, whole_image
+from tracker.fitting.setup import TrackSetup, choose_camera
+from tracker.fitting.sighting import Sightings, find_sightings
+from tracker.fitting.tracking_faults import find_detector_faults
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.default_hand import default_hand
 from tracker.model.files import load_model
 from tracker.model.scene import Scene
 from tracker.model.shape import with_shape
 from tracker.observation import observe
-from tracker.tracking.calibration import propose_shapes
+from tracker.search.depth_range import depth_range
+from tracker.search.leave_out import leave_out
+from tracker.search.seen_hands import place_where_seen
+from tracker.search.start_annotated import start_hand, undistort_points, with_marks
+from tracker.search.start_automatic import find_hand
+from tracker.search.start_object import start_object
 from tracker.tracking.calibration_run import calibrate_hands
-from tracker.tracking.depth_range import depth_range
-from tracker.tracking.frame_fit import FitOptions, draw, fit_frame
-from tracker.tracking.leave_out import leave_out
-from tracker.tracking.objective import Objective
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.quality import measure_quality
-from tracker.tracking.region import choose_stride, region_around, whole_image
-from tracker.tracking.seen_hands import place_where_seen
-from tracker.tracking.setup import TrackSetup, choose_camera
-from tracker.tracking.sighting import Sightings, find_sightings
-from tracker.tracking.start_annotated import start_hand, undistort_points, with_marks
-from tracker.tracking.start_automatic import find_hand
-from tracker.tracking.start_object import start_object
 from tracker.tracking.start_plan import plan_start
 from tracker.tracking.state import TrackState
 from tracker.tracking.static_scene import see_static_scene
@@ -51,6 +54,7 @@ def start_tracking(
     models: dict[str, ArticulatedModel] | None = None,
     annotations: Annotations | None = None,
     progress: Progress | None = None,
+    detector: OwnDetector | None = None,
 ) -> tuple[TrackSetup, TrackState]:
     """Place the hands in the first frame, from its annotation or else from the depth alone, and calibrate them.
 
@@ -60,11 +64,16 @@ def start_tracking(
         models: Hands, `right` and `left`, to use in place of the default ones, and objects in place of the recording's.
         annotations: Only those of the first frame are looked at.
         progress: Told the stage and the share of all that is done, 0 to 1; may raise to cancel.
+        detector: Finds fingertips in every frame, for terms with S; None for the one that comes along.
 
     Raises:
-        TrackingError: `find_tracking_faults` finds some, or an object is not found.
+        TrackingError: `find_tracking_faults` or `find_detector_faults` finds some, or an object is not found.
     """
     camera_id = choose_camera(sequence, options)
+    if detector is not None:
+        faults = find_detector_faults(detector.forest.kind, sequence.camera(camera_id).has_color, options)
+        if faults:
+            raise TrackingError(f"{detector.name}: {' '.join(faults)}")
     frames = options.frame_range(sequence.frame_count)
     names = tuple(sequence.hands)
     given = models or {}
@@ -94,7 +103,7 @@ def start_tracking(
     if options.calibrate:
         there = tuple(name for name in order if name not in names or np.any(placed[name][1]))
         placed |= _calibrate(sequence, there, placed, bare, frames, tell)
-    setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks)
+    setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks, detector)
     pose = np.concatenate([placed[name][1] for name in order])
     if sequence.objects:
         setup = replace(setup, static_scene=see_static_scene(sequence, setup, frame, camera, pose))

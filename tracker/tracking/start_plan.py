@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tracker.capture.sequence import Sequence as Recording
+from tracker.fitting.options import TrackOptions
 from tracker.tracking.calibration_run import PASSES, name_pass
-from tracker.tracking.options import TrackOptions
 
 Progress = Callable[[str, float], None]
 
@@ -54,8 +54,8 @@ def plan_start(recording: Recording, options: TrackOptions, hands: Sequence[str]
     if options.calibrate:
         frames = len(options.frame_range(recording.frame_count))
         for number, each in enumerate(PASSES, 1):
-            followed = each.count_frames(frames, recording.fps)
-            fitted = min(followed, each.frames) * each.options.rounds
+            followed = min(frames, each.followed)
+            fitted = min(followed, each.fitted) * each.options.rounds
             parts.append((name_pass("following", number), float(followed)))
             parts.append((name_pass("fitting the shape", number), SHAPE_STEP * fitted))
     return StartPlan(tuple(parts))

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from tracker.fitting.setup import TrackSetup
 from tracker.geometry import se3
 from tracker.landmarks import DetectedHand
 from tracker.landmarks.detected_hand import ROW
 from tracker.model.scene import Scene
 from tracker.tracking.arrays_file import load_arrays, save_arrays
 from tracker.tracking.patience import Patience
-from tracker.tracking.setup import TrackSetup
 
 Array = npt.NDArray[np.float64]
 

@@ -9,9 +9,9 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
 from tracker.capture.static_plane import StaticPlane
+from tracker.fitting.setup import TrackSetup
 from tracker.geometry import se3
 from tracker.physics import StaticScene, choose_down, find_plane
-from tracker.tracking.setup import TrackSetup
 
 Array = npt.NDArray[np.float64]
 

@@ -13,10 +13,10 @@ import numpy.typing as npt
 
 from tracker.capture.sequence import Sequence
 from tracker.errors import TrackingError
+from tracker.fitting.setup import TrackSetup
 from tracker.tracking.arrays_file import load_arrays, save_arrays
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.frame_result import STATUSES
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.watch_objects import OBJECT_STATUSES
 
 Array = npt.NDArray[np.float64]
@@ -95,6 +95,7 @@ class Track:
             "depth_residual_mm": _median(chunk.depth_residual_mm[ok]),
             "silhouette_iou": _median(chunk.silhouette_iou[ok]),
             "threads": self.setup.options.threads,
+            "detector": None if self.setup.own_detector is None else self.setup.own_detector.to_json(),
             "objects": {
                 name: {status: int(np.count_nonzero(found == status)) for status in OBJECT_STATUSES}
                 for name, found in zip(self.setup.object_names, self.object_status.T, strict=False)

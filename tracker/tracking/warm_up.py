@@ -9,6 +9,11 @@ import numpy as np
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.detection import default_detector, find_fingertips
+from tracker.fitting.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
+from tracker.fitting.frame_fit import FitOptions, draw, fit_frame
+from tracker.fitting.object_quality import measure_object_quality
+from tracker.fitting.objective import Objective
+from tracker.fitting.region import region_around
 from tracker.geometry import se3
 from tracker.kernel_cache import remove_old_caches
 from tracker.model.ball import make_ball
@@ -17,17 +22,12 @@ from tracker.model.scene import Scene
 from tracker.observation import Preprocessing, observe
 from tracker.physics import PhysicsWorld, find_down, find_support
 from tracker.rendering import render_depth
+from tracker.search.find_object import ObjectSearch, find_object
+from tracker.search.start_automatic import Search, find_hand
 from tracker.terms.collision import Collision
 from tracker.terms.marked_joints import mark_joints
 from tracker.terms.physics import Physics
 from tracker.terms.salient import Salient
-from tracker.tracking.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
-from tracker.tracking.find_object import ObjectSearch, find_object
-from tracker.tracking.frame_fit import FitOptions, draw, fit_frame
-from tracker.tracking.object_quality import measure_object_quality
-from tracker.tracking.objective import Objective
-from tracker.tracking.region import region_around
-from tracker.tracking.start_automatic import Search, find_hand
 
 
 def warm_up(progress: Callable[[str, float], None] | None = None) -> None:

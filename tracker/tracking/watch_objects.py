@@ -10,15 +10,15 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
+from tracker.fitting.frame_fit import draw
+from tracker.fitting.object_quality import ObjectQuality, measure_object_quality
+from tracker.fitting.region import region_around
+from tracker.fitting.setup import TrackSetup
 from tracker.model.scene import Scene
 from tracker.observation import observe
-from tracker.tracking.find_object import ObjectSearch
-from tracker.tracking.forearm import is_in_forearm
-from tracker.tracking.frame_fit import draw
-from tracker.tracking.look_for_object import look_for_object
-from tracker.tracking.object_quality import ObjectQuality, measure_object_quality
-from tracker.tracking.region import region_around
-from tracker.tracking.setup import TrackSetup
+from tracker.search.find_object import ObjectSearch
+from tracker.search.forearm import is_in_forearm
+from tracker.search.look_for_object import look_for_object
 
 Array = npt.NDArray[np.float64]
 

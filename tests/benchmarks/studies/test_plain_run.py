@@ -11,11 +11,11 @@ from benchmarks.studies.plain_run import PlainRun, follow_plainly, pool
 from benchmarks.studies.twin_runs import Twin, measure, render_into, start_twin
 from tracker.capture.sequence import load_sequence
 from tracker.capture.truth import load_truth
+from tracker.fitting.options import TrackOptions
 from tracker.model import save_model
 from tracker.model.default_hand import default_hand
 from tracker.synthesis.motion import perform
 from tracker.synthesis.recording import RecordingOptions, write_recording
-from tracker.tracking.options import TrackOptions
 from tracker.tracking.track import join_chunks
 
 FRAMES = 5

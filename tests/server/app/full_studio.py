@@ -23,6 +23,7 @@ from server.tracks.service import add_track
 from tests.server.conftest import GeneratedHand
 from tests.server.curation import add_curation
 from tracker import untrained_hand
+from tracker.detection.default_detector import DATA as DETECTOR
 from tracker.model.mano_files import save_mano
 
 API = "/api/v1"
@@ -170,6 +171,9 @@ def _add_uploads(app: FastAPI, sender: Sender, ids: dict[str, Any], hand: Genera
     file = app.state.settings.data_dir / "MANO_RIGHT.npz"
     save_mano(untrained_hand("right"), file)
     sender.send("POST", "/hand-models", files={"files": ("MANO_RIGHT.npz", file.read_bytes())}, data={"name": "fed"})
+    added = sender.upload("/detectors", {"tips.npz": DETECTOR.read_bytes()}, name="tips")
+    ids["detector_id"] = added["id"]
+    sender.send("GET", "/detectors/{detector_id}", ids)
     picture = cv2.imencode(".png", np.zeros((24, 32, 3), np.uint8))[1].tobytes()
     pictures = {f"waving/color/{frame:06d}.png": picture for frame in range(3)}
     options = {"fps": 30, "fx": 30, "fy": 30, "cx": 15.5, "cy": 11.5}

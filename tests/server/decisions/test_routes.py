@@ -186,6 +186,18 @@ def test_throughput_counts_the_time_at_work_and_not_the_pauses(curation: Curatio
     assert curation.rob.send("GET", "/curation/throughput", params={"since": "2026-01-01T00:00:00"}).status_code == 422
 
 
+def test_throughput_does_not_count_a_decision_that_was_taken_back(curation: Curation) -> None:
+    a, b = curation.register("a"), curation.register("b")
+    curation.decide(curation.rob, a)
+    rejected = curation.decide(curation.rob, b, "reject").json()["decision"]
+    curation.undo(curation.rob, rejected["id"])
+    [person] = curation.rob.get("/curation/throughput")["people"]
+    assert [person[name] for name in ("decisions", "accept", "reject", "undone")] == [1, 1, 0, 1]
+    curation.decide(curation.rob, b, "reject")
+    [person] = curation.rob.get("/curation/throughput")["people"]
+    assert [person[name] for name in ("decisions", "accept", "reject", "undone")] == [2, 1, 1, 1]
+
+
 def test_annotators_do_not_decide_and_unknown_reasons_are_named(curation: Curation, join) -> None:
     id_ = curation.register("a")
     assert curation.decide(join("ann"), id_).status_code == 403

@@ -20,7 +20,7 @@ from tests.server.conftest import AddRecording, GeneratedHand, Studio
 from tests.server.curation import add_registered, make_true_hand
 
 API = "/api/v1"
-NO_WORKER = "No worker is running: the job waits until one is started with `handloom worker`."
+NO_WORKER = "No worker is running: the job waits until one is started with “handloom worker”."
 
 
 def refused(client: TestClient, path: str, body: dict[str, Any]) -> str:

@@ -249,6 +249,7 @@ def test_what_is_known_to_be_wrong_is_named_without_the_folders_of_the_machine(b
     job = wait_for_failure(bench, job_id)
     assert job.error is not None and "sequence.json" in job.error and job.error in bench.log(job_id)
     assert str(bench.settings.data_dir) not in job.error and "nobody foresaw" not in job.error
+    assert str(bench.sequence_id) not in job.error, "people know the recording by its name, and the job has that"
 
 
 @pytest.mark.slow

@@ -201,6 +201,20 @@ def test_a_whole_label_without_depth_is_flagged(client, labelled):
     assert "though it is marked as visible" in flags[0]["reason"]
 
 
+@pytest.mark.parametrize("share", [0.4, 0.7, 1.0])
+def test_a_joint_in_the_empty_part_is_flagged_however_far_away_it_is(client, labelled, rendered, share):
+    """The mistake itself makes the hand look large; that does not excuse it."""
+    camera = load_sequence(rendered).camera("cam0")
+    stored = client.get(f"{labelled}/annotations/cam0/7/right").json()["points"]
+    tip = np.array(stored[4][:2])
+    corner = np.where(tip > np.array([camera.width, camera.height]) / 2, 4, [camera.width - 4, camera.height - 4])
+    stored[4] = [*(tip + share * (corner - tip)).tolist(), 2]
+    relabel(client, labelled, 7, stored)
+    [flag] = find(client, labelled, kind="background")["items"]
+    assert (flag["frame"], flag["joints"]) == (7, [4])
+    assert "The thumb tip is" in flag["reason"]
+
+
 def test_a_whole_recording_on_the_background_is_flagged(studio, client, rendered, tmp_path):
     """That all labels are alike does not excuse them: no hand that looks as large as these is so far away."""
     desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)

@@ -99,6 +99,21 @@ def test_the_overlay_covers_the_joints_and_is_drawn_once(client: TestClient, add
     assert client.get(f"{address}/cameras/cam1/frames/5/overlay.png").status_code == 404
 
 
+def test_what_is_unknown_is_drawn_in_one_colour_apart_from_the_meshes(client: TestClient, address: str) -> None:
+    answer = client.get(f"{address}/cameras/cam0/frames/5/unknown.png")
+    assert answer.status_code == 200 and "immutable" in answer.headers["cache-control"]
+    image = cv2.imdecode(np.frombuffer(answer.content, np.uint8), cv2.IMREAD_UNCHANGED)
+    assert image.shape == (480, 640, 4)
+    marked = image[image[..., 3] > 0]
+    assert (marked == (149, 101, 240, 165)).all()
+    assert len(marked) < 1000, "a bare hand: no more than its rims"
+    mesh = client.get(f"{address}/cameras/cam0/frames/5/overlay.png").content
+    assert answer.content != mesh
+    assert client.get(f"{address}/cameras/cam0/frames/5/unknown.png").content == answer.content
+    for gone in ("cam0/frames/12", "cam1/frames/5"):
+        assert client.get(f"{address}/cameras/{gone}/unknown.png").status_code == 404
+
+
 def test_a_track_is_exported_for_other_programs(client: TestClient, studio: Studio, tracked: Tracked) -> None:
     address = f"{API}/tracks/{tracked.track_id}"
     answers = {kind: client.get(f"{address}/export/{kind}") for kind in EXPORT_KINDS}

@@ -101,7 +101,7 @@ def test_one_term_can_be_hidden(client: TestClient, view) -> None:
 
 
 def test_evidence_is_worked_out_when_it_is_asked_for_also_where_the_run_did_without(client: TestClient, view) -> None:
-    layers = ("detections", "collisions", "contacts", "distances")
+    layers = ("detections", "collisions", "contacts", "unknown", "distances")
     assert all(view[layer] is None for layer in layers)
     answer = show(client, view, frame=2, show=dict.fromkeys(layers, True))
     assert [answer[layer]["is_of_run"] for layer in layers[:3]] == [True, True, False], "the run had no physics"
@@ -109,13 +109,18 @@ def test_evidence_is_worked_out_when_it_is_asked_for_also_where_the_run_did_with
     assert len(items) >= 3
     assert all(item["hand"] == "right" and item["distance_mm"] < 15.0 for item in items if item["finger"])
     assert len({item["finger"] for item in items if item["finger"]}) >= 3
+    assert answer["detections"]["own_detector"] is None
     assert answer["contacts"]["object"] is None, "there is nothing to hold"
+    unknown = answer["unknown"]
+    assert unknown["by_color"] and unknown["color"] == "#f06595"
+    assert 0 <= unknown["before"] <= unknown["pixels"] < 1000, "a bare hand: no more than its rims"
     (hand,) = answer["distances"]["models"]
     assert 0.2 < hand["visible_share"] < 0.8
     assert hand["median_mm"] < 2.0
     with connect(client, view) as socket:
         nodes = read_scene(socket)
     assert {"/detections/marks", "/detections/boxes", "/detections/links", "/distances/right"} <= nodes.keys()
+    assert ("/unknown" in nodes) == (unknown["pixels"] > 0)
     labels = [node["props"]["text"] for name, node in nodes.items() if name.startswith("/detections/label-")]
     assert len(labels) == len(items)
     again = show(client, view, show=dict.fromkeys(layers, False))

@@ -8,8 +8,8 @@ import numpy as np
 
 from tests.tracker.scenes import drawn_tube
 from tracker.baselines.discrepancy import ALIKE, CUT, SILHOUETTE_WEIGHT, Discrepancy
+from tracker.fitting.frame_fit import draw, label_scene
 from tracker.observation import HAND
-from tracker.tracking.frame_fit import draw, label_scene
 
 
 def test_the_true_pose_costs_next_to_nothing_and_an_empty_view_most():

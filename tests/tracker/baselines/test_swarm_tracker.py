@@ -13,12 +13,12 @@ from tracker.baselines.swarm_tracker import search_pose, thin_to
 from tracker.capture.annotations import load_annotations
 from tracker.capture.truth import load_truth
 from tracker.evaluation import evaluate_against_truth
+from tracker.fitting.options import TrackOptions
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
 from tracker.synthesis.motion import perform
 from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.tracking.chunk import TrackChunk
-from tracker.tracking.options import TrackOptions
 from tracker.tracking.start import start_tracking
 from tracker.tracking.track import join_chunks
 

@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 from tracker.cli.__main__ import main
-from tracker.detection import load_forest
+from tracker.detection import load_detector, load_forest
+from tracker.detection.default_detector import DATA as DEFAULT
+from tracker.fitting.setup import TrackSetup
 from tracker.landmarks.network import DATA
-from tracker.tracking.setup import TrackSetup
-from tracker.tracking.tools import make_tools
+from tracker.search.tools import make_tools
+from tracker.tracking.chunk import TrackChunk
+from tracker.tracking.frame_result import STATUSES
 
 QUICK = ["--trees", "3", "--tests", "500", "--patches", "1500", "--min-leaf", "10"]
 
@@ -21,6 +24,16 @@ def recording(tmp_path_factory):
     out = tmp_path_factory.mktemp("recordings") / "count"
     assert main(["synthesize", "--motion", "count", "--frames", "0:24", "--out", str(out)]) == 0
     return out
+
+
+@pytest.fixture(scope="module")
+def trained(recording, tmp_path_factory):
+    """A detector for depth and one for colour."""
+    folder = tmp_path_factory.mktemp("detectors")
+    files = {on: folder / f"{on}.npz" for on in ("depth", "color")}
+    for on, file in files.items():
+        assert main(["train-detector", str(recording), "--on", on, *QUICK, "--out", str(file)]) == 0
+    return files
 
 
 @pytest.mark.parametrize("on", ["depth", "color"])
@@ -84,29 +97,67 @@ def test_a_track_takes_a_detector_that_somebody_trained_and_keeps_it(recording, 
     assert main(["train-detector", str(recording), *QUICK, "--out", str(tips)]) == 0
     track = ["track", str(recording), "--frames", "0:2", "--no-calibration", "--detector"]
     assert main([*track, str(tips), "--out", str(out)]) == 0
-    setup = TrackSetup.load(out)
-    assert setup.fingertips is not None
+    setup, own = TrackSetup.load(out), load_detector(tips)
+    assert setup.own_detector is not None
+    assert (setup.own_detector.name, setup.own_detector.sha256) == ("tips.npz", own.sha256)
+    assert json.loads((out / "summary.json").read_text())["detector"] == own.to_json()
     with make_tools(setup, np.eye(4)) as tools:
-        assert tools.detector is setup.fingertips
-        assert tools.detector.nodes.tobytes() == load_forest(tips).nodes.tobytes()
+        assert tools.detector is not None and tools.detector is setup.own_detector.forest
+        assert tools.detector.nodes.tobytes() == own.forest.nodes.tobytes()
 
 
-@pytest.mark.parametrize("name", ["landmarks.onnx", "noise", "model.npz"])
+@pytest.mark.parametrize("words", [[], ["--no-detector"], ["--preset", "t16"]])
+@pytest.mark.parametrize("on", ["depth", "color"])
+def test_fingertips_of_a_detector_of_ones_own_count_in_every_frame(recording, trained, tmp_path, on, words):
+    """What the hand detector sees in the colour image does not silence it; one that looks at colour is given colour."""
+    out = tmp_path / "track"
+    track = ["track", str(recording), "--frames", "0:3", "--no-calibration", *words, "--terms", "LO+S"]
+    assert main([*track, "--iterations", "3", "--detector", str(trained[on]), "--out", str(out)]) == 0
+    chunk = TrackChunk.load(out / "frames.npz")
+    assert chunk.status.tolist() == [STATUSES.index("ok")] * 3
+    salient = [str(name) for name in chunk.cost_names].index("salient")
+    assert np.isfinite(chunk.costs[:, salient]).all()
+    assert np.count_nonzero(chunk.costs[:, salient]) >= 2
+
+
+def test_a_detector_that_looks_at_colour_is_refused_where_there_is_none(recording, trained, tmp_path, capsys):
+    import shutil
+
+    bare = tmp_path / "bare"
+    shutil.copytree(recording, bare)
+    document = json.loads((bare / "sequence.json").read_text())
+    del document["cameras"][0]["color"]
+    (bare / "sequence.json").write_text(json.dumps(document))
+    track = ["track", str(bare), "--detector", str(trained["color"]), "--out", str(tmp_path / "track")]
+    assert main(track) == 2
+    assert "color.npz: The fingertip detector looks at colour" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["landmarks.onnx", "palms.npz", "noise", "model.npz", "empty", "huge.npz", "folder"])
 def test_a_file_that_is_no_detector_is_refused_before_anything_is_tracked(recording, tmp_path, capsys, name):
     file, out = tmp_path / name, tmp_path / "track"
-    if name == "landmarks.onnx":
-        file.write_bytes((DATA / name).read_bytes())
+    if name in ("landmarks.onnx", "palms.npz"):  # a network under its own name and under a wrong one
+        file.write_bytes((DATA / name).with_suffix(".onnx").read_bytes())
+    elif name == "huge.npz":
+        with file.open("wb") as out_file:  # takes no room on the disk
+            out_file.write(b"PK\x03\x04")
+            out_file.truncate(2**33)
+    elif name == "empty":
+        file.touch()
+    elif name == "folder":
+        file.mkdir()
     elif name == "noise":
         file.write_bytes(np.random.default_rng(0).bytes(5000))
     else:
         np.savez(file, format=np.array(["something else"]))
     assert main(["track", str(recording), "--detector", str(file), "--out", str(out)]) == 2
     said = capsys.readouterr().err
-    assert name in said and "needed" in said and "Traceback" not in said
+    assert name in said and "needed a fingertip detector as `handloom train-detector` writes it" in said
+    assert "Traceback" not in said and len(said.strip().splitlines()) == 1
     assert not out.exists()
 
 
 def test_a_detector_that_the_run_would_not_use_is_refused(recording, tmp_path, capsys):
-    words = ["--detector", str(tmp_path / "tips.npz"), "--terms", "LO", "--out", str(tmp_path / "track")]
+    words = ["--detector", str(DEFAULT), "--terms", "LO", "--out", str(tmp_path / "track")]
     assert main(["track", str(recording), *words]) == 2
     assert "use no fingertips" in capsys.readouterr().err

@@ -12,14 +12,14 @@ import pytest
 from tracker.capture.annotations import Annotations, load_annotations
 from tracker.capture.sequence import Sequence
 from tracker.capture.truth import Truth, load_truth
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
 from tracker.model import ArticulatedModel, save_model
 from tracker.model.default_hand import default_hand
 from tracker.synthesis.motion import perform, perform_motion
 from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.frame_result import FrameResult
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.track import Track, join_chunks
 
 FRAMES = 5

@@ -11,12 +11,12 @@ import pytest
 from tests.tracker.toys import tube
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.capture.sequence import Sequence
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
 from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.default_hand import default_hand
 from tracker.tracking.chunk import TrackChunk
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.track import Track, join_chunks
 
 FRAMES = 6

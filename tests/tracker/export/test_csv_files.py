@@ -9,7 +9,7 @@ import io
 import numpy as np
 
 from tracker.export.csv_files import write_csv
-from tracker.tracking.setup import TrackSetup
+from tracker.fitting.setup import TrackSetup
 
 
 def read(data: bytes) -> list[dict[str, str]]:

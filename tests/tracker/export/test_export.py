@@ -43,7 +43,7 @@ def test_what_cannot_be_exported_is_said_and_leaves_nothing(moved, only_ball, tm
     pose = moved.track.pose.copy()
     pose[4, 0] = np.nan
     fails(
-        "no pose in 1 frames, the first of them 7",
+        "no pose in 1 frame, first in frame 7",
         moved,
         "glb",
         out,

@@ -85,6 +85,12 @@ def test_fingertips_that_people_marked_are_found(detector: HandDetector, shared_
 
 
 @pytest.mark.shared_data
+def test_what_is_refused_is_not_given_back(detector: HandDetector, ball: list[Image]) -> None:
+    (hand,) = detector.find(ball[0], 1)
+    assert detector.find(ball[0], 1, [hand], accept=lambda _: False) == []
+
+
+@pytest.mark.shared_data
 def test_two_hands_are_two(detector: HandDetector, ball: list[Image]) -> None:
     image = np.concatenate([ball[0], ball[0][:, ::-1]], axis=1)
     found = detector.find(np.ascontiguousarray(image), hands=2)

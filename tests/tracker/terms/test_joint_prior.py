@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from tests.tracker.toys import tube
+from tracker.fitting.objective import Objective
 from tracker.model.default_hand import default_hand
 from tracker.model.scene import Scene
 from tracker.terms.joint_prior import AnatomicalLimits, Bending, Regularization
-from tracker.tracking.objective import Objective
 
 
 def test_limits_are_the_sum_of_exponentials_of_the_paper(rng):

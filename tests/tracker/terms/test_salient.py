@@ -11,6 +11,8 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.detection import default_detector, find_fingertips
 from tracker.detection.detection import Detection
+from tracker.fitting.frame_fit import label_scene
+from tracker.fitting.region import region_around
 from tracker.geometry import se3
 from tracker.model.default_hand import default_hand
 from tracker.model.joints import FINGERS, HAND_JOINTS
@@ -21,8 +23,6 @@ from tracker.solver.damped_step import compute_damped_step
 from tracker.terms.normal_equations import NormalEquations
 from tracker.terms.residual import FrameContext
 from tracker.terms.salient import Salient
-from tracker.tracking.frame_fit import label_scene
-from tracker.tracking.region import region_around
 
 K = np.array([[525.0, 0.0, 319.5], [0.0, 525.0, 239.5], [0.0, 0.0, 1.0]])
 INDEX = FINGERS.index("index")

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from tests.tracker.scenes import drawn_tube
+from tracker.fitting.frame_fit import FitOptions, fit_frame
+from tracker.fitting.objective import Objective
 from tracker.geometry import se3
 from tracker.solver.damped_step import compute_damped_step
 from tracker.terms.data_to_model import DataToModel
@@ -12,8 +14,6 @@ from tracker.terms.model_to_data import ModelToData
 from tracker.terms.normal_equations import NormalEquations
 from tracker.terms.silhouette import Silhouette
 from tracker.terms.uncovered import Uncovered
-from tracker.tracking.frame_fit import FitOptions, fit_frame
-from tracker.tracking.objective import Objective
 
 TERMS = {
     "model_to_data": ModelToData(),

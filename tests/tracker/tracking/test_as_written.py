@@ -10,15 +10,15 @@ import pytest
 
 from tests.tracker.grips import PINCH, gripped
 from tracker.capture.sequence import load_sequence
+from tracker.fitting.attempt import look
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.presets import find_preset
 from tracker.physics import PhysicsWorld
+from tracker.search.tools import make_tools
 from tracker.terms.physics import Supported
 from tracker.tracking.as_written import DATA_TERMS, compose_objective
-from tracker.tracking.attempt import look
 from tracker.tracking.follow import track_frames
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.presets import find_preset
 from tracker.tracking.start import start_tracking
-from tracker.tracking.tools import make_tools
 
 
 @pytest.fixture(scope="module")

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 
 from tracker.capture.annotations import load_annotations
+from tracker.fitting.attempt import attempt_fit, look
+from tracker.fitting.frame_fit import FitOptions
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
 from tracker.model import save_model
 from tracker.physics import find_part_bones, find_settled_displacement
+from tracker.search.tools import make_tools
 from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.synthesis.twin import load_twin
-from tracker.tracking.attempt import attempt_fit, look
 from tracker.tracking.follow import track_frames
-from tracker.tracking.frame_fit import FitOptions
 from tracker.tracking.hold import HoldOptions, hold_object
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.start import start_tracking
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import make_tools
 
 pytestmark = pytest.mark.shared_data
 

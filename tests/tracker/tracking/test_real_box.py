@@ -11,11 +11,11 @@ import pytest
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_run import run_import
 from tracker.capture.sequence import Sequence, load_sequence
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.tracking.follow import track_frames
 from tracker.tracking.frame_result import FrameResult
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.start import start_tracking
 
 pytestmark = pytest.mark.shared_data

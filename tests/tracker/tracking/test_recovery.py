@@ -10,22 +10,22 @@ import pytest
 from tracker.capture.annotations import load_annotations
 from tracker.capture.frame import Frame
 from tracker.capture.truth import load_truth
+from tracker.fitting.attempt import UNSETTLED, attempt_fit, look, try_again
+from tracker.fitting.finger_search import swap_fingers
+from tracker.fitting.frame_fit import FitOptions
+from tracker.fitting.objective import Objective
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.quality import MISFIT
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
+from tracker.search.part import Part
+from tracker.search.tools import Tools
 from tracker.synthesis.motion import perform
 from tracker.synthesis.recording import RecordingOptions, write_recording
-from tracker.tracking.attempt import UNSETTLED, attempt_fit, look, try_again
-from tracker.tracking.finger_search import swap_fingers
 from tracker.tracking.follow import follow_frame
-from tracker.tracking.frame_fit import FitOptions
-from tracker.tracking.objective import Objective
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.part import Part
 from tracker.tracking.patience import Patience
-from tracker.tracking.quality import MISFIT
 from tracker.tracking.start import start_tracking
 from tracker.tracking.state import TrackState
-from tracker.tracking.tools import Tools
 
 TOOLS = Tools(Objective(), None, None)
 

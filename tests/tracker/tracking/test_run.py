@@ -10,14 +10,14 @@ import pytest
 
 from tracker.capture.annotations import Annotations
 from tracker.errors import TrackingError
+from tracker.fitting.objective import Objective
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
+from tracker.inspection.frame_view import describe_frame, render_overlay
 from tracker.model.default_hand import default_hand
 from tracker.model.shape import with_shape
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow import track_frames
-from tracker.tracking.frame_view import describe_frame, render_overlay
-from tracker.tracking.objective import Objective
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.start import start_tracking
 from tracker.tracking.state import TrackState
 from tracker.tracking.track import join_chunks, load_track

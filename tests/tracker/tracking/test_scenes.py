@@ -12,17 +12,17 @@ from tracker.capture.frame import Frame
 from tracker.capture.recorded_object import RecordedObject
 from tracker.capture.truth import load_truth
 from tracker.errors import TrackingError
+from tracker.fitting.options import TrackOptions
 from tracker.geometry import se3
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
 from tracker.model.scene import Scene
+from tracker.search.leave_out import leave_out
+from tracker.search.start_object import place_object
 from tracker.synthesis.motion import perform
 from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.tracking.follow import track_frames
-from tracker.tracking.leave_out import leave_out
-from tracker.tracking.options import TrackOptions
 from tracker.tracking.start import start_tracking
-from tracker.tracking.start_object import place_object
 from tracker.tracking.track import join_chunks
 
 

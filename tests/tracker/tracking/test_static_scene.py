@@ -12,8 +12,8 @@ from tracker.capture.frame import Frame
 from tracker.capture.sequence import load_sequence, save_sequence_json
 from tracker.capture.static_plane import StaticPlane
 from tracker.errors import SequenceError
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.setup import TrackSetup
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
 from tracker.tracking.static_scene import find_plane_behind, see_static_scene
 
 UP = np.array([0.0, -0.8, -0.6])

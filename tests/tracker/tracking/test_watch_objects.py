@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.tracker.tracking.drawn_objects import CAMERA, draw_frame, hand_pose, load_mesh, surface_error
-from tests.tracker.tracking.test_find_object import PLACE, place
+from tests.tracker.search.drawn_objects import CAMERA, draw_frame, hand_pose, load_mesh, surface_error
+from tests.tracker.search.test_find_object import PLACE, place
+from tracker.fitting.frame_fit import draw
+from tracker.fitting.object_quality import measure_object_quality
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.region import region_around
+from tracker.fitting.setup import TrackSetup
 from tracker.model.default_hand import default_hand
 from tracker.model.scene import Scene
 from tracker.observation import observe
-from tracker.tracking.frame_fit import draw
-from tracker.tracking.object_quality import measure_object_quality
-from tracker.tracking.options import TrackOptions
-from tracker.tracking.region import region_around
-from tracker.tracking.setup import TrackSetup
 from tracker.tracking.watch_objects import stop_unseen, watch_objects
 
 TURN = np.array([0.4, 0.3, 0.1])

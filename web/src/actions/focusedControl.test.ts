@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { keepsKey, takesText, type FocusedControl } from "./focusedControl";
+import { isHarmless, keepsKey, takesText, type FocusedControl } from "./focusedControl";
 
 const control = (tagName: string, rest: Partial<FocusedControl> & { expanded?: string } = {}): FocusedControl => ({
   tagName,
@@ -25,6 +25,13 @@ describe("takesText", () => {
   it("leaves the keys to a list without typing only while it is open", () => {
     expect(takesText(control("INPUT", { type: "text", readOnly: true, expanded: "false" }))).toBe(false);
     expect(takesText(control("INPUT", { type: "text", readOnly: true, expanded: "true" }))).toBe(true);
+  });
+});
+
+describe("isHarmless", () => {
+  it("lets one send, search and change the view from a field, but neither mark nor hand in", () => {
+    for (const id of ["search", "save.now", "frame.goto", "view.fit"]) expect(isHarmless(id)).toBe(true);
+    for (const id of ["assignment.submit", "hand.propagate", "undo", "redo", "suggestion.frame", ""]) expect(isHarmless(id)).toBe(false);
   });
 });
 

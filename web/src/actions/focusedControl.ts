@@ -18,6 +18,9 @@ export function takesText(control: FocusedControl): boolean {
   return !control.readOnly || control.getAttribute("aria-expanded") === "true";
 }
 
+/** What a key may do while one types: it sends, searches or changes the view, but no label, and it hands no work in. */
+export const isHarmless = (binding: string): boolean => ["search", "frame.goto", "save.now", "curate.save", "scan.save"].includes(binding) || binding.startsWith("view.");
+
 /** Keys that a focused control needs for itself; the page gets them only on its picture or when nothing has the focus. */
 const CONTROL_KEYS = new Set(["Tab", "Shift+Tab", "Space", "Enter", "Left", "Right", "Up", "Down", "Home", "End", "Delete", "Backspace"]);
 

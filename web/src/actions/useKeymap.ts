@@ -1,7 +1,7 @@
 import { useEffect, useRef } from "react";
 import { bindingsFor, chordOf, type Scope } from "../model/keymap";
 import { useCurrentKeymap } from "../state/keys";
-import { keepsKey, takesText } from "./focusedControl";
+import { isHarmless, keepsKey, takesText } from "./focusedControl";
 
 export type Handlers = Readonly<Record<string, (event: KeyboardEvent) => void>>;
 
@@ -22,10 +22,11 @@ export function useKeymap(scope: Scope, handlers: Handlers): void {
     const answer = (event: KeyboardEvent): void => {
       if (event.defaultPrevented || event.isComposing) return;
       const chord = chordOf(event);
-      if (isTyping(event.target) && !(chord.startsWith("Ctrl+") && chord !== "Ctrl+Z" && chord !== "Ctrl+Shift+Z" && chord !== "Ctrl+Y")) return;
+      const id = bindings.get(chord)?.id ?? "";
+      if (isTyping(event.target) && !(chord.startsWith("Ctrl+") && isHarmless(id))) return;
       if (document.querySelector('[role="dialog"][aria-modal="true"]')) return;
       if (!isOnPicture(event.target) && keepsKey(event.target as HTMLElement, chord)) return;
-      const handle = current.current[bindings.get(chord)?.id ?? ""];
+      const handle = current.current[id];
       if (!handle) return;
       event.preventDefault();
       handle(event);

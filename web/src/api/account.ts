@@ -10,7 +10,7 @@ export const logIn = (name: string, password: string): Promise<Me> => request<Me
 export const logInWithCode = (code: string, password: string): Promise<Me> =>
   request<Me>("POST", "/login/code", { body: { code, password } });
 
-export const logOut = (isEverywhere = false): Promise<void> => request("POST", isEverywhere ? "/logout/everywhere" : "/logout");
+export const logOut = (isEverywhere = false): Promise<void> => request("POST", isEverywhere ? "/logout/everywhere" : "/logout", { whenOut: "fail" });
 
 const keys = {
   logins: ["account", "logins"] as const,

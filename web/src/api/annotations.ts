@@ -6,7 +6,10 @@ import { ApiError, request, requestWithHeaders } from "./client";
 import { fetchAll } from "./recordings";
 import type { Annotation, AnnotationRevision, Page, Side } from "./types";
 
-export const annotationKeys = { of: (recording: string) => ["annotations", recording] as const };
+export const annotationKeys = {
+  of: (recording: string) => ["annotations", recording] as const,
+  history: (recording: string, key: string) => [...annotationKeys.of(recording), "history", key] as const,
+};
 
 /** Of everybody, or of one blind replica. */
 export const fetchAnnotations = (recording: string, replica?: string | null): Promise<Annotation[]> =>
@@ -85,7 +88,7 @@ export async function sendKeyFrame(recording: string, key: string, { points }: P
 /** Every revision of a hand, newest first; empty when nobody ever marked it. */
 export const useAnnotationHistory = (recording: string, key: string, savedAt: number | null, replica: string | null) =>
   useQuery({
-    queryKey: [...annotationKeys.of(recording), "history", key, savedAt, replica],
+    queryKey: [...annotationKeys.history(recording, key), savedAt, replica],
     queryFn: async ({ signal }): Promise<AnnotationRevision[]> => {
       const { camera, frame, hand } = parseKey(key);
       try {

@@ -57,7 +57,7 @@ export interface Answer<T> {
 }
 
 const unreachable = (): ApiError =>
-  new ApiError(0, "Unreachable", "The studio's server does not answer. Check that `handloom serve` is still running.");
+  new ApiError(0, "Unreachable", "The studio does not answer. Check this computer's network; if it is up, ask whoever runs the studio whether it still runs.");
 
 function addressOf(path: string, query: RequestOptions["query"]): string {
   const known = Object.entries(query ?? {}).flatMap(([name, value]) =>

@@ -2,6 +2,7 @@
 
 import { useMutation, useQuery, useQueryClient, type QueryClient } from "@tanstack/react-query";
 import { patternOf, type Pattern } from "../model/upright";
+import { refreshAfterDelete } from "./afterDelete";
 import { API, fetchBytes, request } from "./client";
 import { readGeometry } from "./geometryFile";
 import { jobKeys } from "./jobs";
@@ -150,6 +151,6 @@ export function useHideModel() {
   const client = useQueryClient();
   return useMutation({
     mutationFn: ({ id, isBack }: { id: string; isBack: boolean }) => request(isBack ? "POST" : "DELETE", `/hand-models/${id}${isBack ? "/restore" : ""}`),
-    onSuccess: () => client.invalidateQueries({ queryKey: modelKeys.all }),
+    onSuccess: (_, { id, isBack }) => (isBack ? client.invalidateQueries({ queryKey: modelKeys.all }) : refreshAfterDelete(client, modelKeys.all, id)),
   });
 }

@@ -1,4 +1,5 @@
 import { useMutation, useQuery, useQueryClient, type QueryClient } from "@tanstack/react-query";
+import { refreshAfterDelete } from "./afterDelete";
 import { API, request, requestWithHeaders } from "./client";
 import type { Page, Recording } from "./types";
 
@@ -49,7 +50,7 @@ export function useDeleteRecording() {
   return useMutation({
     mutationFn: (recording: Recording) =>
       request("DELETE", `/sequences/${recording.id}`, { headers: { "If-Match": `"${recording.revision}"` } }),
-    onSuccess: () => refresh(client),
+    onSuccess: (_, { id }) => refreshAfterDelete(client, recordingKeys.all, id),
   });
 }
 

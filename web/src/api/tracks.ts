@@ -1,5 +1,6 @@
 import { keepPreviousData, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useRef, useState } from "react";
+import { refreshAfterDelete } from "./afterDelete";
 import { API, ApiError, request } from "./client";
 import { fetchAll } from "./recordings";
 import type { Evaluation, FrameEnergy, Track, TrackFrames, TrackJoints, ViewerSession } from "./types";
@@ -65,6 +66,10 @@ export const errorOf = (evaluation: Evaluation | null | undefined): number | nul
 export const overlayUrl = (track: string, camera: string, frame: number): string =>
   `${API}/tracks/${track}/cameras/${encodeURIComponent(camera)}/frames/${frame}/overlay.png`;
 
+/** What the run left out as neither hand nor a model. */
+export const unknownUrl = (track: string, camera: string, frame: number): string =>
+  `${API}/tracks/${track}/cameras/${encodeURIComponent(camera)}/frames/${frame}/unknown.png`;
+
 export const trackFileUrl = (track: string, name: string): string => `${API}/tracks/${track}/files/${name}`;
 
 /** What a track can be exported as. */
@@ -81,7 +86,7 @@ export function useDeleteTrack() {
   const client = useQueryClient();
   return useMutation({
     mutationFn: (id: string) => request("DELETE", `/tracks/${id}`),
-    onSuccess: () => client.invalidateQueries({ queryKey: trackKeys.all }),
+    onSuccess: (_, id) => refreshAfterDelete(client, trackKeys.all, id),
   });
 }
 
@@ -94,7 +99,7 @@ export function useRestoreTrack() {
 }
 
 /** Layers of the 3D viewer that are on or off. */
-export const LAYERS = ["cloud", "mesh", "skeleton", "correspondences", "detections", "collisions", "contacts", "distances"] as const;
+export const LAYERS = ["cloud", "mesh", "skeleton", "correspondences", "detections", "collisions", "contacts", "unknown", "distances"] as const;
 export type Layer = (typeof LAYERS)[number];
 
 /** What the 3D viewer is to show, under its own names. */

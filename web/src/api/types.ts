@@ -70,6 +70,8 @@ export interface TrackSummary {
   depth_residual_mm: number | null;
   silhouette_iou: number | null;
   threads: number | null;
+  /** The lab's own fingertip detector; null or missing for the one that comes with Handloom. */
+  detector?: { name: string; sha256: string } | null;
 }
 
 /** What the server found in an import; problems and warnings are sentences for people. */

@@ -5,6 +5,9 @@ import { toScreen, type Point, type View } from "./view";
 /** How near to a joint a press counts as on it, px of the screen. */
 export const HIT_RADIUS = 10;
 
+/** While another joint waits to be placed, a click this near to one still chooses it, px of the screen: the disc that is drawn. */
+export const CHOOSE_RADIUS = 6;
+
 /** The joint, placed or outside with a place, nearest to a screen point, or -1; among equally near ones the active joint wins. */
 export function jointAt(pose: Pose, view: View, screen: Point, active: number, radius = HIT_RADIUS): number {
   let best = -1;

@@ -6,6 +6,8 @@ import { fitView, isInImage, panBy, toPixel, zoomAt, type Point, type Size, type
 export interface PaneGestures {
   /** The joint under a screen point, or -1. */
   hitJoint?: (view: View, screen: Point) => number;
+  /** The joint that a click there chooses, or -1 for one that places. A press that becomes a drag goes by `hitJoint`. */
+  chosenAt?: (view: View, screen: Point) => number;
   onPlace?: (pixel: Point) => void;
   onSelect?: (joint: number) => void;
   onDragJoint?: (joint: number, to: Point) => void;
@@ -146,7 +148,7 @@ export function usePaneGestures(
       if (isSpaceHeld.current) gestures.onSpacePan?.();
       if (event.button === 1 || event.ctrlKey || event.metaKey || isSpaceHeld.current) press.current = { kind: "pan", last: screen };
       else if (event.altKey && gestures.onDragHand && on !== null) press.current = { kind: "hand", start: pixel, on, isMoving: false };
-      else if (joint >= 0 && on !== null) press.current = { kind: "joint", joint, start: screen, on, isMoving: false };
+      else if (joint >= 0 && on !== null && !event.shiftKey) press.current = { kind: "joint", joint, start: screen, on, isMoving: false };
       else press.current = { kind: "ground", start: screen, on };
     },
 
@@ -187,8 +189,11 @@ export function usePaneGestures(
       const pixel = toPixel(view, screenOf(event));
       if (now.on === null || live() !== now.on) {
         if (isInImage(pixel, image)) gestures.onRefused?.();
-      } else if (now.kind === "joint") gestures.onSelect?.(now.joint);
-      else if (now.kind === "ground" && isInImage(pixel, image)) gestures.onPlace?.(pixel);
+        return;
+      }
+      const chosen = now.kind === "joint" ? (gestures.chosenAt?.(view, now.start) ?? now.joint) : -1;
+      if (chosen >= 0) gestures.onSelect?.(chosen);
+      else if (now.kind !== "hand" && isInImage(pixel, image)) gestures.onPlace?.(pixel);
     },
 
     onPointerCancel() {

@@ -1,12 +1,12 @@
 import { expect, test } from "vitest";
 import type { ViewerSession } from "../api/types";
-import { countOf, describeCollisions, describeContacts, describeDetections, describeOrigin } from "./evidence";
+import { countOf, describeCollisions, describeContacts, describeDetections, describeOrigin, describeUnknown } from "./evidence";
 
 const contacts = { is_of_run: true, object: "pipe", is_stable: false, displacement_mm: 36, held_displacement_mm: 36, simulated: 4, parts: [] };
 const part = { hand: "right", part: "index distal", distance_mm: 2, is_chosen: false };
 
 test("a frame where nothing is found says so", () => {
-  expect(describeDetections({ is_of_run: true, items: [] })).toContain("No fingertip was found");
+  expect(describeDetections({ is_of_run: true, own_detector: null, items: [] })).toContain("No fingertip was found");
   expect(describeCollisions({ is_of_run: true, triangles: 0, vertices: 0, deepest_mm: 0, full_mm: 5, pairs: [] })).toBe("Nothing stands in anything else here.");
   expect(describeContacts({ ...contacts, object: null })).toContain("needs an object and a hand");
 });
@@ -21,6 +21,14 @@ test("an object is held, or falls for want of fingers, or would be held by those
 test("what the run did without is said to be worked out now", () => {
   expect(describeOrigin("collisions", false)).toContain("did without collision (C)");
   expect(describeOrigin("collisions", true)).toBeNull();
+  expect(describeOrigin("detections", true, "tips.npz")).toBe("Found by “tips.npz”, at which the run looked in every frame.");
+});
+
+test("what was left out is counted, and what cannot be known without colour is said", () => {
+  const unknown = { color: "#f06595", pixels: 2400, before: 310, by_color: true };
+  expect(describeUnknown(unknown)).toBe("2,400 pixels were left out; 310 of them hide the hand.");
+  expect(describeUnknown({ ...unknown, pixels: 0, before: 0 })).toBe("Nothing near the hands was left out here.");
+  expect(describeUnknown({ ...unknown, by_color: false })).toContain("Without colour only what hides the hand");
 });
 
 test("a layer's count is known when it is on", () => {

@@ -5,6 +5,7 @@ import { formatCount, formatNumber } from "./format";
 
 type Detections = NonNullable<ViewerSession["detections"]>;
 type Collisions = NonNullable<ViewerSession["collisions"]>;
+type Unknown = NonNullable<ViewerSession["unknown"]>;
 type Contacts = NonNullable<ViewerSession["contacts"]>;
 
 /** Displacement at which physics calls an object fallen, mm. */
@@ -37,10 +38,16 @@ export function describeContacts({ object, is_stable: isStable, displacement_mm:
   return `${falls}, and no combination of the parts near it would hold it.`;
 }
 
+export function describeUnknown({ pixels, before, by_color: byColor }: Unknown): string {
+  const told = pixels === 0 ? "Nothing near the hands was left out here." : `${formatCount(pixels, "pixel was", "pixels were")} left out; ${before > 0 ? before.toLocaleString("en") : "none"} of them hide${before === 1 ? "s" : ""} the hand.`;
+  return byColor ? told : `${told} Without colour only what hides the hand can be told from it.`;
+}
+
 /** That a layer shows what the run itself did without; null if it did not. */
-export function describeOrigin(layer: "detections" | "collisions" | "contacts", isOfRun: boolean): string | null {
+export function describeOrigin(layer: "detections" | "collisions" | "contacts", isOfRun: boolean, ownDetector: string | null = null): string | null {
   const terms = { detections: "fingertips (S)", collisions: "collision (C)", contacts: "physics (P)" } as const;
   if (!isOfRun) return `Worked out now. This run did without ${terms[layer]}.`;
+  if (ownDetector !== null) return `Found by “${ownDetector}”, at which the run looked in every frame.`;
   return layer === "detections" ? "The run itself looks at them only where a frame goes badly." : null;
 }
 

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { formatAgo, formatBytes, formatDuration, formatLeft, formatName, formatNumber } from "./format";
+import { formatAgo, formatBytes, formatDuration, formatLeft, formatName, formatNumber, formatRough } from "./format";
 
 test("durations are short for seconds and plain for hours", () => {
   expect([0.27, 9.99, 65, 3725].map(formatDuration)).toEqual(["0.3 s", "0:10", "1:05", "1 h 02 min"]);
@@ -25,4 +25,8 @@ test("what is not known is a dash, never NaN", () => {
 
 test("names of fields become words", () => {
   expect([formatName("depth_residual_mm"), formatBytes(1234567), formatBytes(12)]).toEqual(["Depth residual mm", "1.2 MB", "12 B"]);
+});
+
+test("a number of any size is written out", () => {
+  expect([0.034217, 20.06, 2486.3, 12345678].map(formatRough)).toEqual(["0.0342", "20.1", "2,490", "12,300,000"]);
 });

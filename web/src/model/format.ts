@@ -29,6 +29,9 @@ export function formatAgo(time: string, now: number = Date.now()): string {
 export const formatNumber = (value: number | null | undefined, digits = 1): string =>
   value === null || value === undefined || !Number.isFinite(value) ? "–" : value.toFixed(digits);
 
+/** Three digits of a number of any size, never as a power of ten. */
+export const formatRough = (value: number): string => value.toLocaleString("en", { maximumSignificantDigits: 3 });
+
 export const formatCount = (count: number, one: string, many = `${one}s`): string => `${count.toLocaleString("en")} ${count === 1 ? one : many}`;
 
 export function formatBytes(bytes: number): string {

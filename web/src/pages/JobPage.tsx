@@ -1,4 +1,4 @@
-import { Code, Group, Progress, ScrollArea, SimpleGrid, Stack, Text, Title } from "@mantine/core";
+import { Button, Code, Group, Progress, ScrollArea, SimpleGrid, Stack, Text, Title } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { Link, useParams } from "react-router";
 import { useRestartCheck } from "../api/jobChecks";
@@ -18,19 +18,18 @@ import classes from "./JobPage.module.css";
 
 function Log({ jobId, isLive }: { jobId: string; isLive: boolean }) {
   const { data, error } = useJobLog(jobId, isLive);
-  const end = useRef<HTMLDivElement>(null);
+  const lines = useRef<HTMLDivElement>(null);
   const count = data?.length ?? 0;
-  useEffect(() => void end.current?.scrollIntoView({ block: "nearest" }), [count]);
+  useEffect(() => void lines.current?.scrollTo({ top: lines.current.scrollHeight }), [count]);
   if (error) return <Text className="quiet">The log could not be loaded: {error.message}</Text>;
   return (
-    <ScrollArea.Autosize mah={420} className={classes.log} tabIndex={0} aria-label="Log of the job">
+    <ScrollArea.Autosize mah={420} className={classes.log} viewportRef={lines} tabIndex={0} aria-label="Log of the job">
       {count === 0 && <Text className="quiet">{!data ? "Loading …" : isLive ? "Nothing logged yet." : "The job logged nothing."}</Text>}
       {data?.map((line) => (
         <div key={line.n} className={classes.line} data-level={line.level.toLowerCase()}>
           <span className="quiet">{new Date(line.time).toLocaleTimeString()}</span> <span className={classes.level}>{line.level.toLowerCase()}</span> {line.text}
         </div>
       ))}
-      <div ref={end} />
     </ScrollArea.Autosize>
   );
 }
@@ -42,7 +41,14 @@ export function JobPage() {
   const restart = useRestartCheck(job).data;
   const form = useJobForm(job?.kind === "track").data;
   useTitle(job ? `${formatJobKind(job.kind)} ${job.title}` : "Job");
-  if (error && !job) return <Failure what="The job could not be loaded" error={error} safe="If it runs, it goes on by itself." onRetry={() => void refetch()} />;
+  if (error && !job)
+    return (
+      <Failure what="The job could not be loaded" error={error} safe="If it runs, it goes on by itself." onRetry={() => void refetch()}>
+        <Button variant="default" component={Link} to="/jobs">
+          To the jobs
+        </Button>
+      </Failure>
+    );
   if (!job) return <PageSkeleton />;
   const params = describeParams(job.params, form);
   return (

@@ -1,4 +1,4 @@
-import { ActionIcon, Button, Code, Group, Menu, SimpleGrid, Stack, Text, Title, Tooltip } from "@mantine/core";
+import { ActionIcon, Button, Code, Group, Menu, SimpleGrid, Skeleton, Stack, Text, Title, Tooltip } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { notifications } from "@mantine/notifications";
 import { IconChartBar, IconDots, IconDownload, IconFileReport, IconFlag, IconPencil, IconPlayerPlay, IconTransfer, IconTrash } from "@tabler/icons-react";
@@ -186,9 +186,10 @@ export function RecordingPage() {
               </Button>
             )}
           </Group>
-          {tracks.data && tracks.data.length > 0 ? (
-            <TrackTable tracks={tracks.data} />
-          ) : (
+          {!tracks.data && tracks.error && <Failure what="The tracks could not be loaded" error={tracks.error} onRetry={() => void tracks.refetch()} />}
+          {tracks.isPending && <Skeleton height={96} radius="lg" role="status" aria-label="The tracks are loaded" />}
+          {tracks.data && tracks.data.length > 0 && <TrackTable tracks={tracks.data} />}
+          {tracks.data?.length === 0 && (
             <Group className="card" p="md" justify="space-between">
               <Text className="quiet" style={{ flex: 1 }}>
                 {obstacles.length > 0

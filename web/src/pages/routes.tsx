@@ -12,6 +12,7 @@ import { RecordingPage } from "./RecordingPage";
 import { RecordingsPage } from "./RecordingsPage";
 import { Shell } from "./Shell";
 import { TracksPage } from "./TracksPage";
+import { WholeAddress } from "./WholeAddress";
 
 const AnnotatePage = lazy(() => import("./AnnotatePage"));
 const AnnotateChooser = lazy(() => import("./AnnotateChooser"));
@@ -40,6 +41,7 @@ export const router = createBrowserRouter([
     errorElement: <BrokenPage />,
     children: [
       {
+        element: <WholeAddress />,
         errorElement: <BrokenPage />,
         children: [
           { index: true, element: <Navigate to="/recordings" replace /> },

@@ -22,6 +22,18 @@ export const createHoverStore = (): HoverStore => createStore<Hover | null>(null
 
 export const useHover = (hover: HoverStore): Hover | null => useSyncExternalStore(hover.watch, hover.get);
 
+/** The joint that a click would choose, in a camera's pictures. */
+export interface Over {
+  readonly camera: string;
+  readonly joint: number;
+}
+
+export type OverStore = Store<Over | null>;
+
+export const createOverStore = (): OverStore => createStore<Over | null>(null);
+
+export const useOver = (over: OverStore): Over | null => useSyncExternalStore(over.watch, over.get);
+
 /** The pointer as the pictures of one camera know it. */
 export function pointerOn(hover: HoverStore, camera: string): PointerStore {
   const pixelOf = (value: Hover | null): Point | null => (value?.camera === camera ? value.pixel : null);

@@ -1,12 +1,13 @@
 import { Badge, Button, Group, PasswordInput, Stack, Text, Title } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { useState, type FormEvent } from "react";
-import { logOut, useChangePassword } from "../../api/account";
+import { useChangePassword } from "../../api/account";
 import { useMe } from "../../state/me";
 import { useTitle } from "../parts/useTitle";
 import classes from "./account.module.css";
 import { Logins } from "./Logins";
 import { Tokens } from "./Tokens";
+import { useLogOut } from "./useLogOut";
 
 function PasswordForm() {
   const [current, setCurrent] = useState("");
@@ -47,11 +48,10 @@ function PasswordForm() {
 export default function AccountPage() {
   useTitle("My account");
   const me = useMe();
-  const leaveEverywhere = (): void => {
-    void logOut(true).finally(() => window.location.assign("/"));
-  };
+  const { ask, isLeaving, question } = useLogOut(true);
   return (
     <div className="page">
+      {question}
       <Group gap="md" mb="lg">
         <Title order={1}>{me.name}</Title>
         <Badge variant="light" color="gray" tt="none">
@@ -73,7 +73,7 @@ export default function AccountPage() {
               <Title order={2} id="browsers">
                 Where you are logged in
               </Title>
-              <Button variant="default" onClick={leaveEverywhere}>
+              <Button variant="default" loading={isLeaving} onClick={ask}>
                 Log out everywhere
               </Button>
             </Group>

@@ -17,6 +17,7 @@ const KINDS = [
   { value: "track", label: "Tracks" },
   { value: "scan", label: "Scans" },
   { value: "hand_model", label: "Hand models" },
+  { value: "detector", label: "Fingertip detectors" },
   { value: "project", label: "Projects" },
   { value: "replica_set", label: "Blind replicas" },
 ];

@@ -30,12 +30,12 @@ export function FlagCard() {
   const [isOpen, setOpen] = useState(false);
   const isSaved = saving.waiting === 0 && !saving.isSending;
 
-  // A save may come and go between two drawings: `isSaved` alone would not tell.
+  // A save may come and go between two drawings: `isSaved` alone would not tell. What others save changes the poses.
   useEffect(() => {
     if (!isSaved) return;
     const timer = setTimeout(() => void client.invalidateQueries({ queryKey: flagKeys.of(recording.id) }), CHECK_AFTER_MS);
     return () => clearTimeout(timer);
-  }, [client, isSaved, saving.lastSavedAt, recording.id]);
+  }, [client, isSaved, saving.lastSavedAt, state.poses, recording.id]);
 
   const here = flags.filter((flag) => flag.frame === state.frame && flag.camera === state.camera && flag.hand === state.hand);
   const first = here[0];

@@ -6,17 +6,19 @@ import { turnHand } from "../../actions/annotate/turn";
 import { cycleVisibility } from "../../actions/annotate/visibility";
 import { useCallback, useEffect, useId, useMemo, type ReactNode } from "react";
 import type { Camera } from "../../api/types";
-import { jointAt } from "../../canvas/hit";
+import { CHOOSE_RADIUS, HIT_RADIUS, jointAt } from "../../canvas/hit";
 import { ImagePane, type PaneLayer } from "../../canvas/ImagePane";
 import type { Pictures } from "../../canvas/usePictures";
+import type { Point, View } from "../../canvas/view";
 import { jointLabel } from "../../model/joints";
 import { emptyPose, keyText } from "../../model/pose";
-import { pointerOn } from "../../state/pointer";
+import { pointerOn, useOver } from "../../state/pointer";
 import { useAnnotating } from "./annotating";
 import classes from "./Annotator.module.css";
 import { CursorCurve } from "./EpipolarLayer";
 import { LAYERS } from "./mounts";
 import { describeClick } from "./nextClick";
+import { OverJoint } from "./OverJoint";
 import { useSuggestDouble } from "./useSuggestDouble";
 
 interface PaneProps {
@@ -31,7 +33,7 @@ interface PaneProps {
 
 /** One picture of one camera, to be annotated; a gesture on a camera that is not the active one makes it so first. */
 export function Pane({ camera, label, layers, pictures, overlay }: PaneProps) {
-  const { session, state, pose, options, viewOf, setView, noteDrawn, isRefused, refuse, hover, isMagnified, act, run } = useAnnotating();
+  const { session, state, pose, options, viewOf, setView, noteDrawn, isRefused, refuse, hover, over, isMagnified, act, run } = useAnnotating();
   const isActive = camera.id === state.camera;
   const shown = isActive ? pose : (state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })] ?? emptyPose());
   const here = (): void => void act(activateCamera, camera.id);
@@ -42,6 +44,11 @@ export function Pane({ camera, label, layers, pictures, overlay }: PaneProps) {
   useEffect(() => () => noteDrawn(pane, camera.id, null), [noteDrawn, pane, camera.id]);
   const { shownFrame } = pictures;
   const clicked = clickedJoint(state);
+  const chosen = useOver(over);
+  const cursorLabel = pictures.isStale || state.draft !== null ? "" : chosen?.camera === camera.id ? `choose ${jointLabel(chosen.joint)}` : clicked === null ? "" : jointLabel(clicked);
+  const jointNear = (view: View, screen: Point, radius: number): number => (options.areHandsShown ? jointAt(shown, view, screen, isActive ? state.joint : -1, radius) : -1);
+  // Fingertips of a fist lie close together: while a joint waits to be placed, only a click on a disc chooses another one.
+  const chosenAt = (view: View, screen: Point): number => jointNear(view, screen, clickedJoint(activateCamera(state, camera.id)) === null ? HIT_RADIUS : CHOOSE_RADIUS);
   return (
     <ImagePane
       label={`${label} of frame ${state.frame}, ${camera.id}. Next click ${describeClick(state, pose, options.placeMode)}.`}
@@ -52,7 +59,7 @@ export function Pane({ camera, label, layers, pictures, overlay }: PaneProps) {
       brightness={options.brightness}
       contrast={options.contrast}
       pointer={pointer}
-      cursorLabel={clicked === null || pictures.isStale ? "" : jointLabel(clicked)}
+      cursorLabel={cursorLabel}
       isMagnified={isMagnified}
       frame={state.frame}
       shownFrame={shownFrame}
@@ -63,7 +70,8 @@ export function Pane({ camera, label, layers, pictures, overlay }: PaneProps) {
       isRefused={isRefused}
       onDrawn={onDrawn}
       onRefused={refuse}
-      hitJoint={(view, screen) => (options.areHandsShown ? jointAt(shown, view, screen, isActive ? state.joint : -1) : -1)}
+      hitJoint={(view, screen) => jointNear(view, screen, HIT_RADIUS)}
+      chosenAt={chosenAt}
       onDouble={onDouble}
       onPlace={(pixel) => {
         here();
@@ -93,7 +101,12 @@ export function Pane({ camera, label, layers, pictures, overlay }: PaneProps) {
         here();
         act(cycleVisibility, joint);
       }}
-      withCursor={(view) => <CursorCurve view={view} camera={camera} />}
+      withCursor={(view) => (
+        <>
+          <CursorCurve view={view} camera={camera} />
+          <OverJoint view={view} camera={camera} pose={shown} chosenAt={chosenAt} />
+        </>
+      )}
       overlay={overlay ?? <span className={classes.paneLabel}>{label}</span>}
     >
       {(view) => shownFrame !== null && LAYERS.map((Layer, index) => <Layer key={index} view={view} camera={camera} frame={shownFrame} />)}

@@ -1,6 +1,6 @@
 import type { DepthImage } from "../../canvas/depth";
 import { depthAt } from "../../canvas/depth";
-import { usePointer, type PointerStore } from "../../state/pointer";
+import { useOver, usePointer, type PointerStore } from "../../state/pointer";
 import { useSearchParams } from "react-router";
 import { scopeOf } from "../../state/saving";
 import { SaveState } from "../parts/SaveState";
@@ -30,14 +30,15 @@ function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | n
 
 export function StatusLine() {
   const [address] = useSearchParams();
-  const { recording, state, pose, saving, pointer, pictures, lock, session, options, isPlaying, isRefused } = useAnnotating();
+  const { recording, state, pose, saving, pointer, pictures, lock, session, options, isPlaying, isRefused, over } = useAnnotating();
+  const chosen = useOver(over);
   const [isCompact, hasFingers] = [useIsCompact(), useHasFingers()];
   const isLooking = isCompact && hasFingers && !options.isTouchMarking;
   return (
     <div className={classes.line}>
       <SaveState status={{ ...saving, conflicts: saving.conflicts.size, refusals: saving.refusals.size }} own={{ scope: scopeOf(recording.id, address.get("replica")) }} what="Every gesture is saved by itself" action="save.now" onFlush={() => session.flush()} />
       <span className={classes.next} data-testid="next-click">
-        {lock ?? describeWait(state, pictures, isPlaying, isRefused) ?? (isLooking ? "Swipe for frames, tap to choose a joint" : `Next click ${describeClick(state, pose, options.placeMode)}`)}
+        {lock ?? describeWait(state, pictures, isPlaying, isRefused) ?? (isLooking ? "Swipe for frames, tap to choose a joint" : `Next click ${describeClick(state, pose, options.placeMode, chosen?.joint ?? null)}`)}
       </span>
       <span className={classes.here}>
         <PeopleHere />

@@ -12,7 +12,7 @@ import { useSuggestions } from "./useSession";
 
 /** Who suggests what for the active hand, and the button that takes it. */
 export function SuggestLine() {
-  const { session, state, pose, run } = useAnnotating();
+  const { session, state, pose, run, lock } = useAnnotating();
   const suggestions = useSuggestions(session);
   const hint = useHint();
   const keyOf = useKeyOf();
@@ -29,12 +29,18 @@ export function SuggestLine() {
             <span className={classes.mark} aria-hidden /> Suggested by {labels.join(", ")}
           </>
         ) : (
-          <span className="quiet">{decidedCount(pose) === JOINT_COUNT ? "Every joint of this hand is decided" : "Nothing suggested for this hand yet"}</span>
+          <span className="quiet">
+            {decidedCount(pose) === JOINT_COUNT
+              ? "Every joint of this hand is decided"
+              : suggestions.hidden.size === SOURCES.length
+                ? `Suggestions are hidden (${keyOf("suggestion.toggle")} shows them)`
+                : "Nothing suggested for this hand yet"}
+          </span>
         )}
       </Text>
       {count > 0 && (
         <Tooltip label={hint("Or one joint at a time", "suggestion.joint")}>
-          <Button fullWidth size="compact-xs" variant="light" color="violet" onClick={() => run("suggestion.hand")} rightSection={<kbd className={classes.key}>{keyOf("suggestion.hand")}</kbd>}>
+          <Button fullWidth size="compact-xs" variant="light" color="violet" disabled={lock !== null} onClick={() => run("suggestion.hand")} rightSection={<kbd className={classes.key}>{keyOf("suggestion.hand")}</kbd>}>
             Accept {formatCount(count, "joint")}
           </Button>
         </Tooltip>

@@ -37,7 +37,9 @@ import { useKeyFrames } from "./useSession";
 
 /** The things one does, as buttons; each says its key. */
 export function ToolRail() {
-  const { state, session, camera, pose, options, setOptions, run } = useAnnotating();
+  const { state, session, camera, pose, options, setOptions, run, lock } = useAnnotating();
+  // Frames that are another's, in review or accepted: what would change a label is not offered.
+  const isLocked = lock !== null;
   const isCompact = useIsCompact();
   const hasFingers = useHasFingers();
   const [canUndo, canRedo] = [session.undo.canUndo(), session.undo.canRedo()];
@@ -63,16 +65,16 @@ export function ToolRail() {
       <Tool label="Undo" action="undo" icon={<IconArrowBackUp size={size} />} isDisabled={!canUndo} onClick={() => run("undo")} />
       <Tool label="Redo" action="redo" icon={<IconArrowForwardUp size={size} />} isDisabled={!canRedo} onClick={() => run("redo")} />
       <Divider w={24} />
-      <Tool label="Occluded, or visible again" action="joint.occluded" icon={<IconEyeOff size={size} />} isDisabled={!hasPose} onClick={() => run("joint.occluded")} />
-      <Tool label="Outside the image" action="joint.outside" icon={<IconSquareOff size={size} />} onClick={() => run("joint.outside")} />
-      <Tool label="Clear the joint" action="joint.clear" icon={<IconX size={size} />} isDisabled={!hasPose} onClick={() => run("joint.clear")} />
-      <Tool label="Clear the whole hand" action="hand.clear" icon={<IconTrash size={size} />} isDisabled={!hasPose} onClick={() => run("hand.clear")} />
-      <Tool label="Bring the last annotated pose" action="hand.bring" icon={<IconCopy size={size} />} isDisabled={!canBring} onClick={() => run("hand.bring")} />
+      <Tool label="Occluded, or visible again" action="joint.occluded" icon={<IconEyeOff size={size} />} isDisabled={isLocked || !hasPose} onClick={() => run("joint.occluded")} />
+      <Tool label="Outside the image" action="joint.outside" icon={<IconSquareOff size={size} />} isDisabled={isLocked} onClick={() => run("joint.outside")} />
+      <Tool label="Clear the joint" action="joint.clear" icon={<IconX size={size} />} isDisabled={isLocked || !hasPose} onClick={() => run("joint.clear")} />
+      <Tool label="Clear the whole hand" action="hand.clear" icon={<IconTrash size={size} />} isDisabled={isLocked || !hasPose} onClick={() => run("hand.clear")} />
+      <Tool label="Bring the last annotated pose" action="hand.bring" icon={<IconCopy size={size} />} isDisabled={isLocked || !canBring} onClick={() => run("hand.bring")} />
       <PropagateTool />
-      <Tool label="Swap left and right" action="hand.swap" icon={<IconArrowsLeftRight size={size} />} isDisabled={!hasHands} onClick={() => run("hand.swap")} />
+      <Tool label="Swap left and right" action="hand.swap" icon={<IconArrowsLeftRight size={size} />} isDisabled={isLocked || !hasHands} onClick={() => run("hand.swap")} />
       <Divider w={24} />
-      <Tool label={isKey ? "No key frame any more" : "Key frame"} action="key.mark" icon={isKey ? <IconDiamondFilled size={size} /> : <IconDiamond size={size} />} isOn={isKey} isDisabled={!hasPose} onClick={() => run("key.mark")} />
-      <Tool label="Accept what is between the key frames" action="key.accept" icon={<IconTimelineEvent size={size} />} isDisabled={!span} onClick={() => run("key.accept")} />
+      <Tool label={isKey ? "No key frame any more" : "Key frame"} action="key.mark" icon={isKey ? <IconDiamondFilled size={size} /> : <IconDiamond size={size} />} isOn={isKey} isDisabled={isLocked || !hasPose} onClick={() => run("key.mark")} />
+      <Tool label="Accept what is between the key frames" action="key.accept" icon={<IconTimelineEvent size={size} />} isDisabled={isLocked || !span} onClick={() => run("key.accept")} />
       <Divider w={24} />
       <Tool label="Fit the image" action="view.fit" icon={<IconArrowsMaximize size={size} />} onClick={() => run("view.fit")} />
       {hasSeveralPictures && <Tool label="Arrange colour and depth" action="view.depth" icon={<IconPictureInPicture size={size} />} onClick={() => run("view.depth")} />}

@@ -31,7 +31,10 @@ export function Words({ label, isBusy, mayBeEmpty, onSend, onCancel }: WordsProp
         placeholder={label}
         value={text}
         onChange={(event) => setText(event.currentTarget.value)}
-        onKeyDown={(event) => event.key === "Escape" && onCancel()}
+        onKeyDown={(event) => {
+          if (event.key === "Escape") onCancel();
+          if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) event.currentTarget.form?.requestSubmit();
+        }}
       />
       <Button size="compact-xs" type="submit" loading={isBusy} disabled={!isReady}>
         Send

@@ -7,7 +7,7 @@ import type { Pictures } from "../../canvas/usePictures";
 import type { View } from "../../canvas/view";
 import type { Pose } from "../../model/pose";
 import type { Action, AnnotatorState } from "../../state/annotator";
-import type { HoverStore, PointerStore } from "../../state/pointer";
+import type { HoverStore, OverStore, PointerStore } from "../../state/pointer";
 import type { SaveStatus } from "../../state/saveQueue";
 import type { Session } from "../../state/session";
 import type { Arrangement, ViewOptions } from "../../state/viewOptions";
@@ -44,6 +44,8 @@ export interface Annotating {
   readonly pointer: PointerStore;
   /** In whichever camera's pictures it is. */
   readonly hover: HoverStore;
+  /** The joint that a click would choose where the pointer is. */
+  readonly over: OverStore;
   readonly isMagnified: boolean;
   readonly isPlaying: boolean;
   /** Another version of the active hand to compare with, drawn as a ghost. */

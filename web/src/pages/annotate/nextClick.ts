@@ -1,4 +1,4 @@
-/** What the next click on the ground does, or why it does nothing. */
+/** What the next click does, or why it does nothing. */
 
 import { clickedJoint, type PlaceMode } from "../../actions/annotate/place";
 import type { Pictures } from "../../canvas/usePictures";
@@ -6,7 +6,12 @@ import { jointLabel } from "../../model/joints";
 import { statusOf, type Pose } from "../../model/pose";
 import type { AnnotatorState } from "../../state/annotator";
 
-export function describeClick(state: AnnotatorState, pose: Pose, placeMode: PlaceMode): string {
+/** `over` is the joint that a click chooses where the pointer is; null on the ground. */
+export function describeClick(state: AnnotatorState, pose: Pose, placeMode: PlaceMode, over: number | null = null): string {
+  if (over !== null && state.draft === null) {
+    const ground = clickedJoint(state) === null ? "" : `; with Shift it ${describeClick(state, pose, placeMode)}`;
+    return `chooses the ${state.hand} ${jointLabel(over)}${ground}`;
+  }
   const joint = clickedJoint(state);
   if (joint === null) return `changes nothing: every joint of the ${state.hand} hand is decided. Drag a joint, or choose it first`;
   const name = `${state.hand} ${jointLabel(joint)}`;

@@ -1,5 +1,5 @@
 import type { QueryClient } from "@tanstack/react-query";
-import { fetchAnnotations, fetchKeyFrames, type PlaceOf } from "../../api/annotations";
+import { annotationKeys, fetchAnnotations, fetchKeyFrames, type PlaceOf } from "../../api/annotations";
 import { sendVisit, type PersonHere } from "../../api/live";
 import { teamKeys } from "../../api/teams";
 import type { Annotation, Me, Recording } from "../../api/types";
@@ -41,7 +41,10 @@ export function openLive({ recording, replica, session, me, annotations, client 
     query: { reader: me.id, visit: visitId, ...(replica ? { replica } : {}) },
     since: annotations.reduce((newest, { updated_at: at }) => (Date.parse(at) > Date.parse(newest) ? at : newest), BEGINNING),
     handlers: {
-      label: (data) => merging.hear(data as Label),
+      label: (data) => {
+        merging.hear(data as Label);
+        void client.invalidateQueries({ queryKey: annotationKeys.history(recording.id, keyText(data as Label)) });
+      },
       keys: (data) => session.keyFrames.learn((data as { items: PlaceOf[] }).items.map(keyText)),
       people: (data) => session.people.set((data as { items: PersonHere[] }).items, "server"),
       work: () => void client.invalidateQueries({ queryKey: teamKeys }),

@@ -13,7 +13,7 @@ import { KEYMAP } from "../../model/keymap";
 import type { Pose } from "../../model/pose";
 import { activePose, type Action } from "../../state/annotator";
 import { keepPlace } from "../../state/lastPlace";
-import { createHoverStore, pointerOn } from "../../state/pointer";
+import { createHoverStore, createOverStore, pointerOn } from "../../state/pointer";
 import type { Session } from "../../state/session";
 import { arrangementFor, arrangementsOf, clampFactor, useViewOptions } from "../../state/viewOptions";
 import { useLateAddress } from "../parts/useLateAddress";
@@ -44,6 +44,7 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
   const [preview, setPreview] = useState<Pose | null>(null);
   const [lock, setLock] = useState<string | null>(null);
   const [hover] = useState(createHoverStore);
+  const [over] = useState(createOverStore);
 
   const camera = recording.cameras.find((one) => one.id === state.camera) ?? recording.cameras[0];
   if (!camera) throw new Error("This recording has no camera.");
@@ -211,6 +212,7 @@ export function useAnnotatorParts(recording: Recording, session: Session, frameF
     refuse,
     pointer,
     hover,
+    over,
     isMagnified,
     isPlaying,
     preview,

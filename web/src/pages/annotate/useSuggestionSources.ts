@@ -5,6 +5,7 @@ import type { Source, Suggestion } from "../../model/suggestion";
 import { activeKey } from "../../state/annotator";
 import { suggest, withdraw } from "../../state/suggestions";
 import { useAnnotating } from "./annotating";
+import { usePatience } from "./usePatience";
 
 /** With fewer joints a model may be anywhere; the server says the same. */
 export const MIN_FIT_JOINTS = 4;
@@ -24,6 +25,7 @@ function useImageSuggestions(source: Source, of: string | undefined, isWanted: b
   const { suggestions } = session;
   const asked = useRef(new Set<string>());
   const [failure, setFailure] = useState<string | null>(null);
+  const patience = usePatience();
 
   useEffect(() => {
     asked.current.clear();
@@ -42,10 +44,15 @@ function useImageSuggestions(source: Source, of: string | undefined, isWanted: b
           const found = await fetch(state.camera, frame, call.signal);
           if (!call.signal.aborted) suggest(suggestions, found);
           if (!call.signal.aborted) setFailure(null);
+          patience.succeeded();
         } catch (reason) {
-          // Without it there is less to accept and nothing else; the next visit asks again.
+          // Without it there is less to accept and nothing else; what may come later is asked for again, as on the next visit.
           asked.current.delete(name);
-          if (!call.signal.aborted) setFailure((reason as Error).message);
+          if (!call.signal.aborted) {
+            setFailure((reason as Error).message);
+            patience.failed(reason as Error);
+          }
+          return;
         }
         if (call.signal.aborted) asked.current.delete(name);
       }
@@ -57,7 +64,7 @@ function useImageSuggestions(source: Source, of: string | undefined, isWanted: b
     };
     // What is asked changes with `of` alone.
     // eslint-disable-next-line react-hooks/exhaustive-deps
-  }, [suggestions, state.camera, state.frame, state.frameCount, of, isWanted]);
+  }, [suggestions, state.camera, state.frame, state.frameCount, of, isWanted, patience.round]);
 
   return isWanted ? failure : null;
 }
@@ -81,6 +88,7 @@ export function useFitSuggestion(isWanted: boolean): string | null {
   const [failure, setFailure] = useState<string | null>(null);
   const key = keyText(activeKey(state));
   const pose = state.poses[key];
+  const patience = usePatience();
 
   useEffect(() => {
     const place = { camera: state.camera, frame: state.frame, hand: state.hand };
@@ -90,8 +98,16 @@ export function useFitSuggestion(isWanted: boolean): string | null {
     const call = new AbortController();
     const timer = setTimeout(() => {
       fetchFit(recording.id, place, pose, call.signal).then(
-        (found) => !call.signal.aborted && suggest(suggestions, [found]),
-        (reason: Error) => !call.signal.aborted && setFailure(reason.message),
+        (found) => {
+          if (call.signal.aborted) return;
+          suggest(suggestions, [found]);
+          patience.succeeded();
+        },
+        (reason: Error) => {
+          if (call.signal.aborted) return;
+          setFailure(reason.message);
+          patience.failed(reason);
+        },
       );
     }, FIT_AFTER_MS);
     return () => {
@@ -100,7 +116,7 @@ export function useFitSuggestion(isWanted: boolean): string | null {
     };
     // The key says camera, frame and hand.
     // eslint-disable-next-line react-hooks/exhaustive-deps
-  }, [recording.id, suggestions, key, pose, isWanted]);
+  }, [recording.id, suggestions, key, pose, isWanted, patience.round]);
 
   return failure;
 }

@@ -76,10 +76,12 @@ export function QueueBar({ choice, onChange, state }: QueueBarProps) {
             {secondsLeft !== null && left > 0 ? ` · ${formatLeft(secondsLeft)}` : ""}
           </Text>
         )}
-        <Text size="xs" span className="quiet">
-          {done.toLocaleString("en")} of {all.toLocaleString("en")} decided
-        </Text>
-        <Progress value={all > 0 ? (100 * done) / all : 0} w={128} aria-label={`${done} of ${all} decided`} />
+        {counts && (
+          <Text size="xs" span className="quiet">
+            {done.toLocaleString("en")} of {all.toLocaleString("en")} decided
+          </Text>
+        )}
+        <Progress value={all > 0 ? (100 * done) / all : 0} w={128} aria-label={counts ? `${done} of ${all} decided` : "Being counted"} />
       </div>
       <Button size="xs" variant="default" component={Link} to="/curate/agreement" leftSection={<IconUsers size={14} aria-hidden />} style={{ flex: "none" }}>
         Agreement

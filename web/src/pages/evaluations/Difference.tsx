@@ -12,8 +12,8 @@ export function Difference({ paired }: { paired: PairedDifference }) {
   return (
     <Tooltip label={about} multiline maw={320}>
       <div tabIndex={0}>
-        <Text size="sm" fw={600} c={color} className="one-line">
-          {signed(paired.difference)} px, {verdict}
+        <Text size="sm" fw={600} c={color}>
+          <span className="one-line">{signed(paired.difference)} px,</span> {verdict}
         </Text>
         <Text size="xs" className="quiet one-line">
           95 %: {signed(paired.low)} to {signed(paired.high)}

@@ -35,12 +35,12 @@ export function SummaryTable({ comparison, reference, onReference }: SummaryTabl
   ];
   return (
     <div className={`card ${classes.frame}`}>
-      <Table verticalSpacing="xs" horizontalSpacing="md" aria-label="Error of each track">
+      <Table verticalSpacing="xs" horizontalSpacing="sm" aria-label="Error of each track">
         <Table.Thead>
           <Table.Tr>
             <Table.Th>Track</Table.Th>
             {MEASURES.map(({ key, label }) => (
-              <Table.Th key={key} ta="right">
+              <Table.Th key={key} ta="right" className="one-line">
                 {label}
               </Table.Th>
             ))}

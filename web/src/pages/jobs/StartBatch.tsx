@@ -9,6 +9,7 @@ import { fetchAll, useRecordings } from "../../api/recordings";
 import type { components } from "../../api/schema";
 import type { Recording } from "../../api/types";
 import { formatCount } from "../../model/format";
+import { FormFooter } from "../parts/Obstacles";
 import { TrackingForm, useTrackingOptions } from "../parts/TrackingForm";
 import classes from "./StartBatch.module.css";
 
@@ -137,7 +138,7 @@ export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
               ))}
             </Stack>
           )}
-          <Group justify="flex-end" gap="sm">
+          <FormFooter>
             <Text size="sm" className="quiet" role="status">
               {chosen.size === 0 ? "Choose recordings above" : "All start together, or none"}
             </Text>
@@ -147,7 +148,7 @@ export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
             <Button type="submit" loading={start.isPending} disabled={chosen.size === 0}>
               Track {formatCount(chosen.size, "recording")}
             </Button>
-          </Group>
+          </FormFooter>
         </Stack>
       </form>
     </Modal>

@@ -88,7 +88,7 @@ export function ExportCard({ recording, snapshots }: { recording: Recording; sna
           </div>
         )}
         {notes && !error ? (
-          <Button component="a" href={exportUrl(recording.id, choice)} download title={notes.file} styles={{ label: { display: "block", height: "auto", textOverflow: "ellipsis" } }} leftSection={<IconDownload size={16} aria-hidden />}>
+          <Button component="a" href={exportUrl(recording.id, choice)} download title={notes.file} styles={{ label: { display: "block", height: "auto", paddingBlock: 6, textOverflow: "ellipsis" } }} leftSection={<IconDownload size={16} aria-hidden />}>
             Download {notes.file}
           </Button>
         ) : (

@@ -9,6 +9,7 @@ import { Failure } from "../parts/Failure";
 import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
 import { useTitle } from "../parts/useTitle";
+import { Detectors } from "./Detectors";
 import { LoopDialog } from "./LoopDialog";
 import classes from "./Models.module.css";
 import { TrainDialog } from "./TrainDialog";
@@ -140,6 +141,7 @@ export default function ModelsPage() {
           </EmptyState>
         )}
         <TrainingSets />
+        <Detectors />
       </Stack>
       <TrainDialog isOpen={isTraining} onClose={training.close} />
       <LoopDialog isOpen={isLooping} onClose={looping.close} />

@@ -134,7 +134,7 @@ function HeldOut({ study }: { study: HeldOutStudy | null }) {
       {study ? (
         <>
           <Text size="sm" className="quiet" mb="sm">
-            {formatCount(study.scans, "scan")} of {study.people.join(", ")}, of whom nothing was learnt. Less is better.
+            {formatCount(study.scans, "scan")} of {study.people.length === 1 ? "subject" : "subjects"} {study.people.join(", ")}, of whom nothing was learnt. Less is better.
             {study.floorMm !== null && ` Their registrations themselves lie ${mm(study.floorMm)} from the scans.`}
           </Text>
           <div className={classes.plots}>

@@ -5,7 +5,7 @@ import type { JobCheck } from "../../api/jobChecks";
 import classes from "./Obstacles.module.css";
 
 interface ObstaclesProps {
-  check: JobCheck | undefined;
+  check?: JobCheck | undefined;
   /** What the request answered, when it was refused all the same. */
   failure?: Error | null;
   /** What helps: a link or a button, shown while something is in the way. */

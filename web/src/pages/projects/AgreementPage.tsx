@@ -59,7 +59,7 @@ export default function AgreementPage() {
           ))}
         </Group>
       </Group>
-      <SimpleGrid cols={{ base: 2, md: 4 }} mb="lg">
+      <SimpleGrid cols={{ base: 2, md: 4 }}>
         <Fact label="Standard deviation along an axis">{px(report.overall.std_px)} px</Fact>
         <Fact label="As a distance">{px(report.radial_px)} px</Fact>
         <Fact label="Object keypoint similarity">{formatNumber(report.oks, 3)}</Fact>
@@ -67,11 +67,11 @@ export default function AgreementPage() {
       </SimpleGrid>
       <LeftOut sources={report.sources} onSources={choose} />
       {report.annotators.length < 2 && (
-        <Text mb="lg" className="quiet">
+        <Text mt="lg" className="quiet">
           At least two annotators must submit before there is anything to compare.
         </Text>
       )}
-      <div className={classes.columns}>
+      <div className={classes.columns} style={{ marginTop: 24 }}>
         <Box title="Annotators" note={report.are_separable ? "The noise of each one, and where they mark against the mean of the others." : "Two cannot be told apart: each has the noise that they share."}>
           <Bars label="Annotator" last="Bias x, y, px" scale={scale} rows={report.annotators.map((one) => [one.name, one.spread, `${signed(one.bias_x_px)}, ${signed(one.bias_y_px)}`])} />
         </Box>

@@ -1,6 +1,6 @@
 import { Badge, Checkbox, Group, Stack, Text } from "@mantine/core";
 import type { ScansMeasured } from "../../api/scans";
-import { formatCount } from "../../model/format";
+import { formatCount, formatRough } from "../../model/format";
 import { formatSize, isGuess, judgeSize, unitOf, type SizeLimits, type UnitAnswers } from "../../model/scanUnit";
 import { HandForScale } from "./HandForScale";
 import classes from "./SizeCheck.module.css";
@@ -58,7 +58,7 @@ export function SizeCheck({ measured, answers, shown, isOnlyThis, isConfirmed, o
           <HandForScale picture={one.picture} pictureSide={one.picture_units * unit} length={length} />
         ) : (
           <Text size="sm" className="quiet" p="md">
-            It is {(one.size_units[0] ?? 0).toPrecision(3)} units long. In no usual unit is that a hand: say the unit, and it is shown here beside one.
+            It is {formatRough(one.size_units[0] ?? 0)} units long. In no usual unit is that a hand: say the unit, and it is shown here beside one.
           </Text>
         )}
       </div>

@@ -23,8 +23,9 @@ export function UnitField({ value, units, onChange, description }: UnitFieldProp
     if (typeof metres === "number" && metres > 0) onChange(metres);
   };
   return (
-    <Group grow gap="md" align="flex-end">
+    <Group grow preventGrowOverflow={false} gap="md" align="flex-end">
       <Select
+        miw={144}
         label="Unit of the files"
         description={description}
         placeholder="Choose"
@@ -37,10 +38,10 @@ export function UnitField({ value, units, onChange, description }: UnitFieldProp
         }}
       />
       {kind === OTHER && (
-        <NumberInput label="1 unit is, in mm" min={0} decimalScale={6} hideControls value={value === null ? "" : rounded(1000 * value, 6)} onChange={(mm) => take(typeof mm === "number" ? mm / 1000 : mm)} data-autofocus />
+        <NumberInput miw={112} label="1 unit is, in mm" min={0} decimalScale={6} hideControls value={value === null ? "" : rounded(1000 * value, 6)} onChange={(mm) => take(typeof mm === "number" ? mm / 1000 : mm)} data-autofocus />
       )}
       {kind === OTHER && units !== null && (
-        <NumberInput label="or the scan’s length, in cm" min={0} decimalScale={2} hideControls value={value === null ? "" : rounded(100 * value * units, 4)} onChange={(cm) => take(typeof cm === "number" ? rounded(cm / 100 / units, 5) : cm)} />
+        <NumberInput miw={112} label="or the scan’s length, in cm" min={0} decimalScale={2} hideControls value={value === null ? "" : rounded(100 * value * units, 4)} onChange={(cm) => take(typeof cm === "number" ? rounded(cm / 100 / units, 5) : cm)} />
       )}
     </Group>
   );

@@ -1,7 +1,7 @@
 import { Button, Group, Modal, Stack, Text, Title } from "@mantine/core";
 import { useState } from "react";
 import { scanThumbnailUrl, useChangeUnits, type Scan } from "../../api/scans";
-import { formatCount } from "../../model/format";
+import { formatCount, formatRough } from "../../model/format";
 import { formatUnit, judgeSize } from "../../model/scanUnit";
 import { HandForScale } from "./HandForScale";
 import { UnitField } from "./UnitField";
@@ -36,7 +36,7 @@ export function UnitsDialog({ scans, onClose }: { scans: readonly Scan[]; onClos
         )}
         {bad.length > 0 && (
           <Text size="sm" c="var(--bad-text)" role="status">
-            {formatCount(bad.length, "scan", "scans")} would have a size that no hand has, such as {bad[0]?.name}: {(100 * lengthOf(bad[0] as Scan)).toPrecision(3)} cm.
+            {formatCount(bad.length, "scan", "scans")} would have a size that no hand has, such as {bad[0]?.name}: {formatRough(100 * lengthOf(bad[0] as Scan))} cm.
           </Text>
         )}
         {change.error && (

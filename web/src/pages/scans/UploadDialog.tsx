@@ -6,6 +6,7 @@ import type { Side } from "../../api/types";
 import { formatBytes, formatCount } from "../../model/format";
 import { isGuess, judgeSize, unitOf, writeUnits, type UnitAnswers } from "../../model/scanUnit";
 import { endScanUpload, measureChosenScans, sendChosenScans, useScanUpload } from "../../state/scanUpload";
+import { FormFooter } from "../parts/Obstacles";
 import { limitsOf, SizeCheck } from "./SizeCheck";
 
 const ASK = "";
@@ -163,7 +164,7 @@ export function UploadDialog() {
                 {upload.failure.message} Nothing was stored; try again.
               </Text>
             )}
-            <Group justify="flex-end" gap="sm">
+            <FormFooter>
               {measured && fault && (
                 <Text size="xs" className="quiet" mr="auto" maw={400}>
                   {fault}
@@ -176,10 +177,10 @@ export function UploadDialog() {
                 <Button onClick={() => void measureChosenScans()}>Try again</Button>
               ) : (
                 <Button type="submit" disabled={fault !== null}>
-                  Add {formatCount(upload.files.length, "file")}
+                  Add {measured ? formatCount(measured.files.length, "scan") : formatCount(upload.files.length, "file")}
                 </Button>
               )}
-            </Group>
+            </FormFooter>
           </Stack>
         </form>
       )}

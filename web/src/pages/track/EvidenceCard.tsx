@@ -4,7 +4,7 @@ import { useState, type ReactNode } from "react";
 import type { Layer } from "../../api/tracks";
 import type { ViewerSession } from "../../api/types";
 import { errorGradient } from "../../model/errorColor";
-import { describeCollisions, describeContacts, describeDetections, describeOrigin } from "../../model/evidence";
+import { describeCollisions, describeContacts, describeDetections, describeOrigin, describeUnknown } from "../../model/evidence";
 import { formatName, formatNumber } from "../../model/format";
 import classes from "./EvidenceCard.module.css";
 
@@ -16,7 +16,7 @@ interface EvidenceCardProps {
   onTerms: (terms: Record<string, boolean>) => void;
 }
 
-const LISTED = ["correspondences", "detections", "collisions", "contacts", "distances"] as const;
+const LISTED = ["correspondences", "detections", "collisions", "contacts", "unknown", "distances"] as const;
 const MOST_ROWS = 8;
 
 /** What the layers that are on say of this frame; nothing while none is. */
@@ -41,7 +41,7 @@ export function EvidenceCard({ told, layers, isBusy, terms, onTerms }: EvidenceC
         <div className={classes.body}>
           {layers.correspondences && <Correspondences found={told.terms} shown={terms} onShown={onTerms} />}
           {layers.detections && told.detections && (
-            <Part title="Detections" says={describeDetections(told.detections)} origin={describeOrigin("detections", told.detections.is_of_run)}>
+            <Part title="Detections" says={describeDetections(told.detections)} origin={describeOrigin("detections", told.detections.is_of_run, told.detections.own_detector)}>
               <Rows
                 rows={told.detections.items.map((item) => ({
                   color: item.color,
@@ -71,6 +71,11 @@ export function EvidenceCard({ told, layers, isBusy, terms, onTerms }: EvidenceC
                   values: [part.distance_mm < 0 ? `${formatNumber(-part.distance_mm)} mm in` : `${formatNumber(part.distance_mm)} mm off`],
                 }))}
               />
+            </Part>
+          )}
+          {layers.unknown && told.unknown && (
+            <Part title="Unknown things" says={describeUnknown(told.unknown)} origin={null}>
+              <Rows rows={[{ color: told.unknown.color, name: "neither hand nor an object with a model", values: [] }]} />
             </Part>
           )}
           {layers.distances && told.distances && (

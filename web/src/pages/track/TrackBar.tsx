@@ -1,4 +1,4 @@
-import { ActionIcon, Button, Group, Menu, Select, Text, Tooltip } from "@mantine/core";
+import { ActionIcon, Badge, Button, Group, Menu, Select, Text, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import {
   IconAlertTriangle,
@@ -8,6 +8,7 @@ import {
   IconCircleCheck,
   IconDots,
   IconDownload,
+  IconHandFinger,
   IconPencil,
   IconPlayerPause,
   IconPlayerPlay,
@@ -68,6 +69,13 @@ export function TrackBar(props: TrackBarProps) {
           {recording.name}
         </Link>
       </Text>
+      {track.summary.detector && (
+        <Tooltip label={`Fingertips were found by the detector “${track.summary.detector.name}”, SHA-256 ${track.summary.detector.sha256}`} multiline maw={480}>
+          <Badge variant="light" color="gray" tt="none" maw={160} miw={0} tabIndex={0} leftSection={<IconHandFinger size={12} aria-hidden />} aria-label={`Fingertip detector ${track.summary.detector.name}`}>
+            {track.summary.detector.name}
+          </Badge>
+        </Tooltip>
+      )}
       {recording.cameras.length > 1 && (
         <Select size="xs" w={136} aria-label="Camera" allowDeselect={false} data={recording.cameras.map((one) => one.id)} value={camera} onChange={(id) => id && onCamera(id)} />
       )}

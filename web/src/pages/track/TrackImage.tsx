@@ -1,6 +1,6 @@
 import { Checkbox } from "@mantine/core";
 import { useEffect, useMemo, useState, type RefObject } from "react";
-import { overlayUrl, useTrackJoints } from "../../api/tracks";
+import { overlayUrl, unknownUrl, useTrackJoints } from "../../api/tracks";
 import type { Camera, Recording, Track } from "../../api/types";
 import { ImagePane } from "../../canvas/ImagePane";
 import { TrackShape } from "../../canvas/TrackShape";
@@ -17,19 +17,22 @@ interface TrackImageProps {
   frame: number;
   isMeshShown: boolean;
   isSkeletonShown: boolean;
+  isUnknownShown: boolean;
   onStep: (by: 1 | -1) => void;
   onMesh: (isShown: boolean) => void;
   onSkeleton: (isShown: boolean) => void;
+  onUnknown: (isShown: boolean) => void;
   /** Is told whether the picture is that of the frame, so that playing leaves none out. */
   ready: RefObject<boolean>;
 }
 
 /** What the camera saw, with the fitted mesh and joints over it. */
-export function TrackImage({ track, recording, camera, frame, isMeshShown, isSkeletonShown, onStep, onMesh, onSkeleton, ready }: TrackImageProps) {
+export function TrackImage({ track, recording, camera, frame, isMeshShown, isSkeletonShown, isUnknownShown, onStep, onMesh, onSkeleton, onUnknown, ready }: TrackImageProps) {
   const [view, setView] = useState<View | null>(null);
   const [pointer] = useState(createPointerStore);
   const pictures = usePictures(recording, camera, frame, { color: camera.has_color, depth: !camera.has_color, palette: "grey" }, null);
-  const overlay = useOverlay(isMeshShown ? overlayUrl(track.id, camera.id, frame) : null);
+  const overlay = useOverlay("mesh", isMeshShown ? overlayUrl(track.id, camera.id, frame) : null);
+  const unknown = useOverlay("unknown", isUnknownShown ? unknownUrl(track.id, camera.id, frame) : null);
   const joints = useTrackJoints(track.id, camera.id).data;
   // What lies over the picture is of the picture's own frame.
   const { shownFrame } = pictures;
@@ -38,9 +41,10 @@ export function TrackImage({ track, recording, camera, frame, isMeshShown, isSke
 
   const layers = [
     { picture: camera.has_color ? pictures.color : pictures.depth, opacity: 1 },
+    { picture: shownFrame === frame ? unknown.picture : null, opacity: 0.85 },
     { picture: shownFrame === frame ? overlay.picture : null, opacity: 0.75 },
   ];
-  const { failure } = overlay;
+  const failure = overlay.failure ?? unknown.failure;
   ready.current = !pictures.isStale || pictures.setback !== null;
   return (
     <div className={classes.image}>
@@ -66,6 +70,17 @@ export function TrackImage({ track, recording, camera, frame, isMeshShown, isSke
             <div className={classes.imageTools} data-over-picture>
               <Checkbox size="xs" label="Mesh" checked={isMeshShown} onChange={(event) => onMesh(event.currentTarget.checked)} />
               <Checkbox size="xs" label="Skeleton" checked={isSkeletonShown} onChange={(event) => onSkeleton(event.currentTarget.checked)} />
+              <Checkbox
+                size="xs"
+                label={
+                  <>
+                    Unknown things <i className={classes.unknown} aria-hidden />
+                  </>
+                }
+                title="What the run left out near the hands: held things without a model, sleeves, what hides the hand. Seen in the depth camera that was tracked in."
+                checked={isUnknownShown}
+                onChange={(event) => onUnknown(event.currentTarget.checked)}
+              />
             </div>
             {failure && (
               <span className={classes.note} role="alert">

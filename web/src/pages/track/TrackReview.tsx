@@ -47,6 +47,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const [terms, setTerms] = useState<Record<string, boolean>>({});
   const [isMeshShown, setMeshShown] = useState(true);
   const [isSkeletonShown, setSkeletonShown] = useState(true);
+  const [isUnknownShown, setUnknownShown] = useState(() => readLayers(address.get("layers")).unknown);
   // A small screen shows one at a time; the 3D view is opened when somebody wants it, and stays.
   const isCompact = useIsCompact();
   const [shown, setShown] = useState<"image" | "space">("image");
@@ -141,9 +142,11 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
               frame={frame}
               isMeshShown={isMeshShown}
               isSkeletonShown={isSkeletonShown}
+              isUnknownShown={isUnknownShown}
               onStep={(by) => seek(frame + by)}
               onMesh={setMeshShown}
               onSkeleton={setSkeletonShown}
+              onUnknown={setUnknownShown}
               ready={isPictureReady}
             />
           )}

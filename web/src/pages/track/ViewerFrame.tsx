@@ -26,6 +26,7 @@ const HELP: Partial<Record<Layer, string>> = {
   detections: "Fingertips found in the image, and the finger each was assigned to",
   collisions: "Triangles that cross, and vertices that are inside another part",
   contacts: "Finger parts within 10 mm of the object, and whether it is held",
+  unknown: "What the run left out near the hands: held things without a model, sleeves, what hides the hand",
   distances: "The meshes in colours of their distance to the measured points",
 };
 
@@ -48,7 +49,7 @@ export function ViewerFrame({ viewer, frame, layers, terms, onLayers, onTerms }:
             <Checkbox
               key={name}
               size="xs"
-              styles={{ label: { paddingInlineStart: 5 } }}
+              styles={{ label: { paddingInlineStart: 4 } }}
               title={HELP[name]}
               label={
                 <>

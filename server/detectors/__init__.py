@@ -1,0 +1,1 @@
+"""Fingertip detectors that labs have trained, for tracking jobs."""

@@ -1,0 +1,150 @@
+"""What stays the same during a tracking run: models, camera and options."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.capture.sequence import Sequence
+from tracker.detection import Forest, OwnDetector, default_detector, load_detector, save_forest
+from tracker.errors import TrackingError, reading
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.tracking_faults import find_tracking_faults
+from tracker.landmarks import HandDetector, default_hand_detector
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.joints import HAND_JOINTS
+from tracker.model.npz_files import load_npz_model, save_npz_model
+from tracker.model.scene import Scene
+from tracker.observation import Preprocessing, undistort
+from tracker.physics import PhysicsWorld, StaticScene, find_down
+
+FINGERTIPS = "fingertips.npz"
+
+
+@dataclass(frozen=True)
+class TrackSetup:
+    """Models and options of a run.
+
+    Attributes:
+        names: Of the models: `right`, `left` or an object's name.
+        models: As they are tracked, calibrated.
+        camera_id: The depth camera.
+        options: What the user chose.
+        marks: Name of a hand to its joints (21, 3) as marked in the first frame, px of an ideal lens and v.
+        own_detector: Finds fingertips for the S of [T16] Eq. 5; None for the detector that comes along.
+        static_scene: Planes and gravity; None where the run was begun without an object, or before they were kept.
+    """
+
+    names: tuple[str, ...]
+    models: tuple[ArticulatedModel, ...]
+    camera_id: str
+    options: TrackOptions
+    marks: dict[str, npt.NDArray[np.float64]] = field(default_factory=dict)
+    own_detector: OwnDetector | None = None
+    static_scene: StaticScene | None = None
+
+    @cached_property
+    def scene(self) -> Scene:
+        return Scene(self.models)
+
+    @property
+    def preprocessing(self) -> Preprocessing:
+        return Preprocessing(use_skin=self.options.use_skin, objects=any(not model.hand for model in self.models))
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Of the joints of a track: `right/index_mcp` for hands, `rope:<bone>` for articulated objects."""
+        names: list[str] = []
+        for name, model in zip(self.names, self.models, strict=True):
+            if model.hand:
+                names += [f"{name}/{joint}" for joint in HAND_JOINTS]
+            elif model.skeleton.num_bones > 1:
+                names += [f"{name}:{bone}" for bone in model.skeleton.bone_names]
+        return tuple(names)
+
+    @property
+    def hand_names(self) -> tuple[str, ...]:
+        return tuple(name for name, model in zip(self.names, self.models, strict=True) if model.hand)
+
+    @property
+    def hand_detector(self) -> HandDetector | None:
+        """Finds the hands in colour images; None where the user does without."""
+        return default_hand_detector() if self.options.use_detector else None
+
+    @property
+    def fingertip_detector(self) -> Forest:
+        """The one that was given, or the one that comes along."""
+        return self.own_detector.forest if self.own_detector else default_detector()
+
+    @property
+    def object_names(self) -> tuple[str, ...]:
+        return tuple(name for name, model in zip(self.names, self.models, strict=True) if not model.hand)
+
+    def make_world(self, T_world_camera: npt.NDArray[np.float64]) -> PhysicsWorld:
+        """A physics world with the run's static scene; where it has none, things fall along +y of the camera (4, 4)."""
+        static = self.static_scene or StaticScene(find_down(T_world_camera))
+        return PhysicsWorld(self.scene, down=static.down, planes=static.planes)
+
+    def read(self, sequence: Sequence, index: int) -> tuple[Frame, Camera]:
+        """A frame as an ideal pinhole camera sees it, and that camera."""
+        return undistort(sequence.frame(index, self.camera_id), sequence.camera(self.camera_id))
+
+    def save(self, folder: Path) -> None:
+        """Write `setup.json`, `models/<name>.npz`, and `fingertips.npz` where a detector was given."""
+        folder = Path(folder)
+        (folder / "models").mkdir(parents=True, exist_ok=True)
+        for name, model in zip(self.names, self.models, strict=True):
+            save_npz_model(model, folder / "models" / f"{name}.npz")
+        document = {
+            "version": 1,
+            "names": list(self.names),
+            "camera": self.camera_id,
+            "options": self.options.to_json(),
+            "marks": {name: points.tolist() for name, points in self.marks.items()},
+        }
+        if self.own_detector is not None:
+            save_forest(self.own_detector.forest, folder / FINGERTIPS)
+            document["detector"] = self.own_detector.to_json()
+        if self.static_scene is not None:
+            document["static_scene"] = self.static_scene.to_json()
+        temporary = folder / ".setup.json.part"
+        temporary.write_text(json.dumps(document, indent=1))
+        temporary.replace(folder / "setup.json")
+
+    @classmethod
+    def load(cls, folder: Path) -> TrackSetup:
+        """Read what `save` wrote."""
+        folder = Path(folder)
+        with reading(TrackingError, folder, "setup.json as a tracking run writes it"):
+            document = json.loads((folder / "setup.json").read_text())
+            names = tuple(str(name) for name in document["names"])
+            camera, options = str(document["camera"]), TrackOptions.from_json(document["options"])
+            static = document.get("static_scene")
+            static_scene = None if static is None else StaticScene.from_json(static)
+            called = document.get("detector")  # tracks of before it was kept have the file alone
+            marks = {str(n): np.array(p, dtype=np.float64).reshape(21, 3) for n, p in document["marks"].items()}
+        models = tuple(load_npz_model(folder / "models" / f"{name}.npz") for name in names)
+        detector = load_detector(folder / FINGERTIPS) if (folder / FINGERTIPS).exists() else None
+        if detector is not None and called is not None:
+            detector = replace(detector, name=str(called["name"]), sha256=str(called["sha256"]))
+        return cls(names, models, camera, options, marks, detector, static_scene)
+
+
+def choose_camera(sequence: Sequence, options: TrackOptions) -> str:
+    """The depth camera that a run tracks in.
+
+    Raises:
+        TrackingError: The recording cannot be tracked so.
+    """
+    with_depth = [camera.id for camera in sequence.cameras if camera.has_depth]
+    faults = find_tracking_faults(sequence.frame_count, sequence.hands, with_depth, options)
+    if faults:
+        raise TrackingError(f"{sequence.name}: {' '.join(faults)}")
+    return options.camera or with_depth[0]

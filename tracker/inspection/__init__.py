@@ -1,0 +1,1 @@
+"""What is shown of a tracked frame: the fit, contacts, collisions, detections, errors."""

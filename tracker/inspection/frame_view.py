@@ -1,0 +1,236 @@
+"""One frame of a track as people look at it, and the overlay on the image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.capture.sequence import Sequence
+from tracker.detection import find_fingertips
+from tracker.fitting.frame_fit import draw, find_residuals
+from tracker.fitting.region import region_around
+from tracker.fitting.setup import TrackSetup
+from tracker.fitting.sighting import find_sightings
+from tracker.geometry import se3
+from tracker.inspection.shown_collisions import ShownCollisions, show_collisions
+from tracker.inspection.shown_contacts import ShownContacts, show_contacts
+from tracker.inspection.shown_detections import ShownDetection, show_detections
+from tracker.inspection.shown_unknown import ShownUnknown, show_unknown
+from tracker.inspection.surface_fit import measure_surface_fit
+from tracker.inspection.view_aids import ViewAids
+from tracker.model.joints import HAND_EDGES
+from tracker.model.scene import PosedScene
+from tracker.observation import Observation, observe
+from tracker.physics import find_support
+from tracker.rendering import View, render_view
+from tracker.tracking.as_written import compose_objective
+from tracker.tracking.hold import HoldOptions, with_contacts
+
+Array = npt.NDArray[np.float64]
+
+COLORS = {"right": (255, 146, 43), "left": (51, 154, 240), "object": (81, 207, 102)}
+"""RGB of right hands, left hands and objects, the same everywhere in the studio."""
+
+UNKNOWN_COLOR = (240, 101, 149)
+"""RGB of what is neither hand nor an object that has a model."""
+
+CLOUD_MARGIN = 0.6
+"""The cloud is shown as far as this around the hands, m."""
+
+
+@dataclass(frozen=True)
+class ModelView:
+    """A posed model.
+
+    Attributes:
+        name: `right`, `left` or the object's.
+        color: RGB.
+        vertices: (V, 3) float32 world, m.
+        faces: (F, 3).
+        joints: (J, 3) float32 world, m.
+        edges: (E, 2) pairs of joints to connect.
+    """
+
+    name: str
+    color: tuple[int, int, int]
+    vertices: npt.NDArray[np.float32]
+    faces: npt.NDArray[np.int32]
+    joints: npt.NDArray[np.float32]
+    edges: npt.NDArray[np.int32]
+
+
+class FrameView:
+    """What there is to see of a frame at a pose. Each thing is worked out when it is first asked for, and then kept.
+
+    Attributes:
+        aids: Of the track.
+        T_world_camera: (4, 4) of the depth camera.
+    """
+
+    def __init__(self, frame: Frame, camera: Camera, pose: Array, aids: ViewAids) -> None:
+        assert frame.depth is not None
+        self.aids = aids
+        self.T_world_camera = camera.T_world_camera
+        self._frame, self._camera, self._pose = frame, camera, pose
+
+    @property
+    def cloud(self) -> npt.NDArray[np.float32]:
+        """(N, 3) points of the depth image, world, m."""
+        return self._cloud[0]
+
+    @property
+    def colors(self) -> npt.NDArray[np.uint8]:
+        """(N, 3) RGB of the cloud."""
+        return self._cloud[1]
+
+    @cached_property
+    def models(self) -> tuple[ModelView, ...]:
+        """Posed models."""
+        setup, posed = self.aids.setup, self._posed
+        return tuple(
+            ModelView(
+                name,
+                COLORS.get(name if model.hand else "object", COLORS["object"]),
+                posed.vertices[setup.scene.vertex_slices[place]].astype(np.float32),
+                model.faces.astype(np.int32),
+                posed.landmarks(place).astype(np.float32),
+                np.array(HAND_EDGES if model.hand else _bone_edges(model.skeleton.parents), dtype=np.int32).reshape(
+                    -1, 2
+                ),
+            )
+            for place, (name, model) in enumerate(zip(setup.names, setup.models, strict=True))
+        )
+
+    @cached_property
+    def correspondences(self) -> dict[str, npt.NDArray[np.float32]]:
+        """Name of each term of the run to its (M, 2, 3) segments from model to data, world, m."""
+        if self._seen is None:
+            return {}
+        tools, setup = self.aids.tools, self.aids.setup
+        objective = tools.with_fingertips(self._seen)
+        if setup.options.is_as_written:
+            objective = compose_objective(setup, tools, self._seen)
+        elif tools.world is not None:
+            support = find_support(tools.world, self._posed, HoldOptions().support)
+            objective = objective if support.is_stable else with_contacts(objective, support)
+        found = find_residuals(self._posed, self._seen, objective)
+        return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}
+
+    @cached_property
+    def detections(self) -> tuple[ShownDetection, ...]:
+        """Fingertips found in the image, whether the run looked for them or not."""
+        if self._seen is None or self._drawn is None:
+            return ()
+        found = find_fingertips(self.aids.detector, self._seen)
+        return show_detections(self._posed, self._drawn, found, self.T_world_camera)
+
+    @cached_property
+    def collisions(self) -> ShownCollisions:
+        """Parts that stand in each other."""
+        return show_collisions(self._posed, self.aids.part_names)
+
+    @cached_property
+    def contacts(self) -> ShownContacts:
+        """Whether the object stays, and which finger parts could hold it."""
+        return show_contacts(self._posed, self.aids.world(self._posed))
+
+    @cached_property
+    def unknown(self) -> ShownUnknown:
+        """What is near the hands and neither hand nor a model: held things, sleeves, what hides the hand."""
+        if self._seen is None or self._drawn is None:
+            return ShownUnknown.nothing(self._camera.height, self._camera.width)
+        return show_unknown(self._drawn, self._seen, self._camera.height, self._camera.width)
+
+    @cached_property
+    def surface_fit(self) -> tuple[npt.NDArray[np.float32], ...]:
+        """For each model (V,) distance of its vertices to the data, m; NaN where the camera cannot see them."""
+        distances = np.full(len(self._posed.vertices), np.nan, dtype=np.float32)
+        if self._seen is not None and self._drawn is not None:
+            distances = measure_surface_fit(self._posed, self._drawn, self._seen)
+        return tuple(distances[where] for where in self.aids.setup.scene.vertex_slices)
+
+    @cached_property
+    def _posed(self) -> PosedScene:
+        return self.aids.setup.scene.pose_at(np.asarray(self._pose, dtype=np.float64))
+
+    @cached_property
+    def _seen(self) -> Observation | None:
+        region, setup = region_around(self._posed.vertices, self._camera), self.aids.setup
+        if region is None:
+            return None
+        sightings = find_sightings(setup.hand_detector, self._frame, self._camera, setup.hand_names, {})
+        return observe(sightings.frame, self._camera, region, setup.preprocessing)
+
+    @cached_property
+    def _drawn(self) -> View | None:
+        return None if self._seen is None else draw(self._posed, self._seen)
+
+    @cached_property
+    def _cloud(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:
+        depth, K = self._frame.depth, self._camera.K
+        assert depth is not None
+        rows, columns = np.nonzero(depth)
+        depths = depth[rows, columns].astype(np.float64)
+        x, y = (columns - K[0, 2]) / K[0, 0] * depths, (rows - K[1, 2]) / K[1, 1] * depths
+        cloud = se3.transform(self.T_world_camera, np.stack([x, y, depths], axis=1))
+        near = np.ones(len(cloud), dtype=bool)
+        if np.any(self._pose):
+            near = np.linalg.norm(cloud - self._posed.vertices.mean(axis=0), axis=1) < CLOUD_MARGIN
+        if self._frame.color is not None:
+            return cloud[near].astype(np.float32), self._frame.color[rows, columns][near]
+        shade = 90 + 140 * (1.0 - np.clip((depths[near] - depths[near].min(initial=9.0)) / 0.4, 0.0, 1.0))
+        return cloud[near].astype(np.float32), np.repeat(shade[:, None], 3, axis=1).astype(np.uint8)
+
+
+def describe_frame(
+    sequence: Sequence, setup: TrackSetup, pose: Array, index: int, aids: ViewAids | None = None
+) -> FrameView:
+    """All that can be shown of a frame at a pose (D,); frames that are given the same `aids` share what is costly."""
+    frame, camera = setup.read(sequence, index)
+    return FrameView(frame, camera, pose, aids or ViewAids(setup, camera.T_world_camera))
+
+
+def render_overlay(
+    sequence: Sequence, setup: TrackSetup, pose: Array, index: int, camera_id: str
+) -> npt.NDArray[np.uint8]:
+    """(H, W, 4) RGBA: the shaded models on a transparent ground, as a camera of the recording sees them.
+
+    Lens distortion is left out: the overlay fits the undistorted image.
+    """
+    camera = sequence.camera(camera_id)
+    posed = setup.scene.pose_at(np.asarray(pose, dtype=np.float64))
+    view = render_view(posed, camera.K, camera.T_world_camera, camera.height, camera.width)
+    drawn = view.face >= 0
+    image = np.zeros((camera.height, camera.width, 4), dtype=np.uint8)
+    palette = np.array(
+        [
+            COLORS.get(n if m.hand else "object", COLORS["object"])
+            for n, m in zip(setup.names, setup.models, strict=True)
+        ]
+    )
+    faces = view.face[drawn]
+    towards = -(view.face_normals[faces] @ camera.T_world_camera[:3, 2])
+    shade = 0.35 + 0.65 * np.clip(towards, 0.0, 1.0)
+    image[drawn, :3] = (palette[setup.scene.face_models[faces]] * shade[:, None]).astype(np.uint8)
+    image[drawn, 3] = 165
+    return image
+
+
+def render_unknown(
+    sequence: Sequence, setup: TrackSetup, pose: Array, index: int, camera_id: str
+) -> npt.NDArray[np.uint8]:
+    """(H, W, 4) RGBA: the mask of `FrameView.unknown` on a transparent ground; empty but in the run's depth camera."""
+    camera = sequence.camera(camera_id)
+    image = np.zeros((camera.height, camera.width, 4), dtype=np.uint8)
+    if camera_id == setup.camera_id:
+        image[describe_frame(sequence, setup, pose, index).unknown.mask] = (*UNKNOWN_COLOR, 165)
+    return image
+
+
+def _bone_edges(parents: npt.NDArray[np.int64]) -> list[tuple[int, int]]:
+    return [(int(parent), bone) for bone, parent in enumerate(parents) if parent >= 0]

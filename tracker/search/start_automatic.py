@@ -1,0 +1,274 @@
+"""Find a hand in a depth image without any annotation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
+from tracker.fitting.finger_search import curl_fingers, measure_curl, search_fingers
+from tracker.fitting.frame_fit import FitOptions, draw, fit_frame
+from tracker.fitting.measure_quality import measure_quality
+from tracker.fitting.objective import Objective
+from tracker.fitting.quality import Quality
+from tracker.fitting.region import region_around, whole_image
+from tracker.geometry import se3
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.joints import HAND_JOINTS
+from tracker.model.scene import Scene
+from tracker.observation import Observation, Preprocessing, Region, observe
+from tracker.search.palm_candidates import PalmCandidate, find_palm_candidates
+from tracker.terms.data_to_model import DataToModel
+from tracker.terms.data_to_surface import DataToSurface
+from tracker.terms.joint_prior import Regularization
+from tracker.terms.model_to_data import ModelToData
+from tracker.terms.silhouette import Silhouette
+
+Array = npt.NDArray[np.float64]
+
+REACH = 0.22
+"""A hand's pixels are this near to its palm, m."""
+
+MIN_PIXELS = 50
+"""Fewer hand pixels than this are no hand."""
+
+SCORED_PIXELS = 1200
+"""About so many hand pixels are enough to compare bends of a finger by."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """How widely to search.
+
+    Attributes:
+        candidates: Places where a palm could be.
+        turns: Directions of the fingers in the palm's plane.
+        curls: Shares of the fingers' flexion tried, 0 open.
+        likely: Merit below the best hypothesis at which one is still fitted rigidly.
+        rigid: At most so many of those are fitted rigidly.
+        rough: Of those, fitted with their fingers on the coarse image.
+        bent: Of those, given a search of single fingers; with none, fingers are left to who follows the hand.
+        fine: Of those, fitted on the fine image.
+        width: Columns of the coarse image.
+        nearness: Merit lost per metre of depth: what is captured is usually held out.
+        openness: Merit lost by a fist against an open hand: a forearm can pass for a fist.
+    """
+
+    candidates: int = 8
+    turns: int = 16
+    curls: tuple[float, ...] = (0.0, 0.45)
+    likely: float = 0.25
+    rigid: int = 100
+    rough: int = 24
+    bent: int = 8
+    fine: int = 4
+    width: int = 160
+    nearness: float = 0.5
+    openness: float = 0.2
+
+
+STEP = Search(rigid=3, rough=2, bent=0, fine=1)
+"""What a frame that follows another has time for, of a part of all hypotheses."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A hand that was found.
+
+    Attributes:
+        pose: (D,) of the scene that was given.
+        quality: How well it explains the image.
+    """
+
+    pose: Array
+    quality: Quality
+
+
+def find_hand(
+    frame: Frame,
+    camera: Camera,
+    model: ArticulatedModel,
+    how: Preprocessing,
+    near: float,
+    far: float,
+    search: Search | None = None,
+    part: slice = slice(None),
+) -> Found | None:
+    """The pose of one hand that explains the frame best, or None where there is nothing like a hand.
+
+    Palms are tried at every plausible place, both sides, all directions and two curls, drawn small and compared with
+    the image; the best are fitted with wide correspondences, the best of those on the fine image.
+
+    Args:
+        frame: Undistorted frame with depth.
+        camera: Its camera.
+        model: The hand.
+        how: Preprocessing.
+        near: Least depth, m.
+        far: Greatest depth, m.
+        search: How widely to search.
+        part: Of the hypotheses, those that are looked at.
+    """
+    search = search or Search()
+    scene = Scene((model,))
+    stride = max(1, camera.width // search.width)
+    coarse = observe(frame, camera, whole_image(camera, near, far), how, stride)
+    judge = _Judge(scene, camera, search)
+    hypotheses: list[tuple[float, Observation, Array]] = []
+    for candidate in find_palm_candidates(coarse, search.candidates):
+        region = _around(candidate, camera, near, far)
+        place = observe(frame, camera, region, how, stride)
+        poses = propose_poses(scene, candidate, camera, search)[part]
+        hypotheses += [(judge.merit(place, pose), place, pose) for pose in poses]
+    if not hypotheses:
+        return None
+    least = max(merit for merit, _, _ in hypotheses) - search.likely
+    likely = sorted((one for one in hypotheses if one[0] > least), key=lambda one: -one[0])[: search.rigid]
+    rigid = [(place, _align(scene, place, pose)) for _, place, pose in likely]
+    settled = [(place, _settle(scene, place, pose)) for place, pose in judge.rank(rigid)[: search.rough]]
+    best = judge.rank(settled)[: search.bent or search.fine]
+    for _ in range(2 if search.bent else 0):
+        best = [(seen, _bend(scene, judge, seen, pose)) for seen, pose in best]
+    found: Found | None = None
+    found_merit = -np.inf
+    for _, pose in judge.rank(best)[: search.fine]:
+        region = region_around(scene.pose_at(pose).vertices, camera)
+        if region is None:
+            continue
+        fine = observe(frame, camera, region, how, max(1, stride // 2))
+        if fine.hand_count < MIN_PIXELS:
+            continue
+        pose = _bend(scene, judge, fine, pose) if search.bent else pose
+        pose = _refine(scene, fine, pose, Objective(), 20)
+        merit = judge.merit(fine, pose)
+        if merit > found_merit:
+            found = Found(pose, measure_quality(draw(scene.pose_at(pose), fine), fine))
+            found_merit = merit
+    return found
+
+
+@dataclass(frozen=True)
+class _Judge:
+    """Compares poses of one hand.
+
+    Attributes:
+        scene: The hand.
+        camera: The camera.
+        search: What merit is lost for.
+    """
+
+    scene: Scene
+    camera: Camera
+    search: Search
+
+    def merit(self, observation: Observation, pose: Array) -> float:
+        """Score of a pose, less for what of the hand lies outside the image, for its depth and for closed fingers."""
+        posed = self.scene.pose_at(pose)
+        score = measure_quality(draw(posed, observation), observation).merit
+        in_camera = se3.transform(self.camera.T_camera_world, posed.vertices)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            columns = self.camera.K[0, 0] * in_camera[:, 0] / in_camera[:, 2] + self.camera.K[0, 2]
+            rows = self.camera.K[1, 1] * in_camera[:, 1] / in_camera[:, 2] + self.camera.K[1, 2]
+        inside = (columns > 0) & (columns < self.camera.width) & (rows > 0) & (rows < self.camera.height)
+        in_image = float(np.mean(inside & (in_camera[:, 2] > 0)))
+        closed = measure_curl(self.scene.models[0], pose[6:])
+        return score * in_image**2 - self.search.nearness * float(in_camera[0, 2]) - self.search.openness * closed
+
+    def rank(self, poses: list[tuple[Observation, Array]]) -> list[tuple[Observation, Array]]:
+        """Poses, each with what it is to be compared with, by falling merit; the earlier of equals first."""
+        merits = np.array([self.merit(seen, pose) for seen, pose in poses])
+        return [poses[i] for i in np.argsort(-merits, kind="stable")]
+
+
+def propose_poses(scene: Scene, candidate: PalmCandidate, camera: Camera, search: Search) -> list[Array]:
+    """Poses (D,) with the palm at a candidate, palm or back towards the camera, fingers in every direction."""
+    model = scene.models[0]
+    R_model_palm, palm = _palm_frame(model)
+    view = candidate.point - camera.T_world_camera[:3, 3]
+    normal = candidate.normal
+    across = camera.T_world_camera[:3, 0] - normal * (camera.T_world_camera[:3, 0] @ normal)
+    across /= np.linalg.norm(across)
+    upward = np.cross(normal, across)
+    poses = []
+    for curl in search.curls:
+        angles = curl_fingers(model, curl)
+        for facing in (1.0, -1.0):
+            for turn in range(search.turns):
+                angle = 2.0 * np.pi * turn / search.turns
+                forward = np.cos(angle) * across + np.sin(angle) * upward
+                out = facing * normal
+                R_world_palm = np.stack([forward, np.cross(out, forward), out], axis=1)
+                T = np.eye(4)
+                T[:3, :3] = R_world_palm @ R_model_palm.T
+                center = candidate.point + 0.014 * view / np.linalg.norm(view)
+                T[:3, 3] = center - T[:3, :3] @ palm
+                poses.append(np.concatenate([se3.log(T), angles]))
+    return poses
+
+
+def _palm_frame(model: ArticulatedModel) -> tuple[Array, Array]:
+    """Rotation (3, 3) of a palm frame (x to the fingers, z out of the palm or the back) and its centre (3,), model."""
+    rest = Scene((model,)).pose_at(np.zeros(model.num_dofs)).landmarks(0)
+    wrist, index, middle, little = (
+        rest[HAND_JOINTS.index(name)] for name in ("wrist", "index_mcp", "middle_mcp", "little_mcp")
+    )
+    forward = (middle - wrist) / np.linalg.norm(middle - wrist)
+    out = np.cross(forward, index - little)
+    out /= np.linalg.norm(out)
+    return np.stack([forward, np.cross(out, forward), out], axis=1), 0.45 * wrist + 0.55 * middle
+
+
+def _wide_objective(reach: float) -> Objective:
+    """The objective with matches as far as `reach`, m, for poses that are far off."""
+    return Objective(
+        terms={
+            "model_to_data": ModelToData(max_distance=reach, max_angle=60.0),
+            "data_to_surface": DataToSurface(max_distance=reach, stride=2),
+            "data_to_model": DataToModel(max_pixels=6),
+            "silhouette": Silhouette(weight=0.5, stride=1),
+        },
+        regularization=replace(Objective().regularization, weight=0.01),
+    )
+
+
+def _align(scene: Scene, seen: Observation, pose: Array) -> Array:
+    """Fit a hypothesis nearly rigidly."""
+    stiff = replace(_wide_objective(0.04), regularization=Regularization(2.0))
+    return _refine(scene, seen, pose, stiff, 7)
+
+
+def _settle(scene: Scene, seen: Observation, pose: Array) -> Array:
+    """Fit an aligned hypothesis with its fingers."""
+    return _refine(scene, seen, pose, _wide_objective(0.04), 8)
+
+
+def _bend(scene: Scene, judge: _Judge, seen: Observation, pose: Array) -> Array:
+    """Search single fingers, then fit."""
+    thin = seen.thin(max(1, round((seen.hand_count / SCORED_PIXELS) ** 0.5)))
+    pose = search_fingers(pose, 0, scene.models[0], lambda trial: judge.merit(thin, trial))
+    return _refine(scene, seen, pose, _wide_objective(0.03), 8)
+
+
+def _refine(scene: Scene, observation: Observation, pose: Array, objective: Objective, iterations: int) -> Array:
+    options = FitOptions(iterations=iterations, damping=3e-2, max_turn=0.25, max_shift=0.02)
+    return fit_frame(scene, observation, pose, pose, objective, options).pose
+
+
+def _around(candidate: PalmCandidate, camera: Camera, near: float, far: float) -> Region:
+    """The region within reach of a hand whose palm is at a candidate."""
+    T = camera.T_camera_world
+    x, y, z = T[:3, :3] @ candidate.point + T[:3, 3]
+    column, row = camera.K[0, 0] * x / z + camera.K[0, 2], camera.K[1, 1] * y / z + camera.K[1, 2]
+    reach = REACH * camera.K[0, 0] / z
+    first_column, first_row = max(0, int(column - reach)), max(0, int(row - reach))
+    return Region(
+        first_row,
+        first_column,
+        max(1, min(camera.height, int(row + reach)) - first_row),
+        max(1, min(camera.width, int(column + reach)) - first_column),
+        max(near, z - REACH),
+        min(far, z + REACH),
+    )

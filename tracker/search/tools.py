@@ -1,0 +1,62 @@
+"""What the terms of a run need besides the frame: the fingertip detector and the physics world."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.detection import Forest, find_fingertips
+from tracker.fitting.objective import Objective
+from tracker.fitting.setup import TrackSetup
+from tracker.observation import Observation
+from tracker.physics import PhysicsWorld
+from tracker.terms.collision import Collision
+from tracker.terms.salient import Salient
+
+
+@dataclass(frozen=True)
+class Tools:
+    """Heavy helpers of a run, made once.
+
+    Attributes:
+        objective: Terms that need nothing but the frame.
+        detector: Finds fingertips, or None where the run has no salient points.
+        world: Simulates, or None where the run has no physics or no object.
+    """
+
+    objective: Objective
+    detector: Forest | None
+    world: PhysicsWorld | None
+
+    def with_fingertips(self, seen: Observation) -> Objective:
+        """The objective with the frame's fingertip detections, [T16] §3.2.5.
+
+        Differs from the paper, which has them in every frame: those of the detector that comes along are asked for
+        where a fit went badly, which is what they are for; a lab's own is asked in every frame. A hand that is followed
+        well gains nothing from them and loses time, and where an object hides fingertips a false detection pulls
+        (docs/objective.md).
+        """
+        if self.detector is None:
+            return self.objective
+        detections = find_fingertips(self.detector, seen)
+        return replace(self.objective, terms={**self.objective.terms, "salient": Salient(detections)})
+
+
+@contextmanager
+def make_tools(setup: TrackSetup, T_world_camera: npt.NDArray[np.float64]) -> Iterator[Tools]:
+    """The helpers that the run's terms ask for, closed at the end."""
+    letters = setup.options.term_letters
+    terms = dict(Objective().terms)
+    if "C" in letters:
+        terms["collision"] = Collision()
+    has_object = any(not model.hand for model in setup.models)
+    detector = setup.fingertip_detector if "S" in letters else None
+    if "P" not in letters or not has_object:
+        yield Tools(Objective(terms=terms), detector, None)
+        return
+    with setup.make_world(T_world_camera) as world:
+        yield Tools(Objective(terms=terms), detector, world)

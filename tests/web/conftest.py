@@ -296,11 +296,12 @@ class HeldBack:
 
 def wait_for_held(page: Any, held: list[Any], count: int) -> None:
     """Word of a held request comes later than the page sent it."""
-    for _ in range(500):
+    for _ in range(1500):
         if len(held) >= count:
             return
         page.wait_for_timeout(20)
-    raise AssertionError(f"{len(held)} of {count} requests were held")
+    is_online = page.evaluate("navigator.onLine")
+    raise AssertionError(f"{len(held)} of {count} requests were held; the browser has a network: {is_online}")
 
 
 @dataclass(frozen=True)

@@ -231,6 +231,18 @@ def test_one_stroke_crops_a_scan_and_can_be_taken_back_before_and_after_it_is_sa
     assert studio.get(f"/scans/{scan['id']}")["removed_count"] == 0, "the file stayed whole"
 
 
+def test_a_studio_on_this_computer_is_used_while_the_browser_says_that_there_is_no_network(studio, scans, open_page):
+    page = open_scan(open_page, scans[1])
+    page.evaluate("window.dispatchEvent(new Event('offline'))")
+    page.keyboard.press("x")
+    stroke(page, [(0.1, 0.85), (0.9, 0.85)])
+    save(page)
+    page.keyboard.press("z")
+    save(page)
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function("(id) => document.querySelector('[data-hand-view]')?.dataset.drawn !== id", arg=scans[1]["id"])
+
+
 @pytest.mark.parametrize("leaves", [False, True], ids=["on the same page", "after leaving and coming back"])
 def test_a_stroke_that_is_taken_back_while_the_crop_is_on_its_way_is_the_next_thing_to_save(
     studio, scans, open_page, leaves

@@ -16,13 +16,20 @@ import { Gate } from "./pages/parts/LoginGate";
 import { askWhoIAm } from "./state/me";
 import { cssVariables, theme } from "./theme";
 
+/** A studio on this computer answers without any network: requests go out whatever the browser says of it, and fail with words. */
+const ANYHOW = { networkMode: "always" } as const;
+
 const queries = new QueryClient({
   defaultOptions: {
     queries: {
+      ...ANYHOW,
+      // "Always" would leave it out.
+      refetchOnReconnect: true,
       staleTime: 10_000,
       retry: (count, failure) => failure instanceof ApiError && failure.isOffline && count < 2,
       retryDelay: 500,
     },
+    mutations: ANYHOW,
   },
 });
 

@@ -142,12 +142,12 @@ def check_track_params(session: Session, sequence_id: UUID, params: dict[str, An
     row = get_sequence(session, sequence_id)
     options = TrackOptions.from_json({name: value for name, value in params.items() if name not in STUDIO_PARAMS})
     with_depth = [camera["id"] for camera in row.cameras if camera["has_depth"]]
-    faults = find_tracking_faults(row.frame_count, row.hands, with_depth, options)
+    with_color = [camera["id"] for camera in row.cameras if camera["has_color"]]
+    faults = find_tracking_faults(row.frame_count, row.hands, with_depth, with_color, options)
     detector = _find_detector(session, params.get(DETECTOR))
     if detector is not None and not faults:
-        tracked = options.camera or with_depth[0]
-        has_color = any(camera["has_color"] for camera in row.cameras if camera["id"] == tracked)
-        faults = find_detector_faults(detector.looks_at, has_color, options)
+        depth_camera = None if options.view_ids or not with_depth else options.camera or with_depth[0]
+        faults = find_detector_faults(detector.looks_at, depth_camera, with_color, options)
     if faults:
         raise CannotStartError(" ".join(faults), obstacles=faults)
     own = {} if detector is None else {DETECTOR: str(detector.id)}

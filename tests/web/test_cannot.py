@@ -18,7 +18,7 @@ COLLECTION = "too few"
 
 @pytest.fixture(scope="module")
 def colour_only(studio: Any, synthesized: Any, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """The recording without its depth images."""
+    """The recording without its depth images, of which nobody says whose hands it shows."""
     archive = tmp_path_factory.mktemp("colour") / "colour.zip"
     with zipfile.ZipFile(archive, "w") as file:
         for path in sorted(synthesized.folder.rglob("*.png")):
@@ -28,7 +28,7 @@ def colour_only(studio: Any, synthesized: Any, tmp_path_factory: pytest.TempPath
         for camera in description["cameras"]:
             camera.pop("depth")
             camera.pop("depth_scale", None)
-        description["objects"] = []
+        description["objects"] = description["hands"] = []
         file.writestr("colour/sequence.json", json.dumps(description))
     with archive.open("rb") as file:
         made = studio.send("POST", "/imports", files={"files": ("colour.zip", file)})
@@ -67,7 +67,7 @@ def test_a_recording_that_cannot_be_tracked_is_not_offered_to_be(
     page.on("response", lambda one: asked.append(one.status) if one.url.endswith("/jobs/check") else None)
     page.goto(f"/recordings/{colour_only['id']}")
     tracks = page.get_by_role("region", name="Tracks")
-    expect(tracks.get_by_text("It cannot be tracked. None of its cameras has depth images")).to_be_visible()
+    expect(tracks.get_by_text("It cannot be tracked. The recording does not say which hands it shows.")).to_be_visible()
     for button in page.get_by_role("button", name="Track …").all():
         expect(button).to_be_disabled()
     assert set(asked) == {200}, "asked once the page knows its recording, and answered"
@@ -78,7 +78,7 @@ def test_a_recording_that_cannot_be_tracked_is_not_offered_to_be(
     dialog = page.get_by_role("dialog")
     expect(dialog.get_by_text("Choose recordings above")).to_be_in_viewport(ratio=0.95)
     dialog.get_by_label("Filter recordings by name").fill("colour only")
-    expect(dialog.get_by_text("None of its cameras has depth images", exact=False)).to_be_visible()
+    expect(dialog.get_by_text("The recording does not say which hands it shows.", exact=False)).to_be_visible()
     expect(dialog.get_by_role("checkbox", name="Colour only")).to_be_disabled()
     take_both(open_page, screenshots, page, f"batch-{scheme}")
 

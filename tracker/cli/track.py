@@ -20,7 +20,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         help="fit hands to every frame of a recording",
         description="Fit hands to every frame of a recording folder and write track.npz and summary.json. The start is "
         "the annotation of the first frame where there is one, else what the hand detector sees in the colour image; "
-        "without colour the depth image is searched.",
+        "without colour the depth image is searched. Recordings of colour cameras alone, one to sixteen, start and go "
+        "on by what the hand detector sees in every view.",
     )
     parser.add_argument("recording", type=Path, metavar="PATH", help="a recording folder, with its sequence.json")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the track goes")
@@ -59,6 +60,11 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "--frames", type=parse_range, default=(None, None), metavar="A:B", help="frames A to B - 1 only"
     )
     parser.add_argument("--camera", metavar="ID", help="the depth camera to track in (the first)")
+    parser.add_argument(
+        "--cameras",
+        metavar="A,B,...",
+        help="colour cameras to track in; a recording without depth is tracked in all of its cameras",
+    )
     parser.add_argument("--no-calibration", action="store_true", help="keep the models' size and shape as they are")
     parser.add_argument("--no-detector", action="store_true", help="do not look for hands in the colour images")
     parser.add_argument(
@@ -101,6 +107,7 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         "first_frame": frames.start,
         "last_frame": frames.stop - 1,
         "camera": args.camera,
+        "cameras": args.cameras,
         "calibrate": False if args.no_calibration else None,
         "use_detector": False if args.no_detector else None,
         "use_skin": False if args.no_skin else None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -69,14 +69,16 @@ class CalibrationFrame:
     """What is known of one frame.
 
     Attributes:
-        observation: What was seen.
+        observation: What was seen; None where all terms of the objective bring what they have seen.
         pose: (D,) of the whole scene, near the truth.
         marks: The marked joints of hands that somebody marked here, by index of the model; their weight is not used.
+        objective: Terms of the fit.
     """
 
-    observation: Observation
+    observation: Observation | None
     pose: Array
-    marks: dict[int, MarkedJoints]
+    marks: dict[int, MarkedJoints] = field(default_factory=dict)
+    objective: Objective = field(default_factory=Objective)
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,7 @@ def calibrate_shapes(
         current = _shaped(scene, own, directions, values)
         refit = FitOptions(iterations=options.iterations)
         poses = [
-            fit_frame(current, frame.observation, pose, pose, Objective(), refit).pose
+            fit_frame(current, frame.observation, pose, pose, frame.objective, refit).pose
             for frame, pose in zip(frames, poses, strict=True)
         ]
         equations = [
@@ -152,7 +154,7 @@ def calibrate_shapes(
     current = _shaped(scene, own, directions, values)
     final = FitOptions(iterations=4 * options.iterations)
     poses = [
-        fit_frame(current, frame.observation, pose, pose, Objective(), final).pose
+        fit_frame(current, frame.observation, pose, pose, frame.objective, final).pose
         for frame, pose in zip(frames, poses, strict=True)
     ]
     found = [
@@ -186,8 +188,8 @@ def _shaped(scene: Scene, own: tuple[HandDirections | None, ...], directions: Sc
 
 def _with_marks(posed: PosedScene, frame: CalibrationFrame, options: CalibrationOptions, weight: float) -> Objective:
     """The objective of a frame; a mark that is off by its noise costs `weight`."""
-    terms = dict(Objective().terms)
-    if weight > 0.0:
+    terms = dict(frame.objective.terms)
+    if weight > 0.0 and frame.observation is not None:
         T_camera_world = np.linalg.inv(frame.observation.T_world_camera)
         for model, joints in frame.marks.items():
             depth = float(np.mean(posed.landmarks(model) @ T_camera_world[2, :3] + T_camera_world[2, 3]))

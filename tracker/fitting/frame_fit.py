@@ -71,14 +71,17 @@ def draw(posed: PosedScene, observation: Observation) -> View:
     return render_view(posed, observation.K, observation.T_world_camera, height, width)
 
 
-def find_residuals(posed: PosedScene, observation: Observation, objective: Objective) -> dict[str, Residual]:
+def find_residuals(posed: PosedScene, observation: Observation | None, objective: Objective) -> dict[str, Residual]:
     """Correspondences of every term at a posed scene."""
-    return objective.find(posed, FrameContext(draw(posed, observation), observation, *label_scene(posed.scene)))
+    context = None
+    if observation is not None:
+        context = FrameContext(draw(posed, observation), observation, *label_scene(posed.scene))
+    return objective.find(posed, context)
 
 
 def fit_frame(
     scene: Scene,
-    observation: Observation,
+    observation: Observation | None,
     start: Array,
     previous: Array,
     objective: Objective,
@@ -88,7 +91,7 @@ def fit_frame(
 
     Args:
         scene: What to fit.
-        observation: What was seen.
+        observation: What was seen; None where all terms bring what they have seen, as those of colour cameras do.
         start: (D,) pose to start at.
         previous: (D,) pose of the previous frame, for the regularisation.
         objective: Terms and weights.
@@ -107,7 +110,7 @@ def fit_frame(
         t0 = perf_counter()
         posed = scene.pose_at(pose)
         t1 = perf_counter()
-        context = FrameContext(draw(posed, observation), observation, *labels)
+        context = None if observation is None else FrameContext(draw(posed, observation), observation, *labels)
         t2 = perf_counter()
         stages["posing"] += t1 - t0
         stages["rendering"] += t2 - t1
@@ -126,7 +129,7 @@ def fit_frame(
 
 
 def _gather(
-    posed: PosedScene, context: FrameContext, terms: dict[str, Term], stages: dict[str, float], threads: int
+    posed: PosedScene, context: FrameContext | None, terms: dict[str, Term], stages: dict[str, float], threads: int
 ) -> tuple[NormalEquations, dict[str, float]]:
     """Sum of all terms' correspondences and the cost of each; bit by bit the same for the same number of threads."""
     names = list(terms)
@@ -143,7 +146,7 @@ def _gather(
 
 
 def _gather_some(
-    posed: PosedScene, context: FrameContext, terms: dict[str, Term], names: list[str], stages: dict[str, float]
+    posed: PosedScene, context: FrameContext | None, terms: dict[str, Term], names: list[str], stages: dict[str, float]
 ) -> tuple[NormalEquations, dict[str, float]]:
     equations = NormalEquations.at(posed)
     costs: dict[str, float] = {}

@@ -49,7 +49,7 @@ class Objective:
         thinned = {n: term.coarse() if isinstance(term, Thinnable) else term for n, term in self.terms.items()}
         return replace(self, terms=thinned)
 
-    def find(self, posed: PosedScene, context: FrameContext) -> dict[str, Residual]:
+    def find(self, posed: PosedScene, context: FrameContext | None) -> dict[str, Residual]:
         """Correspondences of every term at the current pose."""
         return {name: term.find(posed, context) for name, term in self.terms.items()}
 

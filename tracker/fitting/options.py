@@ -122,6 +122,13 @@ class TrackOptions:
         is_advanced=True,
         about="recording",
     )
+    cameras: str = _option(
+        "",
+        "Colour cameras to track in, ids with commas between them; empty takes the depth camera, without one all.",
+        label="Colour cameras",
+        is_advanced=True,
+        about="recording",
+    )
     threads: int = _option(
         1,
         "Threads; with two, every other term is worked out in the second.",
@@ -147,6 +154,11 @@ class TrackOptions:
                 raise TrackingError(f"{option.name} is {value!r}; needed a number from {low} to {high}.")
         if 0 <= self.last_frame < self.first_frame:
             raise TrackingError(f"The last frame, {self.last_frame}, comes before the first, {self.first_frame}.")
+
+    @property
+    def view_ids(self) -> tuple[str, ...]:
+        """The colour cameras that were chosen, by id; none where nobody chose any."""
+        return tuple(name for name in (part.strip() for part in self.cameras.split(",")) if name)
 
     @property
     def term_letters(self) -> str:

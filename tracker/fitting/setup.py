@@ -35,11 +35,12 @@ class TrackSetup:
     Attributes:
         names: Of the models: `right`, `left` or an object's name.
         models: As they are tracked, calibrated.
-        camera_id: The depth camera.
+        camera_id: The depth camera; where colour cameras alone are tracked in, the first of them.
         options: What the user chose.
         marks: Name of a hand to its joints (21, 3) as marked in the first frame, px of an ideal lens and v.
         own_detector: Finds fingertips for the S of [T16] Eq. 5; None for the detector that comes along.
         static_scene: Planes and gravity; None where the run was begun without an object, or before they were kept.
+        view_ids: The colour cameras that are tracked in; none where a depth camera is.
     """
 
     names: tuple[str, ...]
@@ -49,6 +50,7 @@ class TrackSetup:
     marks: dict[str, npt.NDArray[np.float64]] = field(default_factory=dict)
     own_detector: OwnDetector | None = None
     static_scene: StaticScene | None = None
+    view_ids: tuple[str, ...] = ()
 
     @cached_property
     def scene(self) -> Scene:
@@ -106,6 +108,7 @@ class TrackSetup:
             "version": 1,
             "names": list(self.names),
             "camera": self.camera_id,
+            "views": list(self.view_ids),
             "options": self.options.to_json(),
             "marks": {name: points.tolist() for name, points in self.marks.items()},
         }
@@ -126,6 +129,7 @@ class TrackSetup:
             document = json.loads((folder / "setup.json").read_text())
             names = tuple(str(name) for name in document["names"])
             camera, options = str(document["camera"]), TrackOptions.from_json(document["options"])
+            views = tuple(str(camera_id) for camera_id in document.get("views", ()))
             static = document.get("static_scene")
             static_scene = None if static is None else StaticScene.from_json(static)
             called = document.get("detector")  # tracks of before it was kept have the file alone
@@ -134,17 +138,21 @@ class TrackSetup:
         detector = load_detector(folder / FINGERTIPS) if (folder / FINGERTIPS).exists() else None
         if detector is not None and called is not None:
             detector = replace(detector, name=str(called["name"]), sha256=str(called["sha256"]))
-        return cls(names, models, camera, options, marks, detector, static_scene)
+        return cls(names, models, camera, options, marks, detector, static_scene, views)
 
 
-def choose_camera(sequence: Sequence, options: TrackOptions) -> str:
-    """The depth camera that a run tracks in.
+def choose_cameras(sequence: Sequence, options: TrackOptions) -> tuple[str, tuple[str, ...]]:
+    """The depth camera that a run tracks in and no views, or the first of the views it tracks in and all of them.
 
     Raises:
         TrackingError: The recording cannot be tracked so.
     """
     with_depth = [camera.id for camera in sequence.cameras if camera.has_depth]
-    faults = find_tracking_faults(sequence.frame_count, sequence.hands, with_depth, options)
+    with_color = [camera.id for camera in sequence.cameras if camera.has_color]
+    faults = find_tracking_faults(sequence.frame_count, sequence.hands, with_depth, with_color, options)
     if faults:
         raise TrackingError(f"{sequence.name}: {' '.join(faults)}")
-    return options.camera or with_depth[0]
+    if with_depth and not options.view_ids:
+        return options.camera or with_depth[0], ()
+    views = options.view_ids or tuple(with_color)
+    return views[0], views

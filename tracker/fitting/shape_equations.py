@@ -96,7 +96,7 @@ def shape_derivative(posed: PosedScene, directions: SceneDirections) -> Array:
 def reduce_equations(
     scene: Scene,
     directions: SceneDirections,
-    observation: Observation,
+    observation: Observation | None,
     pose: Array,
     objective: Objective,
     damping: float = 1e-3,

@@ -6,9 +6,16 @@ from collections.abc import Sequence
 
 from tracker.fitting.options import TrackOptions
 
+MAX_VIEWS = 16
+"""Colour cameras of a run at most; more add time and hardly anything else."""
+
 
 def find_tracking_faults(
-    frame_count: int, hands: Sequence[str], depth_cameras: Sequence[str], options: TrackOptions
+    frame_count: int,
+    hands: Sequence[str],
+    depth_cameras: Sequence[str],
+    color_cameras: Sequence[str],
+    options: TrackOptions,
 ) -> list[str]:
     """Why a recording cannot be tracked so, in sentences for people; empty when it can be.
 
@@ -16,16 +23,15 @@ def find_tracking_faults(
         frame_count: Of the recording.
         hands: That it shows.
         depth_cameras: Ids of its cameras with depth images.
+        color_cameras: Ids of its cameras with colour or infrared images.
         options: What somebody chose.
     """
-    faults = []
-    if not depth_cameras:
-        faults.append(
-            "None of its cameras has depth images, and the tracker fits hands to depth. Import the recording with its "
-            "depth images."
-        )
+    if options.view_ids or not depth_cameras:
+        faults = _find_view_faults(color_cameras, options)
     elif options.camera and options.camera not in depth_cameras:
-        faults.append(f"Camera {options.camera} has no depth images. Choose {' or '.join(depth_cameras)}.")
+        faults = [f"Camera {options.camera} has no depth images. Choose {' or '.join(depth_cameras)}."]
+    else:
+        faults = []
     if not hands:
         faults.append("The recording does not say which hands it shows. Set its hands to right, left or both.")
     last = frame_count - 1 if options.last_frame < 0 else options.last_frame
@@ -36,21 +42,55 @@ def find_tracking_faults(
     return faults
 
 
-def find_detector_faults(looks_at: str, has_color: bool, options: TrackOptions) -> list[str]:
+def _find_view_faults(color_cameras: Sequence[str], options: TrackOptions) -> list[str]:
+    """What keeps colour cameras from being tracked in."""
+    if not color_cameras:
+        return ["None of its cameras has colour or depth images, so there is nothing to track in."]
+    unknown = [name for name in options.view_ids if name not in color_cameras]
+    if unknown:
+        return [
+            f"{' and '.join(unknown)} {'are no cameras' if len(unknown) > 1 else 'is no camera'} with colour images of "
+            f"this recording. Choose among {', '.join(color_cameras)}."
+        ]
+    views = options.view_ids or tuple(color_cameras)
+    faults = []
+    if len(set(views)) < len(views):
+        faults.append(f"Colour cameras were chosen twice ({options.cameras}). Name each once.")
+    if len(views) > MAX_VIEWS:
+        faults.append(
+            f"{len(views)} colour cameras are too many; at most {MAX_VIEWS} are tracked in. Choose those that see the "
+            "hands best."
+        )
+    if not options.use_detector:
+        faults.append("Without depth images hands are found by the hand detector alone. Switch it on.")
+    if options.is_as_written:
+        faults.append("The method T16 as written needs depth images. Choose Handloom's.")
+    return faults
+
+
+def find_detector_faults(
+    looks_at: str, depth_camera: str | None, color_cameras: Sequence[str], options: TrackOptions
+) -> list[str]:
     """Why a run cannot use a fingertip detector that a lab has trained; empty when it can.
 
     Args:
         looks_at: `depth` or `color`.
-        has_color: Whether the camera that is tracked in has colour images.
+        depth_camera: Id of the camera that is tracked in; None where colour cameras alone are.
+        color_cameras: Ids of the cameras with colour images.
         options: What somebody chose.
     """
+    if depth_camera is None:
+        return [
+            "A fingertip detector finds points in space with the help of depth, and colour cameras alone are tracked "
+            "in. Choose no detector of your own; the hand detector looks at every view."
+        ]
     faults = []
     if "S" not in options.term_letters:
         faults.append(
             f"The terms {options.terms} use no fingertips, so a fingertip detector would do nothing. Choose terms with "
             "S, such as LO+SC, or no detector of your own."
         )
-    if looks_at == "color" and not has_color:
+    if looks_at == "color" and depth_camera not in color_cameras:
         faults.append(
             "The fingertip detector looks at colour, and the camera has no colour images. Choose one that looks at "
             "depth (`handloom train-detector --on depth`)."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,6 +17,7 @@ from tracker.fitting.frame_fit import draw, find_residuals
 from tracker.fitting.region import region_around
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import find_sightings
+from tracker.fitting.view_hands import ViewHands
 from tracker.geometry import se3
 from tracker.inspection.shown_collisions import ShownCollisions, show_collisions
 from tracker.inspection.shown_contacts import ShownContacts, show_contacts
@@ -29,6 +31,7 @@ from tracker.observation import Observation, observe
 from tracker.physics import find_support
 from tracker.rendering import View, render_view
 from tracker.tracking.as_written import compose_objective
+from tracker.tracking.fit_views import see_hands
 from tracker.tracking.hold import HoldOptions, with_contacts
 
 Array = npt.NDArray[np.float64]
@@ -69,18 +72,24 @@ class FrameView:
 
     Attributes:
         aids: Of the track.
-        T_world_camera: (4, 4) of the depth camera.
+        T_world_camera: (4, 4) of the depth camera, or of the first of the colour cameras.
     """
 
-    def __init__(self, frame: Frame, camera: Camera, pose: Array, aids: ViewAids) -> None:
-        assert frame.depth is not None
+    def __init__(
+        self,
+        frame: Frame,
+        camera: Camera,
+        pose: Array,
+        aids: ViewAids,
+        look_in_views: Callable[[PosedScene], ViewHands] | None = None,
+    ) -> None:
         self.aids = aids
         self.T_world_camera = camera.T_world_camera
-        self._frame, self._camera, self._pose = frame, camera, pose
+        self._frame, self._camera, self._pose, self._look_in_views = frame, camera, pose, look_in_views
 
     @property
     def cloud(self) -> npt.NDArray[np.float32]:
-        """(N, 3) points of the depth image, world, m."""
+        """(N, 3) points of the depth image, world, m; none where colour cameras alone were tracked in."""
         return self._cloud[0]
 
     @property
@@ -109,9 +118,13 @@ class FrameView:
     @cached_property
     def correspondences(self) -> dict[str, npt.NDArray[np.float32]]:
         """Name of each term of the run to its (M, 2, 3) segments from model to data, world, m."""
+        tools, setup = self.aids.tools, self.aids.setup
+        if self._look_in_views is not None:
+            joints = self._look_in_views(self._posed).add_to(tools.objective, setup.scene, setup.names)
+            found = find_residuals(self._posed, None, joints)
+            return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}
         if self._seen is None:
             return {}
-        tools, setup = self.aids.tools, self.aids.setup
         objective = tools.with_fingertips(self._seen)
         if setup.options.is_as_written:
             objective = compose_objective(setup, tools, self._seen)
@@ -161,7 +174,7 @@ class FrameView:
     @cached_property
     def _seen(self) -> Observation | None:
         region, setup = region_around(self._posed.vertices, self._camera), self.aids.setup
-        if region is None:
+        if region is None or self._frame.depth is None:
             return None
         sightings = find_sightings(setup.hand_detector, self._frame, self._camera, setup.hand_names, {})
         return observe(sightings.frame, self._camera, region, setup.preprocessing)
@@ -173,7 +186,8 @@ class FrameView:
     @cached_property
     def _cloud(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:
         depth, K = self._frame.depth, self._camera.K
-        assert depth is not None
+        if depth is None:
+            return np.zeros((0, 3), dtype=np.float32), np.zeros((0, 3), dtype=np.uint8)
         rows, columns = np.nonzero(depth)
         depths = depth[rows, columns].astype(np.float64)
         x, y = (columns - K[0, 2]) / K[0, 0] * depths, (rows - K[1, 2]) / K[1, 1] * depths
@@ -192,7 +206,16 @@ def describe_frame(
 ) -> FrameView:
     """All that can be shown of a frame at a pose (D,); frames that are given the same `aids` share what is costly."""
     frame, camera = setup.read(sequence, index)
-    return FrameView(frame, camera, pose, aids or ViewAids(setup, camera.T_world_camera))
+    aids = aids or ViewAids(setup, camera.T_world_camera)
+    if not setup.view_ids:
+        return FrameView(frame, camera, pose, aids)
+    cameras = tuple(sequence.camera(camera_id) for camera_id in setup.view_ids)
+
+    def look(posed: PosedScene) -> ViewHands:
+        frames = [sequence.frame(index, camera.id) for camera in cameras]
+        return see_hands(setup, cameras, frames, posed, set())
+
+    return FrameView(frame, camera, pose, aids, look)
 
 
 def render_overlay(

@@ -18,16 +18,10 @@ from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import Scene
 from tracker.observation import HAND, Observation
-from tracker.solver.damped_step import compute_damped_step
-from tracker.terms.joint_prior import AnatomicalLimits, Regularization
-from tracker.terms.marked_joints import MarkedJoints, mark_joints
-from tracker.terms.point_point import PointToPoint
-from tracker.terms.residual import Residual
+from tracker.search.joint_descent import BENDS, FEW_STEPS, JointDescent
+from tracker.terms.marked_joints import mark_joints
 
 Array = npt.NDArray[np.float64]
-
-FEW_STEPS = 5
-"""So many steps from each bend of the fingers tell which of them leads to the joints."""
 
 FLESH = 0.009
 """A joint lies about this far behind the skin that is seen before it, m."""
@@ -76,51 +70,22 @@ def start_hand(
         bent: (A,) angles to start from; three bends of all fingers are tried when left out.
     """
     scene = Scene((model,))
-    marked = np.flatnonzero(points[:, 2] > 0)
     joints = mark_joints(scene, 0, points, camera)
     if observation is None:
         lifted, seen = _lift_by_size(points, camera, scene.pose_at(scene.rest_pose()).landmarks(0))
     else:
         lifted, seen = _lift(points, camera, observation, np.zeros(21) if relative is None else relative)
+    descent, known = JointDescent(scene, joints, lifted, seen), points[:, 2] > 0
     ways = []
-    for angles in [bent] if bent is not None else [curl_fingers(model, curl) for curl in (0.0, 0.35, 0.7)]:
-        rest = scene.rest_pose()
-        rest[6:] = angles
-        T = _align(scene.pose_at(rest).landmarks(0)[marked], lifted[marked])
-        rest[:6] = se3.log(T)
-        ways.append((rest, *_descend(scene, rest, rest, joints, lifted, seen, min(FEW_STEPS, iterations))))
+    for angles in [bent] if bent is not None else [curl_fingers(model, curl) for curl in BENDS]:
+        rest = descent.rest(angles, known)
+        ways.append((rest, *descent.descend(rest, rest, min(FEW_STEPS, iterations))))
     if observation is None or relative is None:
         rest, pose, _ = min(ways, key=lambda way: way[2])
     else:
         thin = observation.thin(max(1, round((observation.hand_count / SCORED_PIXELS) ** 0.5)))
         rest, pose, _ = max(ways, key=lambda way: measure_quality(draw(scene.pose_at(way[1]), thin), thin).score)
-    return _descend(scene, pose, rest, joints, lifted, seen, max(0, iterations - FEW_STEPS))[0]
-
-
-def _descend(
-    scene: Scene,
-    start: Array,
-    rest: Array,
-    joints: MarkedJoints,
-    lifted: Array,
-    seen: npt.NDArray[np.bool_],
-    iterations: int,
-) -> tuple[Array, float]:
-    """Gauss-Newton on rays, depths, limits and nearness to a pose at rest; the pose and its cost."""
-    objective = Objective(terms={}, anatomy=AnatomicalLimits(0.05), regularization=Regularization(2.0))
-    corners = np.repeat(np.arange(21, dtype=np.int32)[seen, None] + scene.landmark_slices[0].start, 3, axis=1)
-    shares = np.tile([1.0, 0.0, 0.0], (len(corners), 1))
-    depths = PointToPoint(corners, shares, lifted[seen], np.full(len(corners), 0.1))
-    limits = np.full(scene.num_dofs, 0.3)
-    limits[:3] = 0.05
-    pose, cost = start, np.inf
-    for _ in range(iterations):
-        posed = scene.pose_at(pose)
-        residuals: dict[str, Residual] = {"joints": joints.find(posed), "depths": depths}
-        JtJ, Jtr, costs = objective.linearize(posed, residuals, rest)
-        cost = sum(costs.values())
-        pose = scene.retract(pose, compute_damped_step(JtJ, Jtr, 1e-3, limits))
-    return pose, cost
+    return descent.descend(pose, rest, max(0, iterations - FEW_STEPS))[0]
 
 
 def _lift(
@@ -173,13 +138,3 @@ def _at_depths(points: Array, camera: Camera, depths: Array) -> Array:
     x = (points[:, 0] - camera.K[0, 2]) / camera.K[0, 0] * depths
     y = (points[:, 1] - camera.K[1, 2]) / camera.K[1, 1] * depths
     return se3.transform(camera.T_world_camera, np.stack([x, y, depths], axis=1))
-
-
-def _align(source: Array, target: Array) -> Array:
-    """Rigid motion (4, 4) that carries points (N, 3) nearest to others, by Kabsch's SVD."""
-    center_source, center_target = source.mean(axis=0), target.mean(axis=0)
-    U, _, Vt = np.linalg.svd((target - center_target).T @ (source - center_source))
-    T = np.eye(4)
-    T[:3, :3] = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
-    T[:3, 3] = center_target - T[:3, :3] @ center_source
-    return T

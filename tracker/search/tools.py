@@ -50,11 +50,12 @@ class Tools:
 def make_tools(setup: TrackSetup, T_world_camera: npt.NDArray[np.float64]) -> Iterator[Tools]:
     """The helpers that the run's terms ask for, closed at the end."""
     letters = setup.options.term_letters
-    terms = dict(Objective().terms)
+    # In colour views each frame brings its own terms.
+    terms = {} if setup.view_ids else dict(Objective().terms)
     if "C" in letters:
         terms["collision"] = Collision()
     has_object = any(not model.hand for model in setup.models)
-    detector = setup.fingertip_detector if "S" in letters else None
+    detector = setup.fingertip_detector if "S" in letters and not setup.view_ids else None
     if "P" not in letters or not has_object:
         yield Tools(Objective(terms=terms), detector, None)
         return

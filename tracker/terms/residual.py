@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -109,8 +109,14 @@ class Term(Protocol):
     @property
     def weight(self) -> float: ...
 
-    def find(self, posed: PosedScene, context: FrameContext) -> Residual:
-        """Look for correspondences at the current pose."""
+    def find(self, posed: PosedScene, context: Any) -> Residual:
+        """Look for correspondences at the current pose.
+
+        Args:
+            posed: The scene.
+            context: The `FrameContext` of the depth image; None where there is none, for terms that need none because
+                they bring what was seen, such as `MarkedJoints`.
+        """
         ...
 
 

@@ -18,6 +18,7 @@ from tracker.search.tools import Tools, make_tools
 from tracker.tracking.as_written import follow_as_written
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow_part import follow_part
+from tracker.tracking.follow_views import follow_views
 from tracker.tracking.frame_result import FrameResult
 from tracker.tracking.recovery import Recovery, list_hands, recover_hands
 from tracker.tracking.state import TrackState
@@ -63,6 +64,8 @@ def follow_frame(
     """Track the next frame."""
     if setup.options.is_as_written:
         return follow_as_written(sequence, setup, tools, state)
+    if setup.view_ids:
+        return follow_views(sequence, setup, tools, state)[:2]
     read_at = perf_counter()
     frame, camera = setup.read(sequence, state.next_frame)
     started = perf_counter()

@@ -18,7 +18,7 @@ from tracker.fitting.measure_quality import measure_quality
 from tracker.fitting.objective import Objective
 from tracker.fitting.options import TrackOptions
 from tracker.fitting.region import choose_stride, region_around, whole_image
-from tracker.fitting.setup import TrackSetup, choose_camera
+from tracker.fitting.setup import TrackSetup, choose_cameras
 from tracker.fitting.sighting import Sightings, find_sightings
 from tracker.fitting.tracking_faults import find_detector_faults
 from tracker.model.articulated import ArticulatedModel
@@ -35,6 +35,7 @@ from tracker.search.start_automatic import find_hand
 from tracker.search.start_object import start_object
 from tracker.tracking.calibration_run import calibrate_hands
 from tracker.tracking.start_plan import plan_start
+from tracker.tracking.start_views import start_views
 from tracker.tracking.state import TrackState
 from tracker.tracking.static_scene import see_static_scene
 
@@ -69,15 +70,19 @@ def start_tracking(
     Raises:
         TrackingError: `find_tracking_faults` or `find_detector_faults` finds some, or an object is not found.
     """
-    camera_id = choose_camera(sequence, options)
+    camera_id, view_ids = choose_cameras(sequence, options)
     if detector is not None:
-        faults = find_detector_faults(detector.forest.kind, sequence.camera(camera_id).has_color, options)
+        with_color = [camera.id for camera in sequence.cameras if camera.has_color]
+        faults = find_detector_faults(detector.forest.kind, None if view_ids else camera_id, with_color, options)
         if faults:
             raise TrackingError(f"{detector.name}: {' '.join(faults)}")
     frames = options.frame_range(sequence.frame_count)
     names = tuple(sequence.hands)
     given = models or {}
     hands = {name: given.get(name) or default_hand(name) for name in names}
+    if view_ids:
+        setup = TrackSetup(names, tuple(hands.values()), camera_id, options, view_ids=view_ids)
+        return start_views(sequence, setup, frames, progress or (lambda stage, share: None))
     marks = _find_marks(sequence, annotations, frames[0], camera_id)
     placed: dict[str, tuple[ArticulatedModel, Array]] = {}
     bare = TrackSetup((), (), camera_id, options, marks)

@@ -48,7 +48,8 @@ def test_a_recording_that_cannot_be_tracked_is_not_queued(client: TestClient, ad
     flat = add_recording("colour only", depth=False)
     deep = add_recording("with depth")
     for recording, params, told in (
-        (flat, {}, "None of its cameras has depth images"),
+        (flat, {"use_detector": False}, "Without depth images hands are found by the hand detector alone"),
+        (flat, {"cameras": "cam0,cam9"}, "cam9 is no camera with colour images of this recording. Choose among cam0."),
         (deep, {"camera": "cam7"}, "Camera cam7 has no depth images. Choose cam0."),
         (deep, {"last_frame": 999}, f"the recording has 0 to {deep['frame_count'] - 1}"),
         (deep, {"first_frame": 5, "last_frame": 3}, "The last frame, 3, comes before the first, 5."),
@@ -57,8 +58,10 @@ def test_a_recording_that_cannot_be_tracked_is_not_queued(client: TestClient, ad
         ({"id": str(uuid.uuid4())}, {}, "does not exist"),
     ):
         assert told in refused(client, "", {"sequence_id": recording["id"], "params": params})
+    may_start(client, "", {"sequence_id": flat["id"]})
     ids = [flat["id"], deep["id"]]
-    found = client.post(f"{API}/jobs/batch/check", json={"sequence_ids": ids}).json()["refused"]
+    params = {"use_detector": False}
+    found = client.post(f"{API}/jobs/batch/check", json={"sequence_ids": ids, "params": params}).json()["refused"]
     assert [one["id"] for one in found] == [flat["id"]] and "depth images" in found[0]["detail"]
     may_start(client, "", {"sequence_id": deep["id"]})
 

@@ -71,10 +71,23 @@ def refusal(capsys) -> str:
     return captured.err
 
 
-def test_a_recording_without_depth_is_refused_with_what_is_needed(recording, capsys):
+def test_a_recording_without_depth_needs_the_hand_detector(recording, capsys):
     change(recording, lambda document: document["cameras"][0].pop("depth"))
-    assert track(recording) == BAD_INPUT
-    assert "None of its cameras has depth images" in refusal(capsys)
+    assert track(recording, "--no-detector") == BAD_INPUT
+    assert "Without depth images hands are found by the hand detector alone" in refusal(capsys)
+
+
+@pytest.mark.parametrize(
+    ("cameras", "said"),
+    [
+        ("cam0,cam7", "cam7 is no camera with colour images of this recording. Choose among cam0."),
+        ("cam0,cam0", "chosen twice (cam0,cam0)"),
+        (",".join(f"cam{number}" for number in range(17)), "are no cameras with colour images"),
+    ],
+)
+def test_colour_cameras_that_cannot_be_tracked_in_are_named(recording, capsys, cameras, said):
+    assert track(recording, "--cameras", cameras) == BAD_INPUT
+    assert said in refusal(capsys)
 
 
 def test_a_missing_depth_image_is_named(recording, capsys):

@@ -1,0 +1,103 @@
+"""What the hand detector sees of the hands in several views at one moment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.capture.camera import Camera
+from tracker.fitting.objective import Objective
+from tracker.landmarks import DetectedHand
+from tracker.model.joints import HAND_JOINTS
+from tracker.model.scene import PosedScene, Scene
+from tracker.terms.marked_joints import MarkedJoints
+
+Array = npt.NDArray[np.float64]
+
+WRIST, MIDDLE_MCP = HAND_JOINTS.index("wrist"), HAND_JOINTS.index("middle_mcp")
+
+REACH = 15.0
+"""mm; a joint that far from the detector's place has a quarter of its pull, as with depth (`sighting.REACH`)."""
+
+HOLDS = 0.5
+"""A view holds a hand whose joints lie so near to where it was seen there, `ViewHands.measure`."""
+
+
+@dataclass(frozen=True)
+class ViewHands:
+    """The hands of a recording in the images of one moment.
+
+    Attributes:
+        cameras: C of them.
+        hands: For each camera, by the name of the hand, what was seen in its image, px as recorded.
+    """
+
+    cameras: tuple[Camera, ...]
+    hands: tuple[Mapping[str, DetectedHand], ...]
+
+    def points(self, name: str) -> Array:
+        """(21, C, 2) px as recorded; NaN in views that do not see the hand."""
+        found = np.full((21, len(self.cameras), 2), np.nan)
+        for view, hands in enumerate(self.hands):
+            if name in hands:
+                found[:, view] = hands[name].points
+        return found
+
+    def count(self, name: str) -> int:
+        """Views in which a hand was seen."""
+        return sum(name in hands for hands in self.hands)
+
+    def without(self, name: str, views: list[int]) -> ViewHands:
+        """The same, with one hand not seen in some views."""
+        kept = [
+            {other: hand for other, hand in hands.items() if other != name or view not in views}
+            for view, hands in enumerate(self.hands)
+        ]
+        return replace(self, hands=tuple(kept))
+
+    def rays(self, scene: Scene, model: int, name: str, reach: float = REACH) -> MarkedJoints:
+        """The viewing rays of one hand's joints, in all views together."""
+        first = scene.landmark_slices[model].start
+        ids, directions, moments = [np.zeros(0, np.int32)], [np.zeros((0, 3))], [np.zeros((0, 3))]
+        for camera, hands in zip(self.cameras, self.hands, strict=True):
+            if name not in hands:
+                continue
+            rays = camera.unproject(hands[name].points)
+            known = np.flatnonzero(np.isfinite(rays).all(axis=1))
+            own = rays[known] @ camera.T_world_camera[:3, :3].T
+            own /= np.linalg.norm(own, axis=1, keepdims=True)
+            ids.append(np.asarray(first + known, dtype=np.int32))
+            directions.append(own)
+            origin = np.broadcast_to(camera.T_world_camera[:3, 3], own.shape)
+            moments.append(np.cross(origin, own))
+        joined = np.concatenate(ids)
+        return MarkedJoints(
+            joined, np.concatenate(directions), np.concatenate(moments), np.ones(len(joined)), reach=reach
+        )
+
+    def add_to(self, objective: Objective, scene: Scene, names: tuple[str, ...], reach: float = REACH) -> Objective:
+        """The objective with the joints of all views, the S of [T16] Eq. 19 (`Sightings.add_to` says what differs)."""
+        terms = dict(objective.terms)
+        for model, name in enumerate(names):
+            if self.count(name):
+                terms[f"joints_{name}"] = self.rays(scene, model, name, reach)
+        return replace(objective, terms=terms)
+
+    def measure(self, posed: PosedScene, model: int, name: str) -> Array:
+        """(C,) mean distance of a hand's joints from where each view saw them, in quarters of its palm's length.
+
+        Each joint counts at most 1. NaN in views that do not see the hand.
+        """
+        joints = posed.landmarks(model)
+        palm = 0.25 * float(np.linalg.norm(joints[MIDDLE_MCP] - joints[WRIST]))
+        apart = np.full(len(self.cameras), np.nan)
+        for view, (camera, hands) in enumerate(zip(self.cameras, self.hands, strict=True)):
+            if name in hands:
+                depth = float(np.median((joints - camera.T_world_camera[:3, 3]) @ camera.T_world_camera[:3, 2]))
+                pixels = palm * camera.K[0, 0] / max(depth, 1e-6)
+                off = np.linalg.norm(camera.project(joints) - hands[name].points, axis=1) / pixels
+                apart[view] = float(np.mean(np.minimum(np.where(np.isfinite(off), off, 1.0), 1.0)))
+        return apart

@@ -1,0 +1,58 @@
+"""Go from frame to frame in colour views: find the hands in every image, fit, judge, place anew what was lost."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+from tracker.capture.sequence import Sequence
+from tracker.fitting.setup import TrackSetup
+from tracker.fitting.view_hands import ViewHands
+from tracker.search.place_in_views import place_in_views
+from tracker.search.tools import Tools
+from tracker.tracking.fit_views import fit_views, is_held, see_hands
+from tracker.tracking.frame_result import FrameResult
+from tracker.tracking.recovery import list_hands
+from tracker.tracking.state import TrackState
+
+
+def follow_views(
+    sequence: Sequence, setup: TrackSetup, tools: Tools, state: TrackState
+) -> tuple[TrackState, FrameResult, ViewHands]:
+    """Track the next frame in the views of a run; also what was seen in it."""
+    read_at = perf_counter()
+    cameras = tuple(sequence.camera(camera_id) for camera_id in setup.view_ids)
+    frames = [sequence.frame(state.next_frame, camera.id) for camera in cameras]
+    started = perf_counter()
+    scene, hands, gone = setup.scene, list_hands(setup), set(state.gone_hands(setup))
+    pose = state.predict(scene)
+    seen = see_hands(setup, cameras, frames, scene.pose_at(pose), gone)
+    stages = {"reading": started - read_at, "detecting hands": perf_counter() - started}
+    found = set()
+    for hand in sorted(gone):
+        placed = place_in_views(setup.models[hand], setup.names[hand], seen)
+        if placed is not None:
+            pose[scene.pose_slices[hand]] = placed
+            found.add(hand)
+    iterations = setup.options.first_iterations if found else setup.options.iterations
+    fit = fit_views(setup, tools.objective, seen, pose, iterations)
+    pose, posed = fit.pose, scene.pose_at(fit.pose)
+    lost = {hand for hand in hands if hand in gone - found or not is_held(setup, seen, posed, hand)}
+    earlier = state.pose.copy()
+    for hand in gone | lost:
+        where = scene.pose_slices[hand]
+        if hand in lost:
+            pose[where] = state.pose[where]
+        earlier[where] = pose[where]
+    statuses = tuple("lost" if hand in lost else "recovered" if hand in found else "ok" for hand in hands)
+    result = FrameResult(
+        state.next_frame,
+        pose,
+        next((status for status in ("lost", "recovered") if status in statuses), "ok"),
+        perf_counter() - started,
+        None,
+        fit.costs,
+        fit.stages | stages,
+        hand_status=statuses,
+    )
+    after = TrackState(state.next_frame + 1, pose, earlier, is_lost=bool(lost), lost_hands=tuple(sorted(lost)))
+    return after, result, seen

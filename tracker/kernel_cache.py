@@ -21,6 +21,7 @@ SHARED_KERNELS = (
     "geometry/triangles.py",
     "model/blend_kernels.py",
     "observation/depth_edges.py",
+    "observation/image_edges.py",
     "observation/observation.py",
     "registration/curved_triangles.py",
     "registration/nearest_grid.py",

@@ -72,7 +72,7 @@ class ViewHands:
             ids.append(np.asarray(first + known, dtype=np.int32))
             directions.append(own)
             origin = np.broadcast_to(camera.T_world_camera[:3, 3], own.shape)
-            moments.append(np.cross(origin, own))
+            moments.append(np.asarray(np.cross(origin, own), dtype=np.float64))
         joined = np.concatenate(ids)
         return MarkedJoints(
             joined, np.concatenate(directions), np.concatenate(moments), np.ones(len(joined)), reach=reach

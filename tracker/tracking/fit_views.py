@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from time import perf_counter
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +16,11 @@ from tracker.fitting.frame_fit import Fit, FitOptions, fit_frame
 from tracker.fitting.objective import Objective
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.view_hands import HOLDS, REACH, ViewHands
+from tracker.geometry import se3
 from tracker.landmarks import DetectedHand, HandDetector
 from tracker.model.scene import PosedScene
+from tracker.observation.image_edges import find_image_edges
+from tracker.terms.contours import Contours
 from tracker.tracking.recovery import list_hands
 
 Array = npt.NDArray[np.float64]
@@ -25,6 +29,15 @@ FAR_REACH = 4.0 * REACH
 """mm; the first iterations of a frame hear joints from farther off, where a hand moved fast."""
 
 ALL_TURNS = (0, 1, 2, 3)
+
+CONTOUR_ITERATIONS = 4
+"""Iterations with contours: they are drawn anew in each, and the joints have brought them near."""
+
+EDGE_MARGIN = 0.015
+"""m around the scene in which edges are looked for."""
+
+NEAREST = 0.05
+"""m before a camera; what is nearer is not drawn."""
 
 MOST = 11
 """So many of the 21 joints are most of a hand."""
@@ -61,15 +74,50 @@ def see_hands(
     return ViewHands(cameras, tuple(seen))
 
 
-def fit_views(setup: TrackSetup, objective: Objective, seen: ViewHands, pose: Array, iterations: int) -> Fit:
-    """Fit the scene from a pose (D,) to what the views saw: first with far joints, then without."""
-    options = FitOptions(iterations=max(1, iterations // 2), fine=0)
-    far = seen.add_to(objective, setup.scene, setup.names, FAR_REACH)
-    first = fit_frame(setup.scene, None, pose, pose, far, options)
-    near = seen.add_to(objective, setup.scene, setup.names)
-    last = fit_frame(setup.scene, None, first.pose, pose, near, replace(options, iterations=iterations))
-    stages = {name: seconds + first.stages[name] for name, seconds in last.stages.items()}
-    return Fit(last.pose, (*first.costs, *last.costs), stages)
+def fit_views(
+    setup: TrackSetup, objective: Objective, seen: ViewHands, frames: Sequence[Frame], pose: Array, iterations: int
+) -> Fit:
+    """Fit the scene from a pose (D,) to what the views saw.
+
+    First far joints alone count, then near ones with what the run's terms add, at last the contours in the images too.
+    """
+    scene, names = setup.scene, setup.names
+    far = seen.add_to(replace(objective, terms={}), scene, names, FAR_REACH)
+    first = fit_frame(scene, None, pose, pose, far, FitOptions(iterations=max(1, iterations // 2), fine=0))
+    near = seen.add_to(objective, scene, names)
+    second = fit_frame(scene, None, first.pose, pose, near, FitOptions(iterations=iterations))
+    started = perf_counter()
+    drawn = add_contours(near, scene.pose_at(second.pose), seen.cameras, frames)
+    stages = {"finding edges": perf_counter() - started}
+    third = fit_frame(scene, None, second.pose, pose, drawn, FitOptions(iterations=CONTOUR_ITERATIONS))
+    for fit in (first, second, third):
+        for name, seconds in fit.stages.items():
+            stages[name] = stages.get(name, 0.0) + seconds
+    return Fit(third.pose, (*first.costs, *second.costs, *third.costs), stages)
+
+
+def add_contours(
+    objective: Objective, posed: PosedScene, cameras: Sequence[Camera], frames: Sequence[Frame]
+) -> Objective:
+    """The objective with the edges of each image near the scene."""
+    terms = dict(objective.terms)
+    for camera, frame in zip(cameras, frames, strict=True):
+        assert frame.color is not None
+        points, margin = find_place(posed, camera)
+        edges = find_image_edges(frame.color, camera, points, margin) if len(points) else None
+        if edges is not None:
+            terms[f"contours_{camera.id}"] = Contours(edges)
+    return replace(objective, terms=terms)
+
+
+def find_place(posed: PosedScene, camera: Camera) -> tuple[Array, float]:
+    """Where an ideal lens shows the vertices (N, 2) px that are well before a camera, and px of `EDGE_MARGIN` there."""
+    points = se3.transform(camera.T_camera_world, posed.vertices)
+    points = points[points[:, 2] > NEAREST]
+    if not len(points):
+        return np.zeros((0, 2)), 0.0
+    pixels = points[:, :2] / points[:, 2:] * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]
+    return pixels, EDGE_MARGIN * float(camera.K[0, 0] / np.median(points[:, 2]))
 
 
 def is_held(setup: TrackSetup, seen: ViewHands, posed: PosedScene, hand: int) -> bool:

@@ -34,7 +34,7 @@ def follow_views(
             pose[scene.pose_slices[hand]] = placed
             found.add(hand)
     iterations = setup.options.first_iterations if found else setup.options.iterations
-    fit = fit_views(setup, tools.objective, seen, pose, iterations)
+    fit = fit_views(setup, tools.objective, seen, frames, pose, iterations)
     pose, posed = fit.pose, scene.pose_at(fit.pose)
     lost = {hand for hand in hands if hand in gone - found or not is_held(setup, seen, posed, hand)}
     earlier = state.pose.copy()

@@ -1,0 +1,124 @@
+"""Contours of the drawn hand on edges of colour images."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.tracker.search.test_place_in_views import HAND, SCENE, look_from
+from tracker.fitting.finger_search import curl_fingers
+from tracker.fitting.frame_fit import FitOptions, fit_frame
+from tracker.fitting.objective import Objective
+from tracker.geometry import se3
+from tracker.observation.image_edges import DIRECTIONS, ImageEdges, find_image_edges
+from tracker.rendering import render_view
+from tracker.terms.contours import Contours, _find_into, reject_by_bone
+
+VIEWS = [look_from(angle) for angle in (0.0, 0.8, 1.6)]
+
+
+@pytest.fixture(scope="module")
+def truth() -> np.ndarray:
+    pose = SCENE.rest_pose()
+    pose[6:] = curl_fingers(HAND, 0.2)
+    T = se3.exp(np.array([0.0, 0.0, 0.0, 0.6, -0.4, 0.9]))
+    T[:3, 3] -= (T @ np.append(SCENE.pose_at(pose).landmarks(0).mean(axis=0), 1.0))[:3]
+    pose[:6] = se3.log(T @ se3.exp(pose[:6]))
+    return pose
+
+
+@pytest.fixture(scope="module")
+def edges(truth) -> list[ImageEdges]:
+    """Of a pale hand with dark lines between its parts, before a dark wall, through distorted lenses."""
+    found = []
+    for camera in VIEWS:
+        posed = SCENE.pose_at(truth)
+        view = render_view(posed, camera.K, camera.T_world_camera, camera.height, camera.width)
+        towards = np.abs(view.face_normals[np.maximum(view.face, 0)] @ camera.T_world_camera[:3, 2])
+        shaded = np.where(view.face >= 0, 90 + 140 * towards, 20).astype(np.uint8)
+        columns, rows = np.meshgrid(np.arange(camera.width, dtype=float), np.arange(camera.height, dtype=float))
+        ideal = camera.unproject(np.column_stack([columns.ravel(), rows.ravel()]))
+        pixels = (ideal[:, :2] * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]).reshape(camera.height, camera.width, 2)
+        image = cv2.remap(shaded, pixels.astype(np.float32), None, cv2.INTER_LINEAR)
+        points = (posed.vertices - camera.T_world_camera[:3, 3]) @ camera.T_world_camera[:3, :3]
+        points = points[:, :2] / points[:, 2:] * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]
+        seen = find_image_edges(np.repeat(image[..., None], 3, axis=2), camera, points, 15.0)
+        assert seen is not None
+        found.append(seen)
+    return found
+
+
+def joint_error_mm(pose: np.ndarray, truth: np.ndarray) -> float:
+    apart = SCENE.pose_at(pose).landmarks(0) - SCENE.pose_at(truth).landmarks(0)
+    return 1000.0 * float(np.linalg.norm(apart, axis=1).mean())
+
+
+def test_contours_in_three_views_bring_a_hand_back_to_where_it_is(truth, edges, rng):
+    start = truth.copy()
+    start[:3] += [0.003, -0.002, 0.003]
+    start[6:] += rng.normal(0.0, 0.02, len(start) - 6)
+    before = joint_error_mm(start, truth)
+    terms = {f"view {number}": Contours(seen) for number, seen in enumerate(edges)}
+    found = fit_frame(SCENE, None, start, start, Objective(terms=terms), FitOptions(iterations=15)).pose
+    assert before > 4.0
+    assert joint_error_mm(found, truth) < 2.2
+
+
+def test_a_contour_meets_no_edge_that_runs_across_it_or_lies_too_far(truth, edges):
+    posed = SCENE.pose_at(truth)
+    assert Contours(edges[0]).find(posed).count > 100
+    turned = ImageEdges(edges[0].K, edges[0].T_world_camera, np.roll(edges[0].nearest, DIRECTIONS // 2, axis=0))
+    near = 0.0015
+    along = Contours(edges[0], max_distance=near).find(posed).count
+    assert Contours(turned, max_distance=near).find(posed).count < 0.3 * along
+
+
+def test_matches_of_one_bone_beyond_twice_their_spread_are_left_out(truth):
+    posed = SCENE.pose_at(truth)
+    ids = np.zeros((20, 3), dtype=np.int32)
+    distances = np.append(np.full(19, 0.001), 0.010)
+    assert reject_by_bone(posed, ids, distances).tolist() == [True] * 19 + [False]
+
+
+def test_the_kernel_finds_what_a_plain_loop_finds(truth, edges):
+    posed, seen = SCENE.pose_at(truth), edges[1]
+    height, width = seen.nearest.shape[1:3]
+    view = render_view(posed, seen.K, seen.T_world_camera, height, width)
+    count = np.count_nonzero(view.face >= 0)
+    ids, shares = np.zeros((count, 3), np.int32), np.zeros((count, 3))
+    pixels, apart = np.zeros((count, 2)), np.zeros(count)
+    drawn = (view.face, view.inverse_depth, view.projected, posed.scene.arrays.faces, seen.nearest, seen.K[0, 0])
+    found = _find_into(ids, shares, pixels, apart, drawn, 3, 0.008, 0.006)
+    plain = list(find_plainly(view, seen, 3, 0.008, 0.006))
+    assert found == len(plain) > 50
+    np.testing.assert_allclose(pixels[:found], [match[0] for match in plain], atol=1e-4)
+    np.testing.assert_allclose(apart[:found], [match[1] for match in plain], atol=1e-6)
+    surface = np.einsum("nc,nci->ni", shares[:found], posed.vertices[ids[:found]])
+    here = (surface - seen.T_world_camera[:3, 3]) @ seen.T_world_camera[:3, :3]
+    here = here[:, :2] / here[:, 2:] * seen.K[[0, 1], [0, 1]] + seen.K[:2, 2]
+    np.testing.assert_allclose(here, [match[2] for match in plain], atol=1e-6)
+
+
+def find_plainly(view, seen, stride, jump, max_distance):
+    """Edge (column, row), distance, m, and contour pixel (column, row) of each match."""
+    depth = np.where(view.face >= 0, view.depth, np.inf)
+    height, width = depth.shape
+    for row in range(1, height - 1):
+        for column in range(1, width - 1):
+            if view.face[row, column] < 0 or (row + column) % stride:
+                continue
+            falls = depth > depth[row, column] + jump
+            direction = np.zeros(2)
+            for dy, dx in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+                direction += falls[row + dy, column + dx] * np.array([dx, dy])
+            if not direction.any():
+                continue
+            for r in range(max(0, row - 2), min(height, row + 3)):
+                for c in range(max(0, column - 2), min(width, column + 3)):
+                    direction += 0.5 * falls[r, c] * np.array([c - column, r - row])
+            place = int(np.arctan2(direction[1], direction[0]) % np.pi * DIRECTIONS / np.pi) % DIRECTIONS
+            to_column, to_row = seen.nearest[place, row, column][::-1] - 0.5 * direction / np.linalg.norm(direction)
+            apart = np.hypot(to_row - row, to_column - column) * depth[row, column] / seen.K[0, 0]
+            if apart <= max_distance:
+                yield (to_column, to_row), apart, (column, row)

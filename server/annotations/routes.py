@@ -175,8 +175,10 @@ def delete_annotation(
 def list_annotation_history(
     place: ReadablePlaceDep, session: SessionDep, response: Response
 ) -> Page[AnnotationRevision]:
-    """Every revision, newest first, of a deleted annotation too."""
-    row = service.get_annotation(session, place, deleted_too=True)
+    """Every revision, newest first, of a deleted annotation too; none of a hand that nobody ever marked."""
+    row = service.find_annotation(session, place)
+    if row is None:
+        return Page(items=[], next_cursor=None)
     history = service.list_history(session, row)
     names = find_names(session, [item.author_id for item in history])
     response.headers["ETag"] = write_etag(row.revision)

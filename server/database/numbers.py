@@ -22,6 +22,7 @@ def _take_whole(value: object) -> object:
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
-Whole = Annotated[int, Strict()]
+Whole = Annotated[int, Strict(), BeforeValidator(_take_whole)]
 Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
-FrameNumber = Annotated[Whole, Field(ge=0, le=10**9), BeforeValidator(_take_whole)]
+FrameNumber = Annotated[int, Strict(), Field(ge=0, le=10**9), BeforeValidator(_take_whole)]
+Joint = Annotated[int, Strict(), Field(ge=0, le=20), BeforeValidator(_take_whole)]

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from server.accounts.models import Role
-from server.database.numbers import FrameNumber, Whole
+from server.database.numbers import FrameNumber, Joint
 from server.database.texts import Name, Text, Words
 from server.teams.models import AssignmentState
 
@@ -143,7 +143,7 @@ class CommentMake(BaseModel):
     camera: Annotated[str, Field(max_length=64)] | None = None
     frame: FrameNumber | None = None
     hand: Hand | None = None
-    joint: Annotated[Whole, Field(ge=0, le=20)] | None = None
+    joint: Joint | None = None
 
     @model_validator(mode="after")
     def check(self) -> CommentMake:

@@ -149,6 +149,53 @@ def test_every_page_fits_a_phone_and_a_narrow_window(studio, track, open_page, s
     expect(page.get_by_placeholder("Search recordings, tracks and pages")).to_be_visible()
 
 
+# Names and figures of which no word is left, because something else in their line takes the place.
+CUT_WORDS = """() => [...document.querySelectorAll("main :is(.one-line, .mantine-Badge-label)")]
+  .filter((element) => element.clientWidth > 0 && element.clientWidth < 48 && element.scrollWidth > element.clientWidth + 1)
+  .map((element) => element.innerText)"""
+HIGH_ROWS = """() => [...document.querySelectorAll("main tbody tr")]
+  .map((row) => [row.innerText, row.getBoundingClientRect().height])
+  .filter(([, height]) => height > 100)"""
+
+
+def test_rows_on_a_phone_are_no_higher_than_their_words_and_cut_none(studio, track, open_page, screenshots):
+    """Of batches, people, tokens, the audit trail and what the label check looked at."""
+    sequence, name = track["sequence_id"], f"Ann {uuid.uuid4().hex[:6]}"
+    batch = {"kind": "track", "sequence_ids": [sequence]}
+    studio.send("POST", "/jobs/batch", json=batch).raise_for_status()
+    for job in studio.get("/jobs")["items"]:
+        if job["state"] in ("queued", "running"):
+            studio.send("POST", f"/jobs/{job['id']}/cancel").raise_for_status()
+    person = studio.send("POST", "/accounts", json={"name": name, "role": "annotator"}).json()["person"]
+    studio.send("POST", "/account/tokens", json={"name": "nightly", "may_write": True}).raise_for_status()
+    project = studio.send("POST", "/projects", json={"name": name}).json()["id"]
+    studio.send("PUT", f"/projects/{project}/sequences/{sequence}").raise_for_status()
+    asked = {"sequence_id": sequence, "frame_first": 0, "frame_last": 1, "account_id": person["id"]}
+    studio.send("POST", f"/projects/{project}/assignments", json=asked).raise_for_status()
+    page = open_page(390, 844, is_phone=True)
+    places = {"people": "/people", "audit": "/audit", "account": "/account", "jobs": "/jobs"}
+    cut, high = {}, {}
+    for place, address in places.items():
+        page.goto(address)
+        page.locator("main h1, main h2").first.wait_for()
+        page.wait_for_function(NOTHING_LOADS)
+        screenshots.take(page, f"rows-{place}-390")
+        if found := page.evaluate(CUT_WORDS):
+            cut[place] = found
+        if place != "account" and (found := page.evaluate(HIGH_ROWS)):
+            high[place] = found
+        if place == "audit":
+            given = page.locator("tr", has_text="assignment · create").first
+            assert f"given to {name}" in given.inner_text() and "frames 0 to 1" in given.inner_text()
+        assert not page.evaluate(TOO_WIDE), place
+    assert not cut, "words are cut off"
+    assert not high, "rows are far higher than their words"
+    page.goto(f"/recordings/{sequence}/check")
+    checked = page.get_by_role("region", name="What was checked")
+    checked.wait_for()
+    assert checked.evaluate("(card) => card.scrollWidth <= card.clientWidth"), "what is missing runs out of the card"
+
+
 def test_a_track_is_looked_at_by_fingers(studio, track, open_page, picture_of, screenshots):
     from playwright.sync_api import expect
 

@@ -100,6 +100,13 @@ def test_an_operation_cannot_be_used_for_something_else(client: TestClient, plac
     assert client.get(place).json()["revision"] == 1
 
 
+def test_a_hand_that_nobody_marked_has_an_empty_history(client: TestClient, place: str) -> None:
+    answer = client.get(f"{place}/history")
+    assert (answer.status_code, answer.json()["items"], answer.headers.get("etag")) == (200, [], None)
+    nowhere = client.get(f"{place.replace('/cam0/', '/cam9/')}/history")
+    assert nowhere.status_code in (404, 422)
+
+
 def test_what_was_deleted_can_be_restored(client: TestClient, place: str) -> None:
     put(client, place, 1, FIRST)
     put(client, place, 2, match(1))

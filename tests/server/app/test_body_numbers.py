@@ -11,7 +11,8 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from server.annotations.schemas import Visibility
 from server.app.openapi import write_document
-from server.database.numbers import FrameNumber
+from server.database.numbers import FrameNumber, Joint, Whole
+from server.quality.schemas import FlagLook
 
 DOCUMENT = json.loads(write_document())
 
@@ -53,14 +54,20 @@ def test_no_body_takes_true_for_a_number() -> None:
     assert lax == []
 
 
-def test_a_whole_number_may_be_written_with_a_point() -> None:
-    assert TypeAdapter(FrameNumber).validate_json("283346853.0") == 283346853
+@pytest.mark.parametrize("kind", [Whole, FrameNumber, Joint])
+def test_a_whole_number_may_be_written_with_a_point(kind: Any) -> None:
+    assert TypeAdapter(kind).validate_json("17.0") == 17
 
 
-@pytest.mark.parametrize("sent", [True, False, "5", 5.5, None])
-def test_a_whole_number_is_a_number_of_json_and_nothing_else(sent: object) -> None:
+def test_the_revision_of_a_dismissed_flag_may_be_written_with_a_point() -> None:
+    assert FlagLook.model_validate_json('{"revision": 48586.0}').revision == 48586
+
+
+@pytest.mark.parametrize("kind", [Whole, FrameNumber, Joint])
+@pytest.mark.parametrize("sent", [True, False, "5", 5.5, None, float("inf"), float("nan")])
+def test_a_whole_number_is_a_number_of_json_and_nothing_else(kind: Any, sent: object) -> None:
     with pytest.raises(ValidationError):
-        TypeAdapter(FrameNumber).validate_python(sent)
+        TypeAdapter(kind).validate_python(sent)
 
 
 def test_visibility_is_no_truth() -> None:

@@ -91,12 +91,7 @@ export const useAnnotationHistory = (recording: string, key: string, savedAt: nu
     queryKey: [...annotationKeys.history(recording, key), savedAt, replica],
     queryFn: async ({ signal }): Promise<AnnotationRevision[]> => {
       const { camera, frame, hand } = parseKey(key);
-      try {
-        return (await request<Page<AnnotationRevision>>("GET", `/sequences/${recording}/annotations/${encodeURIComponent(camera)}/${frame}/${hand}/history`, { signal, query: { replica } })).items;
-      } catch (failure) {
-        if (failure instanceof ApiError && failure.status === 404) return [];
-        throw failure;
-      }
+      return (await request<Page<AnnotationRevision>>("GET", `/sequences/${recording}/annotations/${encodeURIComponent(camera)}/${frame}/${hand}/history`, { signal, query: { replica } })).items;
     },
     placeholderData: (before, query) => (query?.queryKey[3] === key && query.queryKey[5] === replica ? before : undefined),
   });

@@ -2524,7 +2524,7 @@ export interface paths {
         };
         /**
          * List Annotation History
-         * @description Every revision, newest first, of a deleted annotation too.
+         * @description Every revision, newest first, of a deleted annotation too; none of a hand that nobody ever marked.
          */
         get: operations["list_annotation_history"];
         put?: never;

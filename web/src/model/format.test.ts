@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { formatAgo, formatBytes, formatDuration, formatLeft, formatName, formatNumber, formatRough } from "./format";
+import { formatAgo, formatBytes, formatDuration, formatLeft, formatMeasure, formatName, formatNumber, formatRough } from "./format";
 
 test("durations are short for seconds and plain for hours", () => {
   expect([0.27, 9.99, 65, 3725].map(formatDuration)).toEqual(["0.3 s", "0:10", "1:05", "1 h 02 min"]);
@@ -21,6 +21,10 @@ test("times are told as people would", () => {
 
 test("what is not known is a dash, never NaN", () => {
   expect([formatNumber(null), formatNumber(undefined), formatNumber(Number.NaN), formatNumber(2.345, 2)]).toEqual(["–", "–", "–", "2.35"]);
+});
+
+test("a unit stands only beside a number", () => {
+  expect([formatMeasure(null, "px"), formatMeasure(Number.NaN, "mm"), formatMeasure(0, "px"), formatMeasure(2.345, "mm", 2)]).toEqual(["–", "–", "0.0 px", "2.35 mm"]);
 });
 
 test("names of fields become words", () => {

@@ -29,6 +29,12 @@ export function formatAgo(time: string, now: number = Date.now()): string {
 export const formatNumber = (value: number | null | undefined, digits = 1): string =>
   value === null || value === undefined || !Number.isFinite(value) ? "–" : value.toFixed(digits);
 
+/** A number with its unit; a dash alone when there is none. */
+export const formatMeasure = (value: number | null | undefined, unit: string, digits = 1): string => {
+  const number = formatNumber(value, digits);
+  return number === "–" ? number : `${number} ${unit}`;
+};
+
 /** Three digits of a number of any size, never as a power of ten. */
 export const formatRough = (value: number): string => value.toLocaleString("en", { maximumSignificantDigits: 3 });
 

@@ -3,6 +3,7 @@ import { useInfiniteQuery } from "@tanstack/react-query";
 import { IconHistory } from "@tabler/icons-react";
 import { useSearchParams } from "react-router";
 import { fetchAudit, usePeople } from "../../api/account";
+import { describeDetail } from "../../model/audit";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { useTitle } from "../parts/useTitle";
@@ -10,11 +11,6 @@ import classes from "./account.module.css";
 import { formatMoment } from "./moment";
 
 const UUID = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/i;
-
-const describeDetail = (detail: Record<string, unknown>): string =>
-  Object.entries(detail)
-    .map(([name, value]) => `${name.replaceAll("_", " ")} ${typeof value === "string" ? value : JSON.stringify(value)}`)
-    .join(", ");
 
 const ACTS = ["account", "token", "recording", "track", "job", "batch", "project", "assignment", "labels"];
 
@@ -28,6 +24,7 @@ export default function AuditPage() {
     subject_id: UUID.test(address.get("subject_id") ?? "") ? (address.get("subject_id") ?? undefined) : undefined,
   };
   const people = usePeople().data ?? [];
+  const names = new Map(people.map((person) => [person.id, person.name]));
   const list = useInfiniteQuery({
     queryKey: ["audit", filter],
     queryFn: ({ pageParam }) => fetchAudit(filter, pageParam),
@@ -64,7 +61,7 @@ export default function AuditPage() {
         {!lines && <Skeleton height={240} />}
         {lines && lines.length > 0 && (
           <div className="table-scroll">
-            <Table verticalSpacing="xs" highlightOnHover miw={680}>
+            <Table verticalSpacing="xs" highlightOnHover miw={840}>
               <Table.Thead>
                 <Table.Tr>
                   <Table.Th w={184}>When</Table.Th>
@@ -76,16 +73,16 @@ export default function AuditPage() {
               <Table.Tbody>
                 {lines.map((line) => (
                   <Table.Tr key={line.id}>
-                    <Table.Td>{formatMoment(line.time)}</Table.Td>
+                    <Table.Td className="one-line">{formatMoment(line.time)}</Table.Td>
                     <Table.Td>{line.account ?? "command line"}</Table.Td>
                     <Table.Td>{line.act.replace(".", " · ")}</Table.Td>
                     <Table.Td style={{ overflowWrap: "anywhere" }}>
                       <Text size="sm" component="span">
-                        {describeDetail(line.detail)}
+                        {describeDetail(line.detail, names)}
                       </Text>{" "}
                       {line.subject_id && (
                         <Text size="xs" className="quiet" component="span">
-                          {line.subject} {people.find((person) => person.id === line.subject_id)?.name ?? line.subject_id.slice(0, 8)}
+                          {line.subject} {names.get(line.subject_id) ?? line.subject_id.slice(0, 8)}
                         </Text>
                       )}
                     </Table.Td>

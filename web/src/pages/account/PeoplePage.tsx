@@ -91,10 +91,10 @@ export default function PeoplePage() {
                 {data.map((person) => (
                   <Table.Tr key={person.id} className={person.is_disabled ? classes.off : undefined} data-testid={`person-${person.name}`}>
                     <Table.Td>
-                      <Group gap="sm">
+                      <Group gap="sm" wrap="nowrap" className="keep-line">
                         {person.name}
                         {person.id === me.id && (
-                          <Badge variant="light" tt="none">
+                          <Badge variant="light" tt="none" style={{ flex: "none" }}>
                             you
                           </Badge>
                         )}
@@ -107,10 +107,10 @@ export default function PeoplePage() {
                         person.role
                       )}
                     </Table.Td>
-                    <Table.Td>{stateOf(person)}</Table.Td>
-                    <Table.Td>{formatMoment(person.last_seen_at)}</Table.Td>
+                    <Table.Td className="one-line">{stateOf(person)}</Table.Td>
+                    <Table.Td className="one-line">{formatMoment(person.last_seen_at)}</Table.Td>
                     <Table.Td>
-                      <Group gap="xs" justify="flex-end" wrap="nowrap">
+                      <Group gap="xs" justify="flex-end" wrap="nowrap" className="keep-line">
                         {person.may_manage && !person.is_disabled && (
                           <Tooltip label="A one-time link with which they set a new password">
                             <Button size="xs" variant="default" onClick={() => makeCode.mutate(person.id, { onSuccess: ({ code }) => setLink({ name: person.name, code }) })}>

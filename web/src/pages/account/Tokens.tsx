@@ -45,36 +45,38 @@ export function Tokens() {
         </Text>
       )}
       {data.length > 0 && (
-        <Table verticalSpacing="sm">
-          <Table.Thead>
-            <Table.Tr>
-              <Table.Th>Token</Table.Th>
-              <Table.Th>Access</Table.Th>
-              <Table.Th>Last used</Table.Th>
-              <Table.Th>Ends</Table.Th>
-              <Table.Th />
-            </Table.Tr>
-          </Table.Thead>
-          <Table.Tbody>
-            {data.map((token) => (
-              <Table.Tr key={token.id}>
-                <Table.Td>{token.name}</Table.Td>
-                <Table.Td>
-                  <Badge variant="light" color={token.may_write ? "orange" : "gray"} tt="none">
-                    {token.may_write ? "reads and writes" : "reads"}
-                  </Badge>
-                </Table.Td>
-                <Table.Td>{formatMoment(token.last_used_at)}</Table.Td>
-                <Table.Td>{token.expires_at ? formatMoment(token.expires_at) : "never"}</Table.Td>
-                <Table.Td ta="right">
-                  <Button size="xs" variant="default" onClick={() => revoke.mutate(token.id)} aria-label={`Revoke ${token.name}`}>
-                    Revoke
-                  </Button>
-                </Table.Td>
+        <div className="table-scroll">
+          <Table miw={600} verticalSpacing="sm">
+            <Table.Thead>
+              <Table.Tr>
+                <Table.Th>Token</Table.Th>
+                <Table.Th>Access</Table.Th>
+                <Table.Th>Last used</Table.Th>
+                <Table.Th>Ends</Table.Th>
+                <Table.Th />
               </Table.Tr>
-            ))}
-          </Table.Tbody>
-        </Table>
+            </Table.Thead>
+            <Table.Tbody>
+              {data.map((token) => (
+                <Table.Tr key={token.id}>
+                  <Table.Td>{token.name}</Table.Td>
+                  <Table.Td>
+                    <Badge variant="light" color={token.may_write ? "orange" : "gray"} tt="none">
+                      {token.may_write ? "reads and writes" : "reads"}
+                    </Badge>
+                  </Table.Td>
+                  <Table.Td>{formatMoment(token.last_used_at)}</Table.Td>
+                  <Table.Td>{token.expires_at ? formatMoment(token.expires_at) : "never"}</Table.Td>
+                  <Table.Td ta="right">
+                    <Button size="xs" variant="default" onClick={() => revoke.mutate(token.id)} aria-label={`Revoke ${token.name}`}>
+                      Revoke
+                    </Button>
+                  </Table.Td>
+                </Table.Tr>
+              ))}
+            </Table.Tbody>
+          </Table>
+        </div>
       )}
     </>
   );

@@ -6,7 +6,7 @@ import type { Comparison } from "../../api/evaluations";
 import { Plot } from "../../canvas/Plot";
 import type { Curve } from "../../canvas/series";
 import { trackStyle } from "../../model/trackStyle";
-import { formatNumber } from "../../model/format";
+import { formatMeasure } from "../../model/format";
 import classes from "./Evaluations.module.css";
 
 /** More of them would only thicken the line. */
@@ -90,7 +90,7 @@ export function ErrorCurves({ comparison, camera, onWithin }: ErrorCurvesProps) 
               </Button>
               {ofRecording.map((track) => (
                 <Button key={track.key} size="compact-sm" variant="default" component={Link} to={`/tracks/${track.key}?${place}`} leftSection={<IconCube size={14} aria-hidden />}>
-                  {track.name}, {formatNumber(track.curve.mean[track.curve.frame.indexOf(frame)], 2)} px
+                  {track.name}, {formatMeasure(track.curve.mean[track.curve.frame.indexOf(frame)], "px", 2)}
                 </Button>
               ))}
             </>

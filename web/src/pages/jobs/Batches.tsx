@@ -27,7 +27,7 @@ function BatchRow({ batch, isChosen, onChoose }: { batch: Batch; isChosen: boole
   return (
     <div className="card" style={{ padding: "12px 16px" }}>
       <Group wrap="nowrap" gap="md">
-        <div style={{ flex: 1, minWidth: 0 }}>
+        <div style={{ flex: "1 0 min(240px, 100%)", minWidth: 0 }}>
           <Text fw={600} className="one-line">
             {formatCount(batch.total, "recording")}
           </Text>

@@ -1,9 +1,15 @@
-import { ActionIcon, Button, Group, Table, Text, Title, Tooltip } from "@mantine/core";
+import { ActionIcon, Button, Text, Title, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { IconDownload, IconShieldCheck } from "@tabler/icons-react";
 import { trainingSetUrl, useTrainingSets, verifyTrainingSet, type TrainingSet } from "../../api/handModels";
-import { formatAgo, formatCount } from "../../model/format";
-import classes from "./Models.module.css";
+import { formatCount } from "../../model/format";
+import { KeptTable, type Column } from "./KeptTable";
+
+const COLUMNS: readonly Column<TrainingSet>[] = [
+  { head: "Chosen by", width: 160, show: ({ rule }) => (rule.by === "verdict" ? "the program" : rule.needs_two ? "two people" : "people") },
+  { head: "Registrations", width: 120, isNumber: true, show: ({ registration_count: count }) => count.toLocaleString("en") },
+  { head: "Subjects", width: 96, isNumber: true, show: ({ subject_count: count }) => count },
+];
 
 async function verify(set: TrainingSet): Promise<void> {
   try {
@@ -27,57 +33,24 @@ export function TrainingSets() {
       <Title order={2} mb="sm">
         Training sets
       </Title>
-      <div className={`card ${classes.frame}`}>
-        <Table verticalSpacing="xs" horizontalSpacing="md">
-          <Table.Thead>
-            <Table.Tr>
-              <Table.Th>Name</Table.Th>
-              <Table.Th w={160}>Chosen by</Table.Th>
-              <Table.Th w={120} ta="right">
-                Registrations
-              </Table.Th>
-              <Table.Th w={96} ta="right">
-                Subjects
-              </Table.Th>
-              <Table.Th w={128}>SHA-256</Table.Th>
-              <Table.Th w={128} ta="right">
-                Kept
-              </Table.Th>
-              <Table.Th w={160} aria-label="Acts" />
-            </Table.Tr>
-          </Table.Thead>
-          <Table.Tbody>
-            {sets.map((set) => (
-              <Table.Tr key={set.id}>
-                <Table.Td className={classes.cell} title={set.name}>
-                  {set.name}
-                </Table.Td>
-                <Table.Td>{set.rule.by === "verdict" ? "the program" : set.rule.needs_two ? "two people" : "people"}</Table.Td>
-                <Table.Td ta="right">{set.registration_count.toLocaleString("en")}</Table.Td>
-                <Table.Td ta="right">{set.subject_count}</Table.Td>
-                <Table.Td className={classes.cell} title={set.digest} style={{ fontFamily: "var(--mantine-font-family-monospace)", fontSize: 12 }}>
-                  {set.digest.slice(0, 12)}
-                </Table.Td>
-                <Table.Td ta="right" className="quiet">
-                  {formatAgo(set.created_at)}
-                </Table.Td>
-                <Table.Td>
-                  <Group gap={4} justify="flex-end" wrap="nowrap">
-                    <Button size="compact-xs" variant="subtle" leftSection={<IconShieldCheck size={14} aria-hidden />} onClick={() => void verify(set)} aria-label={`Verify the hashes of ${set.name}`}>
-                      Verify
-                    </Button>
-                    <Tooltip label="Download its registrations">
-                      <ActionIcon component="a" href={trainingSetUrl(set.id)} download aria-label={`Download the registrations of ${set.name}`}>
-                        <IconDownload size={16} />
-                      </ActionIcon>
-                    </Tooltip>
-                  </Group>
-                </Table.Td>
-              </Table.Tr>
-            ))}
-          </Table.Tbody>
-        </Table>
-      </div>
+      <KeptTable
+        items={sets}
+        columns={COLUMNS}
+        when="Kept"
+        actsWidth={160}
+        acts={(set) => (
+          <>
+            <Button size="compact-xs" variant="subtle" leftSection={<IconShieldCheck size={14} aria-hidden />} onClick={() => void verify(set)} aria-label={`Verify the hashes of ${set.name}`}>
+              Verify
+            </Button>
+            <Tooltip label="Download its registrations">
+              <ActionIcon component="a" href={trainingSetUrl(set.id)} download aria-label={`Download the registrations of ${set.name}`}>
+                <IconDownload size={16} />
+              </ActionIcon>
+            </Tooltip>
+          </>
+        )}
+      />
       <Text size="xs" className="quiet" mt={4}>
         A set never changes: who decides otherwise later makes a new one.
       </Text>

@@ -2,7 +2,7 @@ import { Group, Text, Tooltip } from "@mantine/core";
 import { useState } from "react";
 import { Link } from "react-router";
 import type { Recording } from "../../api/types";
-import { formatCount, formatNumber } from "../../model/format";
+import { formatCount, formatMeasure, formatNumber } from "../../model/format";
 import { HandBadge } from "./HandBadge";
 import { HoverPlay } from "./HoverPlay";
 import classes from "./RecordingCard.module.css";
@@ -13,7 +13,8 @@ export function trackWorth(track: Recording["best_track"]): string {
   if (!track) return "not tracked yet";
   const lost = track.summary.lost > 0 ? `, ${track.summary.lost} lost` : "";
   if (track.error_px !== null && track.error_px !== undefined) return `${formatNumber(track.error_px)} px error${lost}`;
-  return `${formatNumber(track.summary.depth_residual_mm)} mm residual${lost}`;
+  const residual = formatMeasure(track.summary.depth_residual_mm, "mm");
+  return `${residual === "–" ? "tracked" : `${residual} residual`}${lost}`;
 }
 
 export function RecordingCard({ recording }: { recording: Recording }) {

@@ -3,7 +3,7 @@ import { IconDownload } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import { Link, useParams, useSearchParams } from "react-router";
 import { agreementFile, useAgreement, type AgreementReport, type Spread } from "../../api/teams";
-import { formatNumber } from "../../model/format";
+import { formatMeasure, formatNumber } from "../../model/format";
 import { INDEPENDENT } from "../../model/source";
 import { Fact } from "../parts/Fact";
 import { Failure } from "../parts/Failure";
@@ -60,8 +60,8 @@ export default function AgreementPage() {
         </Group>
       </Group>
       <SimpleGrid cols={{ base: 2, md: 4 }}>
-        <Fact label="Standard deviation along an axis">{px(report.overall.std_px)} px</Fact>
-        <Fact label="As a distance">{px(report.radial_px)} px</Fact>
+        <Fact label="Standard deviation along an axis">{formatMeasure(report.overall.std_px, "px", 2)}</Fact>
+        <Fact label="As a distance">{formatMeasure(report.radial_px, "px", 2)}</Fact>
         <Fact label="Object keypoint similarity">{formatNumber(report.oks, 3)}</Fact>
         <Fact label="Four annotators of [T16]">{report.t16_std_px} px</Fact>
       </SimpleGrid>

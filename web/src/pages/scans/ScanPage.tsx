@@ -11,7 +11,7 @@ import { fetchScanGeometry, scanFileUrl, useChangeScan, useScan, useScanList, ty
 import type { Staged } from "../../canvas/hand3d/staged";
 import { useStage } from "../../canvas/hand3d/useStage";
 import type { Point } from "../../model/crop";
-import { formatAgo, formatBytes, formatNumber } from "../../model/format";
+import { formatAgo, formatBytes, formatMeasure } from "../../model/format";
 import { formatSize } from "../../model/scanUnit";
 import { useHint, useKeyOf } from "../../state/keys";
 import { DecisionBadge, VerdictBadge } from "../curate/Verdict";
@@ -120,7 +120,7 @@ function Registrations({ scan }: { scan: Scan }) {
               {one.is_outdated ? <Badge color="gray" variant="light" size="sm" title="The unit of the scan was corrected since: it no longer counts">another size</Badge> : <VerdictBadge verdict={one.verdict} />}
               {one.decision && <DecisionBadge decision={one.decision} />}
               <span className="quiet" style={{ marginLeft: "auto" }}>
-                {formatNumber(one.scan_to_mesh_mm.mean, 2)} mm
+                {formatMeasure(one.scan_to_mesh_mm.mean, "mm", 2)}
               </span>
             </Link>
           </li>

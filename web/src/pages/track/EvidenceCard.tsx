@@ -5,7 +5,7 @@ import type { Layer } from "../../api/tracks";
 import type { ViewerSession } from "../../api/types";
 import { errorGradient } from "../../model/errorColor";
 import { describeCollisions, describeContacts, describeDetections, describeOrigin, describeUnknown } from "../../model/evidence";
-import { formatName, formatNumber } from "../../model/format";
+import { formatMeasure, formatName, formatNumber } from "../../model/format";
 import classes from "./EvidenceCard.module.css";
 
 interface EvidenceCardProps {
@@ -46,7 +46,7 @@ export function EvidenceCard({ told, layers, isBusy, terms, onTerms }: EvidenceC
                 rows={told.detections.items.map((item) => ({
                   color: item.color,
                   name: item.finger ? `${item.hand ?? ""} ${item.finger}` : "no fingertip",
-                  values: [`confidence ${formatNumber(item.confidence)}`, item.distance_mm === null ? "" : `${formatNumber(item.distance_mm)} mm`],
+                  values: [`confidence ${formatNumber(item.confidence)}`, item.distance_mm === null ? "" : formatMeasure(item.distance_mm, "mm")],
                 }))}
               />
             </Part>
@@ -84,7 +84,7 @@ export function EvidenceCard({ told, layers, isBusy, terms, onTerms }: EvidenceC
               <Rows
                 rows={told.distances.models.map((model) => ({
                   name: model.name,
-                  values: [`median ${formatNumber(model.median_mm)}`, `95 % ${formatNumber(model.p95_mm)} mm`],
+                  values: [`median ${formatNumber(model.median_mm)}`, `95 % ${formatMeasure(model.p95_mm, "mm")}`],
                 }))}
               />
             </Part>

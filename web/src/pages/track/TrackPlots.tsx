@@ -5,7 +5,7 @@ import { useEvaluation } from "../../api/tracks";
 import type { Track, TrackFrames } from "../../api/types";
 import { Plot } from "../../canvas/Plot";
 import type { Curve } from "../../canvas/series";
-import { formatNumber } from "../../model/format";
+import { formatMeasure } from "../../model/format";
 import { EnergyPlots } from "./EnergyPlots";
 import classes from "./TrackReview.module.css";
 
@@ -65,9 +65,9 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
         )}
         <Text size="xs" className="quiet one-line" ml="auto" my="auto" px={12} hidden={tab === "energy"}>
           {tab === "timing"
-            ? `median ${formatNumber(track.summary.median_ms)} ms, 95 % below ${formatNumber(track.summary.p95_ms)} ms`
+            ? `median ${formatMeasure(track.summary.median_ms, "ms")}, 95 % below ${formatMeasure(track.summary.p95_ms, "ms")}`
             : evaluation && evaluation.evaluated > 0
-              ? `${formatNumber(evaluation.joint_error_px.mean)} px mean error in ${evaluation.evaluated} annotated${leftOut}`
+              ? `${formatMeasure(evaluation.joint_error_px.mean, "px")} mean error in ${evaluation.evaluated} annotated${leftOut}`
               : leftOut
                 ? `nothing judges${leftOut}`
                 : "annotate frames for an error in px"}
@@ -86,7 +86,7 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
         <Plot label="Time by frame" frames={frames.frame} curves={timingCurves} lost={lost} frame={frame} onSeek={onSeek} />
         {stages.length > 0 && (
           <Text size="xs" className="quiet one-line" px={12} h={20}>
-            {stages.map(([stage, ms]) => `${stage.replaceAll("_", " ")} ${formatNumber(ms)} ms`).join(" · ")}
+            {stages.map(([stage, ms]) => `${stage.replaceAll("_", " ")} ${formatMeasure(ms, "ms")}`).join(" · ")}
           </Text>
         )}
       </Tabs.Panel>

@@ -6,7 +6,7 @@ import { LAYERS, useViewer, type Layer, type Shown } from "../../api/tracks";
 import type { Recording, Track, TrackFrames } from "../../api/types";
 import { FrameStrip } from "../../canvas/FrameStrip";
 import { badFrames, nextIn } from "../../model/badFrames";
-import { formatNumber } from "../../model/format";
+import { formatMeasure } from "../../model/format";
 import { trackRows } from "../../model/trackRows";
 import { usePlayback } from "../annotate/usePlayback";
 import { useLateAddress } from "../parts/useLateAddress";
@@ -97,7 +97,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const describe = (at: number): string => {
     const index = frames.frame.indexOf(at);
     if (index < 0) return `frame ${at}: not in this track`;
-    return `frame ${at}: ${frames.status[index] ?? "?"}, ${formatNumber(frames.depth_residual_mm[index])} mm`;
+    return `frame ${at}: ${frames.status[index] ?? "?"}, ${formatMeasure(frames.depth_residual_mm[index], "mm")}`;
   };
 
   return (

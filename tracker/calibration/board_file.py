@@ -101,11 +101,11 @@ def _make_board(values: dict[str, Any], file: str) -> Board:
     kind = values.get("kind", "charuco")
     if kind not in ("charuco", "apriltag", "checkerboard"):
         raise CalibrationError(f"{file}: kind is {str(kind)[:40]!r}; needed charuco, apriltag or checkerboard.")
-    square_m = 0.001 * _number(values, "square_mm", file)
+    square_m = _number(values, "square_mm", file) / 1000.0
     has_markers = kind != "checkerboard"
     usual = APRILTAG if kind == "apriltag" else DICTIONARY
     if "marker_mm" in values and has_markers:
-        marker_m = 0.001 * _number(values, "marker_mm", file)
+        marker_m = _number(values, "marker_mm", file) / 1000.0
     else:
         marker_m = 0.75 * square_m if has_markers else 0.0
     flags = {name: values.get(name, False) for name in ("inverted", "legacy")}
@@ -130,12 +130,12 @@ def _make_board(values: dict[str, Any], file: str) -> Board:
 def _number(values: dict[str, Any], name: str, file: str) -> float:
     value = values.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < 1e6:
-        raise CalibrationError(f"{file}: {name} is {str(value)[:40]!r}; needed a number above 0.")
+        raise CalibrationError(f"{file}: {name} is {repr(value)[:40]}; needed a number above 0.")
     return float(value)
 
 
 def _whole(values: dict[str, Any], name: str, file: str) -> int:
     value = values.get(name)
     if isinstance(value, bool) or not isinstance(value, int):
-        raise CalibrationError(f"{file}: {name} is {str(value)[:40]!r}; needed a whole number.")
+        raise CalibrationError(f"{file}: {name} is {repr(value)[:40]}; needed a whole number.")
     return value

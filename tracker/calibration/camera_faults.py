@@ -16,8 +16,8 @@ STOPS = 0.5
 FRAMES_APART = 1.5
 """Lengths of videos that differ by more, in frames, were begun or ended at different times."""
 
-BAD_PX = 2.0
-"""Residual at the median above which a camera is named; corners are found to a quarter of a pixel."""
+BAD_PX = 1.0
+"""Residual at the median above which a camera is named; corners are found to a quarter of that."""
 
 OUT_OF_STEP = 0.2
 """Of a frame: less makes no difference to what is marked or tracked."""

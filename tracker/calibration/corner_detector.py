@@ -30,7 +30,6 @@ class CornerDetector:
         self.board = board
         parameters = cv2.aruco.DetectorParameters()
         if board.kind == "apriltag":
-            parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
             self._tags = cv2.aruco.ArucoDetector(board.markers, parameters)
         elif board.kind == "charuco":
             assert isinstance(board.layout, cv2.aruco.CharucoBoard)
@@ -55,10 +54,24 @@ class CornerDetector:
     def _find_tags(self, image: Grey) -> Array:
         found = np.full((len(self.board.corners) // 4, 4, 2), np.nan)
         corners, ids, _ = self._tags.detectMarkers(image)
-        for tag, number in zip(corners, np.asarray(ids, dtype=np.int64).ravel() if ids is not None else (), strict=False):
+        for tag, number in zip(
+            corners, np.asarray(ids, dtype=np.int64).ravel() if ids is not None else (), strict=False
+        ):
             if number < len(found):
-                found[number] = np.asarray(tag, dtype=np.float64).reshape(4, 2)
+                found[number] = self._refine(image, np.asarray(tag, dtype=np.float32).reshape(4, 2))
         return found.reshape(-1, 2)
+
+    def _refine(self, image: Grey, tag: npt.NDArray[np.float32]) -> Array:
+        """A tag's corners (4, 2) px, looked for in a window that holds its border and nothing of what is inside it.
+
+        Differs from OpenCV, whose own window is a third of that and leaves them half a pixel off.
+        """
+        side = float(np.linalg.norm(np.diff(tag, axis=0, append=tag[:1]), axis=1).mean())
+        reach = int(np.clip(round(0.75 * side / (self.board.markers.markerSize + 2)), 2, 8))
+        stop = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 50, 0.01)
+        corners = cv2.cornerSubPix(image, np.ascontiguousarray(tag), (reach, reach), (-1, -1), stop)
+        moved = np.asarray(corners, dtype=np.float64).reshape(4, 2)
+        return moved if np.abs(moved - tag).max() < reach else tag.astype(np.float64)
 
     def _find_checkerboard(self, image: Grey) -> Array:
         size = (self.board.columns - 1, self.board.rows - 1)

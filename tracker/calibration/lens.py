@@ -20,6 +20,10 @@ LENS_VIEWS = 40
 FOCAL_STD = 0.3
 """Relative; of a start: adjusted with the other cameras it gets better, unless it is known less well than this."""
 
+OTHER_FOCAL, TOLD = 1.5, 0.01
+"""With so many times the focal length the residual must rise by this share, or the views tell no focal length: a board
+that stays parallel to the picture looks the same near by through a short lens and far away through a long one."""
+
 WORSE = 3.0
 """Times the median view's residual, beyond which a view is taken for a false one and left out."""
 
@@ -31,7 +35,7 @@ class Lens:
     Attributes:
         K: (3, 3) px, without skew.
         distortion: (n,) OpenCV: k1, k2, p1, p2, k3, and if there are more k4, k5, k6, and the thin prism.
-        focal_std: Standard deviation of fx, px; 0 of a lens that was given.
+        focal_std: Standard deviation of the focal length, px; 0 of a lens that was given.
     """
 
     K: Array
@@ -49,17 +53,19 @@ def fit_lens(sightings: Sightings, board: Board) -> Lens:
     """
     views = choose_views(sightings, LENS_VIEWS)
     lens, residuals = _fit(sightings, board, views)
-    good = views[residuals <= max(WORSE * float(np.median(residuals)), 1.0)]
-    if MIN_SIGHTINGS <= len(good) < len(views):
-        lens, residuals = _fit(sightings, board, good)
+    is_good = residuals <= max(WORSE * float(np.median(residuals)), 1.0)
+    if MIN_SIGHTINGS <= is_good.sum() < len(views):
+        views = views[is_good]
+        lens, residuals = _fit(sightings, board, views)
+    longer = _fit(sightings, board, views, OTHER_FOCAL * lens.K)[1]
+    is_told = float(np.mean(longer**2)) > (1.0 + TOLD) ** 2 * float(np.mean(residuals**2))
     focal = lens.K[0, 0]
     longest = max(sightings.width, sightings.height)
-    if not (0.1 * longest < focal < 50 * longest) or lens.focal_std > FOCAL_STD * focal:
+    if not (0.1 * longest < focal < 50 * longest) or lens.focal_std > FOCAL_STD * focal or not is_told:
         raise CalibrationError(
             f"{sightings.camera}: its lens cannot be told from these {len(views)} views (focal length {focal:.0f} px, "
             f"± {lens.focal_std:.0f}). Film the board tilted by 30 to 45 degrees in several directions, near and far, "
-            "and in "
-            "the corners of the picture; or give known lenses with --lenses."
+            "and in the corners of the picture; or give known lenses with --lenses."
         )
     return lens
 
@@ -92,7 +98,10 @@ def _find_shear(corners: Array) -> Array:
     return np.nanmean(flat[..., 0] * flat[..., 1], axis=1) / np.maximum(spread[:, 0] * spread[:, 1], 1e-9)
 
 
-def _fit(sightings: Sightings, board: Board, views: npt.NDArray[np.int64]) -> tuple[Lens, Array]:
+def _fit(
+    sightings: Sightings, board: Board, views: npt.NDArray[np.int64], fixed: Array | None = None
+) -> tuple[Lens, Array]:
+    """The lens and the residual of each view (px); with the focal length of a `fixed` K (3, 3), if there is one."""
     points, pixels = [], []
     for corners in sightings.corners[views]:
         is_seen = np.isfinite(corners[:, 0])
@@ -102,14 +111,17 @@ def _fit(sightings: Sightings, board: Board, views: npt.NDArray[np.int64]) -> tu
     with reading(CalibrationError, f"{sightings.camera}: {len(views)} views", needed):
         flags = cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST | cv2.CALIB_FIX_ASPECT_RATIO
         size = (sightings.width, sightings.height)
+        start = np.eye(3)
+        if fixed is not None:
+            flags |= cv2.CALIB_USE_INTRINSIC_GUESS | cv2.CALIB_FIX_FOCAL_LENGTH
+            start = np.array([[fixed[0, 0], 0, (size[0] - 1) / 2], [0, fixed[0, 0], (size[1] - 1) / 2], [0, 0, 1]])
         _, K, distortion, _, _, deviations, _, residuals = cv2.calibrateCameraExtended(
             points,
             pixels,
             size,
-            np.eye(3),
+            start,
             np.zeros(5),
             flags=flags,
         )
-    return Lens(np.asarray(K, float), np.ravel(distortion)[:5].astype(float), float(deviations[0, 0])), np.ravel(
-        residuals
-    ).astype(float)
+    lens = Lens(np.asarray(K, float), np.ravel(distortion)[:5].astype(float), float(np.max(deviations[:2])))
+    return lens, np.ravel(residuals).astype(float)

@@ -45,15 +45,19 @@ class Filmed:
 
     def pixels(self, number: int) -> Array:
         """(F, N, 2) px without noise; NaN where a corner is not seen, all NaN when fewer than half of them are."""
+        return self.pixels_at(number, self.times(number))
+
+    def pixels_at(self, number: int, times: Array) -> Array:
+        """The same at any times (F,), s, in the camera's own video."""
         camera = self.cameras[number]
         found = []
-        for moment in self.times(number) - self.offsets[number]:
+        for moment in times - self.offsets[number]:
             T = place_board(self.board, moment)
             points = transform(T, self.board.corners)
             pixels = camera.project(points)
             faces = (camera.T_camera_world @ T)[2, 2] > 0.25
             inside = (pixels > 4).all(axis=1) & (pixels < [camera.width - 5, camera.height - 5]).all(axis=1)
-            is_seen = inside & faces & camera.can_see(points)
+            is_seen = inside & faces
             found.append(np.where((is_seen & (is_seen.mean() > 0.5))[:, None], pixels, np.nan))
         return np.array(found)
 
@@ -76,7 +80,9 @@ class Filmed:
         flat = draw_board(self.board, per_m, margin_px=40)
         moment = float(self.times(number)[frame] - self.offsets[number])
         T_camera_board = camera.T_camera_world @ place_board(self.board, moment)
-        rays = camera.unproject(np.indices((camera.height, camera.width))[::-1].reshape(2, -1).T.astype(np.float64))
+        everywhere = np.indices((camera.height, camera.width))[::-1].reshape(2, -1).T.astype(np.float64)
+        flat_rays = cv2.undistortPoints(everywhere[:, None], camera.K, camera.distortion)[:, 0]
+        rays = np.column_stack([flat_rays, np.ones(len(flat_rays))])
         normal, origin = T_camera_board[:3, 2], T_camera_board[:3, 3]
         depth = (normal @ origin) / (rays @ normal)
         on_board = (rays * depth[:, None] - origin) @ T_camera_board[:3, :2]
@@ -116,9 +122,10 @@ def film(
     seconds: float = 12.0,
     board: Board = BOARD,
     size: tuple[int, int] = (1280, 720),
+    spread: float = 1.1,
 ) -> Filmed:
-    """`count` cameras in an arc around the board, the first one at the origin."""
-    angles = np.linspace(0.0, 1.1, count) * np.where(np.arange(count) % 2 == 0, 1, -1)
+    """`count` cameras in an arc of `spread` (rad) to both sides of the first one, which is at the origin."""
+    angles = np.linspace(0.0, spread, count) * np.where(np.arange(count) % 2 == 0, 1, -1)
     cameras = [
         make_camera(f"cam{k}", float(angles[k]), 0.12 * (k % 3) if k else 0.0, size[0] * (0.75 + 0.03 * (k % 4)), size)
         for k in range(count)

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from tracker.calibration.arrangement import Arrangement, Corners
 from tracker.calibration.board import Board
 from tracker.calibration.board_pose import find_board_poses
-from tracker.calibration.bundle import Arrangement, Corners
 from tracker.calibration.lens import Lens
 from tracker.geometry.se3 import inverse
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from tracker.calibration.arrangement import Arrangement
 from tracker.calibration.board import Board
 from tracker.calibration.board_places import find_board_places
 from tracker.calibration.board_pose import find_board_poses
-from tracker.calibration.bundle import Arrangement, Freedom, adjust
+from tracker.calibration.bundle import Freedom, adjust
 from tracker.calibration.camera_calibration import CameraCalibration, TimeOffset
 from tracker.calibration.camera_faults import check_lengths, find_warnings
 from tracker.calibration.camera_graph import place_cameras, relate_all

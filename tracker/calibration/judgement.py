@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from tracker.calibration.arrangement import Arrangement, Corners
 from tracker.calibration.board import Board
 from tracker.calibration.board_places import find_board_places
-from tracker.calibration.bundle import Arrangement, Corners, Freedom, adjust
+from tracker.calibration.bundle import Freedom, adjust
 from tracker.calibration.camera_calibration import BoardResiduals
 from tracker.calibration.moments import read_corners
 from tracker.calibration.sightings import Sightings

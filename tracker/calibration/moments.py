@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from tracker.calibration.arrangement import Corners
 from tracker.calibration.board import Board
-from tracker.calibration.bundle import Corners
 from tracker.calibration.corner_detector import MIN_CORNERS
 from tracker.calibration.corner_tracks import find_corners_at
 from tracker.calibration.sightings import Sightings

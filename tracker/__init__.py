@@ -11,6 +11,17 @@ from typing import TYPE_CHECKING, Any
 from tracker.kernel_cache import use_kernel_cache
 
 if TYPE_CHECKING:
+    from tracker.calibration.board import Board
+    from tracker.calibration.board_file import read_board
+    from tracker.calibration.board_pdf import make_board_pdf
+    from tracker.calibration.calibrate import CalibrationOptions, calibrate_cameras
+    from tracker.calibration.calibration_output import write_calibration
+    from tracker.calibration.calibration_report import describe_calibration, say_calibration
+    from tracker.calibration.camera_calibration import CameraCalibration
+    from tracker.calibration.camera_source import CameraSource, find_sources
+    from tracker.calibration.coverage import encode_coverage
+    from tracker.calibration.known_lenses import load_lenses
+    from tracker.calibration.sightings import Sightings, find_sightings
     from tracker.capture.annotations import Annotation, Annotations, load_annotations, save_annotations
     from tracker.capture.archive import ArchiveLimits, extract_archive
     from tracker.capture.camera import Camera
@@ -139,6 +150,21 @@ if TYPE_CHECKING:
     from tracker.training.training_set import TrainingSet, load_training_set, make_training_set
 
 _HOMES = {
+    "Board": "tracker.calibration.board",
+    "read_board": "tracker.calibration.board_file",
+    "make_board_pdf": "tracker.calibration.board_pdf",
+    "CalibrationOptions": "tracker.calibration.calibrate",
+    "calibrate_cameras": "tracker.calibration.calibrate",
+    "CameraCalibration": "tracker.calibration.camera_calibration",
+    "describe_calibration": "tracker.calibration.calibration_report",
+    "say_calibration": "tracker.calibration.calibration_report",
+    "write_calibration": "tracker.calibration.calibration_output",
+    "encode_coverage": "tracker.calibration.coverage",
+    "CameraSource": "tracker.calibration.camera_source",
+    "find_sources": "tracker.calibration.camera_source",
+    "Sightings": "tracker.calibration.sightings",
+    "find_sightings": "tracker.calibration.sightings",
+    "load_lenses": "tracker.calibration.known_lenses",
     "DETECTOR_LABEL": "tracker.detection.image_hands",
     "find_image_hands": "tracker.detection.image_hands",
     "choose_views": "tracker.detection.recorded_hands",
@@ -333,7 +359,11 @@ __all__ = [
     "ArchiveLimits",
     "ArticulatedModel",
     "BlendModel",
+    "Board",
+    "CalibrationOptions",
     "Camera",
+    "CameraCalibration",
+    "CameraSource",
     "Checkpoints",
     "DetectedHand",
     "Evaluation",
@@ -367,6 +397,7 @@ __all__ = [
     "SensorPreset",
     "Sequence",
     "SequenceError",
+    "Sightings",
     "StreamProbe",
     "Track",
     "TrackChunk",
@@ -385,6 +416,7 @@ __all__ = [
     "ViewAids",
     "add_commands",
     "articulated_of",
+    "calibrate_cameras",
     "check_import",
     "choose_held_out",
     "choose_sources",
@@ -393,10 +425,12 @@ __all__ = [
     "count_origins",
     "default_hand",
     "default_hand_detector",
+    "describe_calibration",
     "describe_frame",
     "describe_origin",
     "detect_hands",
     "draw_item",
+    "encode_coverage",
     "encode_jpeg",
     "evaluate_track",
     "export_labels",
@@ -410,7 +444,9 @@ __all__ = [
     "find_origin",
     "find_path_fault",
     "find_possible_units",
+    "find_sightings",
     "find_size_fault",
+    "find_sources",
     "find_tracking_faults",
     "find_training_faults",
     "find_unit",
@@ -426,6 +462,7 @@ __all__ = [
     "load_annotations",
     "load_blend_model",
     "load_detector",
+    "load_lenses",
     "load_mano",
     "load_recorded_hands",
     "load_registration",
@@ -434,6 +471,7 @@ __all__ = [
     "load_track",
     "load_training_set",
     "make_anatomical_prior",
+    "make_board_pdf",
     "make_gaussian_prior",
     "make_test_hand",
     "make_training_set",
@@ -443,6 +481,7 @@ __all__ = [
     "pack_arrays",
     "pack_files",
     "plan_start",
+    "read_board",
     "read_import_picture",
     "read_label_files",
     "read_scan",
@@ -457,6 +496,7 @@ __all__ = [
     "save_registration",
     "save_scan",
     "save_sequence_json",
+    "say_calibration",
     "say_count",
     "say_left_out",
     "start_tracking",
@@ -470,6 +510,7 @@ __all__ = [
     "untrained_hand",
     "view_track_hands",
     "warm_up",
+    "write_calibration",
     "write_csv",
     "write_html",
     "write_length",

@@ -18,9 +18,12 @@ from hypothesis import strategies as st
 
 from tests.tracker.label_formats.test_hostile import make_hand
 from tracker import Scan, load_annotations, load_scan, save_scan, untrained_hand
+from tracker.calibration.board import Board
+from tracker.calibration.board_file import load_board, write_board
 from tracker.capture.archive import extract_archive
 from tracker.capture.image_file import decode_color, decode_depth
 from tracker.capture.importers.anipose_calibration import parse_anipose
+from tracker.capture.importers.colmap_calibration import parse_colmap
 from tracker.capture.importers.dat_calibration import parse_dat
 from tracker.capture.importers.opencv_calibration import parse_opencv
 from tracker.capture.scan_ply import write_ply
@@ -178,6 +181,17 @@ KINDS = (
     Kind("depth.png", lambda _: _image(".png", GRAY), lambda p: decode_depth(p.read_bytes(), "x", inflate=True)),
     Kind("recording.zip", lambda _: _zip(), _read_zip),
     Kind("calibration.toml", lambda _: CALIBRATION.encode(), lambda p: parse_anipose(p.read_bytes(), "x")),
+    Kind(
+        "cameras.txt",
+        lambda _: b"1 OPENCV 640 480 500 500 320 240 0.1 0 0 0\n",
+        lambda p: parse_colmap(p.read_bytes(), b"1 1 0 0 0 0 0 2 1 a/1.png\n", "x"),
+    ),
+    Kind(
+        "images.txt",
+        lambda _: b"1 1 0 0 0 0 0 2 1 a/1.png\n",
+        lambda p: parse_colmap(b"1 PINHOLE 9 9 9 9 4 4\n", p.read_bytes(), "x"),
+    ),
+    Kind("board.toml", lambda _: write_board(Board("checkerboard", 9, 6, 0.025)), load_board),
     Kind("c0.dat", lambda _: DAT.encode(), lambda p: parse_dat(p.read_bytes(), None, "c0", "c0.dat")),
     Kind("video.avi", _video, lambda p: list(VideoFile(p.parent, p.name).read())),
     *(_labels(path.name) for path in sorted(GOLDEN.iterdir())),

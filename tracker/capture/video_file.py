@@ -91,6 +91,22 @@ class VideoFile:
                 yield SourceImage(self.name_of(index), data.tobytes(), (image.shape[1], image.shape[0]))
                 index += 1
 
+    def images(self) -> Iterator[tuple[float, npt.NDArray[np.uint8]]]:
+        """Every frame in order as it is decoded: its time in the video, s, and its pixels (H, W, 3) BGR."""
+        with self._open() as capture:
+            index = 0
+            while capture.grab():
+                time_s = float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000
+                yield time_s, self._retrieve(capture, index)
+                index += 1
+
+    def read_header(self) -> tuple[float, int]:
+        """Frames a second and the number of frames that the header promises; 0 where it does not say."""
+        with self._open() as capture:
+            fps, count = (float(capture.get(what)) for what in (cv2.CAP_PROP_FPS, cv2.CAP_PROP_FRAME_COUNT))
+        is_told = np.isfinite(fps) and 0.001 <= fps <= 100_000
+        return fps if is_told else 0.0, int(min(max(count, 0), MAX_VIDEO_FRAMES))
+
     def read_frame(self, index: int) -> npt.NDArray[np.uint8]:
         """One frame (H, W, 3) RGB, near enough for people to look at: seeking is exact in most videos, not in all."""
         with self._open() as capture:

@@ -7,6 +7,7 @@ import argparse
 from tracker.cli import (
     bench,
     calibrate,
+    calibrate_cameras,
     detect,
     evaluate,
     model_loop,
@@ -23,6 +24,7 @@ COMMANDS = (
     track,
     register,
     calibrate,
+    calibrate_cameras,
     detect,
     evaluate,
     synthesize,

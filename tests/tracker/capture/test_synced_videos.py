@@ -9,7 +9,10 @@ import cv2
 import numpy as np
 import pytest
 
+from tracker.calibration import anipose_file
+from tracker.calibration.colmap_file import write_colmap
 from tracker.capture import ImportOptions, check_import, load_sequence, run_import
+from tracker.capture.camera import Camera
 
 SIZE = (96, 64)
 K0 = np.array([[90.0, 0, 47.5], [0, 91.0, 31.5], [0, 0, 1]])
@@ -132,6 +135,24 @@ def test_every_kind_of_calibration_gives_the_same_cameras(folder: Path, tmp_path
     expected = cv2.projectPoints(points, TURN, MOVE / 1000, K1, LENS)[0][:, 0]
     np.testing.assert_allclose(cameras[1].project(points), expected, atol=1e-6)
     assert next(iter(report.baselines_m.values())) == pytest.approx(np.linalg.norm(MOVE) / 1000)
+
+
+def test_a_calibration_of_our_own_says_its_unit_and_colmaps_text_is_asked_for_one(folder: Path, tmp_path: Path) -> None:
+    T = np.eye(4)
+    T[:3, 3] = [0.3, 0.0, 0.0]
+    cameras = [Camera("cam0", *SIZE, K0, LENS), Camera("cam1", *SIZE, K1, LENS, T)]
+    (folder / "cameras.toml").write_bytes(anipose_file.write_anipose(cameras))
+    told = ImportOptions(hands=("right",))
+    assert check_import(folder, options=told).problems == ()
+    run_import(folder, tmp_path / "out", options=told)
+    assert np.allclose(load_sequence(tmp_path / "out").cameras[1].T_world_camera, T)
+    (folder / "cameras.toml").unlink()
+    for name, data in write_colmap(cameras).items():
+        (folder / name).write_bytes(data)
+    assert any("unit of the calibration" in problem for problem in check_import(folder, options=told).problems)
+    run_import(folder, tmp_path / "colmap", options=ImportOptions(hands=("right",), world_unit_m=1.0))
+    found = load_sequence(tmp_path / "colmap").cameras
+    assert np.allclose(found[1].T_world_camera, T) and np.allclose(found[1].K, K1)
 
 
 def test_frames_are_numbered_as_they_are_decoded(folder: Path, tmp_path: Path) -> None:

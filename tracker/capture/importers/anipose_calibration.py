@@ -12,6 +12,8 @@ def parse_anipose(data: bytes, file: str) -> list[VideoCamera]:
     """Cameras of a calibration in the order of the file."""
     with reading(CalibrationError, file, "valid TOML"):
         document = tomllib.loads(data.decode("utf-8"))
+    metadata = document.get("metadata")
+    is_metric = isinstance(metadata, dict) and metadata.get("unit") == "m"  # as `handloom calibrate-cameras` writes it
     cameras = []
     for key, table in document.items():
         if key == "metadata" or not isinstance(table, dict):
@@ -28,6 +30,7 @@ def parse_anipose(data: bytes, file: str) -> list[VideoCamera]:
             "R": table["rotation"],
             "t": table["translation"],
             "size": table.get("size"),
+            "unit_m": 1.0 if is_metric else None,
         }
         cameras.append(make_camera(str(table.get("name", key))[:100], what, values))
     if not cameras:

@@ -13,6 +13,7 @@ from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
 from tracker.capture.import_question import ImportQuestion, make_question
 from tracker.capture.importers.anipose_calibration import parse_anipose
+from tracker.capture.importers.colmap_calibration import parse_colmap
 from tracker.capture.importers.dat_calibration import parse_dat
 from tracker.capture.importers.opencv_calibration import find_cameras, parse_opencv
 from tracker.capture.importers.rgbd_folder import read_intrinsics
@@ -55,7 +56,7 @@ class SyncedVideos:
         elif not calibration:
             raise CalibrationError(
                 f"{len(videos)} videos and no calibration: add calibration.toml (Anipose), OpenCV's YAML, JSON or npz, "
-                "or c0.dat and rot_trans_c0.dat for each camera."
+                "COLMAP's cameras.txt and images.txt, or c0.dat and rot_trans_c0.dat for each camera."
             )
         else:
             takes = ("world_unit_m", *takes)
@@ -91,7 +92,7 @@ class SyncedVideos:
             warnings=tuple(warnings),
             questions=tuple(questions),
             takes=takes,
-            unit_known=options.world_unit_m is not None or len(cameras) == 1,
+            unit_known=options.world_unit_m is not None or len(cameras) == 1 or find_unit(calibration) is not None,
         )
 
 
@@ -106,6 +107,10 @@ def read_calibration(files: ListedFiles) -> tuple[list[VideoCamera], list[str]]:
         if len(tomls) > 1:
             raise CalibrationError(f"{len(tomls)} calibrations ({', '.join(tomls[:4])}); leave one in the folder.")
         return parse_anipose(read(tomls[0]), tomls[0]), tomls
+    for name in files.names:
+        other = str(PurePosixPath(name).with_name("images.txt"))
+        if PurePosixPath(name).name == "cameras.txt" and other in files.names:
+            return parse_colmap(read(name), read(other), name), [name, other]
     dats = sort_naturally(name for name in files.names if _DAT.fullmatch(PurePosixPath(name).name))
     if dats:
         cameras, used = [], []
@@ -167,12 +172,21 @@ def _same_number(video: str, camera: str) -> bool:
     return bool(numbers[0]) and bool(numbers[1]) and int(numbers[0][0]) == int(numbers[1][0])
 
 
+def find_unit(cameras: list[VideoCamera]) -> float | None:
+    """Metres per unit, if the calibration says it."""
+    told = {camera.unit_m for camera in cameras}
+    return told.pop() if len(told) == 1 else None
+
+
 def _choose_unit(
     cameras: list[VideoCamera], options: ImportOptions, problems: list[str], questions: list[ImportQuestion]
 ) -> float:
     """Metres per unit of the calibration; must be told when there is a distance between cameras."""
     if options.world_unit_m is not None:
         return options.world_unit_m
+    told = find_unit(cameras)
+    if told is not None:
+        return told
     centres = np.array([camera.find_pose(1.0)[:3, 3] for camera in cameras])
     if len(cameras) > 1:
         length = float(np.linalg.norm(centres - centres[0], axis=1).max())

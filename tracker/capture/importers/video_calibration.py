@@ -31,6 +31,7 @@ class VideoCamera:
         R: (3, 3) world to camera.
         t: (3,) in the calibration's unit.
         size: (width, height) px, or None when it is not said.
+        unit_m: Metres per unit of the calibration, or None when it is not said.
     """
 
     name: str
@@ -39,6 +40,7 @@ class VideoCamera:
     R: Array = field(default_factory=lambda: np.eye(3))
     t: Array = field(default_factory=lambda: np.zeros(3))
     size: tuple[int, int] | None = None
+    unit_m: float | None = None
 
     def find_pose(self, unit_m: float) -> Array:
         """T_world_camera (4, 4), m, with `unit_m` metres per unit of the calibration."""
@@ -93,4 +95,4 @@ def make_camera(name: str, what: str, values: dict[str, Any]) -> VideoCamera:
         if numbers.size != 2 or (numbers < 1).any() or (numbers > 1e6).any():
             raise CalibrationError(f"{what}: the image size is {numbers.tolist()}; needed width and height.")
         size = (int(numbers[0]), int(numbers[1]))
-    return VideoCamera(name, K, distortion, nearest_rotation(R), t, size)
+    return VideoCamera(name, K, distortion, nearest_rotation(R), t, size, values.get("unit_m"))

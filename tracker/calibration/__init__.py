@@ -1,0 +1,1 @@
+"""Cameras from filmed boards: lenses, places, time offsets, and how well they agree on frames that were left out."""

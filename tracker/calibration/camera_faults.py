@@ -1,0 +1,99 @@
+"""What is wrong with what the cameras saw, camera by camera, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tracker.calibration.camera_calibration import CameraCalibration
+from tracker.calibration.sightings import Sightings
+from tracker.errors import CalibrationError, say_count
+
+STOPS = 0.5
+"""Of the longest video: a shorter one is no recording of the same, but of a camera that stopped."""
+
+FRAMES_APART = 1.5
+"""Lengths of videos that differ by more, in frames, were begun or ended at different times."""
+
+BAD_PX = 1.0
+"""Residual at the median above which a camera is named; corners are found to a quarter of that."""
+
+OUT_OF_STEP = 0.2
+"""Of a frame: less makes no difference to what is marked or tracked."""
+
+
+def check_lengths(sightings: Sequence[Sightings], find_offsets: bool) -> None:
+    """Videos long enough to be of the same, and without offsets of equal length.
+
+    Raises:
+        CalibrationError: Names the camera.
+    """
+    lengths = {seen.camera: len(seen.times) / seen.fps for seen in sightings}
+    longest = max(lengths, key=lambda name: lengths[name])
+    for seen in sightings:
+        own = lengths[seen.camera]
+        if own < STOPS * lengths[longest]:
+            raise CalibrationError(
+                f"{seen.camera}: stops in the middle: its video has {len(seen.times)} frames ({own:.1f} s), that of "
+                f"{longest} lasts {lengths[longest]:.1f} s. Film again, leave this camera out, or cut the others to "
+                "the part that "
+                "all have."
+            )
+        if not find_offsets and abs(own - lengths[longest]) * seen.fps > 0.5:
+            raise CalibrationError(
+                f"{seen.camera}: its video has {len(seen.times)} frames ({own:.2f} s), that of {longest} lasts "
+                f"{lengths[longest]:.2f} s, so frames of one number need not show one moment. Let the offsets be "
+                "found, or cut the "
+                "videos to one length."
+            )
+
+
+def find_warnings(result: CameraCalibration, sightings: Sequence[Sightings], find_offsets: bool) -> list[str]:
+    """What a person should look at before using the result."""
+    warnings = []
+    lengths = [len(seen.times) / seen.fps for seen in sightings]
+    for number, seen in enumerate(sightings):
+        offset = result.offsets[number]
+        if (max(lengths) - lengths[number]) * seen.fps > FRAMES_APART:
+            warnings.append(
+                f"{seen.camera}: its video is shorter ({len(seen.times)} frames, {lengths[number]:.2f} s) than the "
+                "longest "
+                f"({max(lengths):.2f} s); only what all have can be used of a recording made like this."
+            )
+        if number and offset.is_known and abs(offset.frames) > OUT_OF_STEP:
+            later = "later" if offset.frames > 0 else "earlier"
+            warnings.append(
+                f"{seen.camera}: is out of step: it shows a moment {abs(offset.frames):.2f} frames "
+                f"({abs(1000 * offset.seconds):.1f} ms) {later} in its video than {sightings[0].camera}. Shift it by "
+                "that."
+            )
+        if number and find_offsets and not offset.is_known:
+            warnings.append(
+                f"{seen.camera}: the board moved too little, or was too seldom seen with the others, to tell a time "
+                "offset; none "
+                "is assumed. Move the board without pause to have it told."
+            )
+        own = result.left_out.choose(result.left_out.camera == number)
+        if len(own.px) == 0:
+            warnings.append(f"{seen.camera}: no board at the moments that were left out; nothing judges this camera.")
+        elif own.median > BAD_PX:
+            warnings.append(
+                f"{seen.camera}: {own.median:.1f} px (median) at moments that were left out; needed at most "
+                f"{BAD_PX:g}. Is the board "
+                "flat, its size right, the picture sharp, and did the camera stay where it was?"
+            )
+        reach = np.ptp(seen.corners.reshape(-1, 2)[np.isfinite(seen.corners[..., 0]).ravel()], axis=0)
+        if (reach < 0.5 * np.array([seen.width, seen.height])).any():
+            across, down = (round(100 * share) for share in reach / [seen.width, seen.height])
+            warnings.append(
+                f"{seen.camera}: the board covered only {across} % of the picture's width and {down} % of its height; "
+                "outside, the "
+                "lens is a guess."
+            )
+    hidden = int((~np.isfinite(result.T_world_board[:, 0, 0])).sum())
+    if hidden:
+        warnings.append(
+            f"{say_count(hidden, 'board')} could not be placed and {'is' if hidden == 1 else 'are'} left out."
+        )
+    return warnings

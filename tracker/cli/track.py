@@ -155,4 +155,9 @@ def show(result: dict[str, Any]) -> str:
     counts = f"{say_count(result['frames'], 'frame')}, {result['lost']} lost"
     for name, found in result["objects"].items():
         counts += f", {name} lost in {found['lost']}"
-    return f"{counts}, median {result['median_ms']:.1f} ms a frame: {result['out']}"
+    guessed = (
+        "\nOne colour camera alone was tracked in: the hands' size and distance are guesses."
+        if result["is_distance_guessed"]
+        else ""
+    )
+    return f"{counts}, median {result['median_ms']:.1f} ms a frame: {result['out']}{guessed}"

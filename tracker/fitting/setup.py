@@ -81,6 +81,11 @@ class TrackSetup:
         return default_hand_detector() if self.options.use_detector else None
 
     @property
+    def is_distance_guessed(self) -> bool:
+        """Whether nothing but the model's size tells how far away the hands are: one colour camera without depth."""
+        return len(self.view_ids) == 1
+
+    @property
     def fingertip_detector(self) -> Forest:
         """The one that was given, or the one that comes along."""
         return self.own_detector.forest if self.own_detector else default_detector()

@@ -95,6 +95,8 @@ class Track:
             "depth_residual_mm": _median(chunk.depth_residual_mm[ok]),
             "silhouette_iou": _median(chunk.silhouette_iou[ok]),
             "threads": self.setup.options.threads,
+            "colour_cameras": list(self.setup.view_ids),
+            "is_distance_guessed": self.setup.is_distance_guessed,
             "detector": None if self.setup.own_detector is None else self.setup.own_detector.to_json(),
             "objects": {
                 name: {status: int(np.count_nonzero(found == status)) for status in OBJECT_STATUSES}

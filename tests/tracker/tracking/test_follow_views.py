@@ -11,6 +11,8 @@ import pytest
 
 from tracker.capture.sequence import Sequence, load_sequence
 from tracker.capture.truth import Truth, load_truth
+from tracker.cli.__main__ import main
+from tracker.errors import FrameError
 from tracker.fitting.options import TrackOptions
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
@@ -71,9 +73,15 @@ def test_a_run_goes_on_from_a_stored_state_as_if_it_had_never_stopped(run, views
     np.testing.assert_array_equal(TrackChunk.join([first, second]).pose, whole.pose)
 
 
-def test_a_missing_image_of_one_view_is_named(views, tmp_path):
-    from tracker.errors import FrameError
+def test_one_camera_alone_is_said_to_guess_the_distance(run, views, tmp_path, capsys):
+    assert not run[2].summary()["is_distance_guessed"]
+    folder = str(views[0].folder)
+    assert main(["track", folder, "--out", str(tmp_path), "--cameras", "cam0", "--frames", "0:2"]) == 0
+    assert "size and distance are guesses" in capsys.readouterr().out
+    assert json.loads((tmp_path / "summary.json").read_text())["colour_cameras"] == ["cam0"]
 
+
+def test_a_missing_image_of_one_view_is_named(views, tmp_path):
     setup, start = start_tracking(views[0], TrackOptions(calibrate=False))
     path = views[0].image_path("color", 1, "cam2")
     hidden = path.rename(tmp_path / "hidden.png")

@@ -35,6 +35,7 @@ def cut(seen: Sightings, first: float, last: float) -> Sightings:
     return replace(seen, frames=seen.frames[kept], corners=seen.corners[kept])
 
 
+@pytest.mark.slow
 def test_unknown_lenses_places_and_offsets_come_back(filmed: Filmed, sightings: list[Sightings]) -> None:
     result = calibrate_cameras(sightings, BOARD, NEAR)
     metres, degrees = measure_places(result.cameras, filmed.cameras)
@@ -68,6 +69,7 @@ def test_known_lenses_stay_as_they_are_and_places_are_better(filmed: Filmed, sig
         calibrate_cameras(short, BOARD, replace(NEAR, lenses={k: lenses[k] for k in ("cam0", "cam1", "cam3")}))
 
 
+@pytest.mark.slow
 def test_videos_taken_for_synchronous_disagree_and_those_that_are_do_not() -> None:
     late = film(2, (0.0, 0.1), seconds=8.0).sight_all()
     blind = calibrate_cameras(late, BOARD, CalibrationOptions(find_offsets=False))
@@ -80,6 +82,7 @@ def test_videos_taken_for_synchronous_disagree_and_those_that_are_do_not() -> No
     assert not any("out of step" in warning for warning in result.warnings)
 
 
+@pytest.mark.slow
 def test_a_camera_that_sees_no_board_with_the_first_is_reached_by_way_of_another(filmed: Filmed, sightings) -> None:
     chain = [
         cut(sightings[0], 0, 12),

@@ -29,6 +29,7 @@ def test_a_session_whose_stored_cameras_disagree_by_two_pixels_is_out_of_step_an
 
 
 @pytest.mark.shared_data
+@pytest.mark.slow
 def test_a_session_of_two_cameras_is_judged_on_what_was_left_out(shared_data: Path) -> None:
     folder = shared_data / "caliscope_sessions" / "charuco_calibration_2_cam"
     board = load_board(folder / "charuco.toml")

@@ -44,6 +44,7 @@ def videos(filmed: Filmed, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_rendered_videos_are_calibrated_and_the_offset_is_told(
     filmed: Filmed, videos: Path, tmp_path: Path, capsys
 ) -> None:

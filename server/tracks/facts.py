@@ -15,7 +15,7 @@ from server.tracks.models import TrackRow
 def find_best_tracks(session: Session, sequence_ids: Sequence[uuid.UUID]) -> dict[uuid.UUID, dict[str, Any]]:
     """For each recording with tracks its `best_track`: the one closest to the annotations, else to the depth.
 
-    A track that lost fewer of its frames comes before one that lost more.
+    A track that holds the hands in more frames comes before one that holds them in fewer, however near that one is.
     """
     query = select(TrackRow).where(TrackRow.sequence_id.in_(sequence_ids), TrackRow.deleted_at.is_(None))
     best: dict[uuid.UUID, TrackRow] = {}
@@ -29,11 +29,11 @@ def find_best_tracks(session: Session, sequence_ids: Sequence[uuid.UUID]) -> dic
     }
 
 
-def _badness(track: TrackRow) -> tuple[float, float, float]:
+def _badness(track: TrackRow) -> tuple[int, float, float]:
     lost = track.summary.get("lost") or 0
     residual = track.summary.get("depth_residual_mm")
     return (
-        lost / max(track.frame_count, 1),
+        int(lost) - track.frame_count,
         float("inf") if track.error_px is None else track.error_px,
         float("inf") if residual is None else float(residual),
     )

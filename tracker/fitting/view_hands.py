@@ -25,6 +25,9 @@ REACH = 15.0
 HOLDS = 0.5
 """A view holds a hand whose joints lie so near to where it was seen there, `ViewHands.measure`."""
 
+FOLLOWS = 0.8
+"""A hand that nobody should believe is still followed from where it is while one view sees it so near."""
+
 
 @dataclass(frozen=True)
 class ViewHands:

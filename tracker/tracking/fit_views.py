@@ -15,7 +15,7 @@ from tracker.detection.image_hands import name_hands
 from tracker.fitting.frame_fit import Fit, FitOptions, fit_frame
 from tracker.fitting.objective import Objective
 from tracker.fitting.setup import TrackSetup
-from tracker.fitting.view_hands import HOLDS, REACH, ViewHands
+from tracker.fitting.view_hands import FOLLOWS, HOLDS, REACH, ViewHands
 from tracker.geometry import se3
 from tracker.landmarks import DetectedHand, HandDetector
 from tracker.model.scene import PosedScene
@@ -120,11 +120,15 @@ def find_place(posed: PosedScene, camera: Camera) -> tuple[Array, float]:
     return pixels, EDGE_MARGIN * float(camera.K[0, 0] / np.median(points[:, 2]))
 
 
-def is_held(setup: TrackSetup, seen: ViewHands, posed: PosedScene, hand: int) -> bool:
-    """Whether two views agree with a fitted hand, or one where the hand is outside of all other images."""
+def judge_hand(setup: TrackSetup, seen: ViewHands, posed: PosedScene, hand: int) -> tuple[bool, bool]:
+    """Whether a fitted hand is to be believed, and whether it is to be followed from where it is.
+
+    Two views must agree with it to be believed, or one where it is outside of all other images.
+    """
     apart = seen.measure(posed, hand, setup.names[hand])
     inside = sum(_is_inside(posed, hand, camera) for camera in seen.cameras)
-    return int(np.count_nonzero(apart < HOLDS)) >= min(2, max(1, inside))
+    is_held = int(np.count_nonzero(apart < HOLDS)) >= min(2, max(1, inside))
+    return is_held, is_held or bool(np.any(apart < FOLLOWS))
 
 
 def _find(

@@ -9,7 +9,7 @@ from tracker.fitting.setup import TrackSetup
 from tracker.fitting.view_hands import ViewHands
 from tracker.search.place_in_views import place_in_views
 from tracker.search.tools import Tools
-from tracker.tracking.fit_views import fit_views, is_held, see_hands
+from tracker.tracking.fit_views import fit_views, judge_hand, see_hands
 from tracker.tracking.frame_result import FrameResult
 from tracker.tracking.recovery import list_hands
 from tracker.tracking.state import TrackState
@@ -36,11 +36,13 @@ def follow_views(
     iterations = setup.options.first_iterations if found else setup.options.iterations
     fit = fit_views(setup, tools.objective, seen, frames, pose, iterations)
     pose, posed = fit.pose, scene.pose_at(fit.pose)
-    lost = {hand for hand in hands if hand in gone - found or not is_held(setup, seen, posed, hand)}
+    verdicts = {hand: judge_hand(setup, seen, posed, hand) for hand in hands}
+    lost = {hand for hand in hands if hand in gone - found or not verdicts[hand][0]}
+    left = {hand for hand in lost if hand in gone or not verdicts[hand][1]}
     earlier = state.pose.copy()
-    for hand in gone | lost:
+    for hand in gone | left:
         where = scene.pose_slices[hand]
-        if hand in lost:
+        if hand in left:
             pose[where] = state.pose[where]
         earlier[where] = pose[where]
     statuses = tuple("lost" if hand in lost else "recovered" if hand in found else "ok" for hand in hands)
@@ -54,5 +56,5 @@ def follow_views(
         fit.stages | stages,
         hand_status=statuses,
     )
-    after = TrackState(state.next_frame + 1, pose, earlier, is_lost=bool(lost), lost_hands=tuple(sorted(lost)))
+    after = TrackState(state.next_frame + 1, pose, earlier, is_lost=bool(left), lost_hands=tuple(sorted(left)))
     return after, result, seen

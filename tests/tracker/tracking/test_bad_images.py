@@ -103,13 +103,15 @@ def test_in_an_image_of_48_million_pixels_without_a_hand_none_is_found(tmp_path,
     assert set(track(recording)["status"]) == {"lost"}
 
 
-def test_without_colour_detecting_is_refused_and_without_depth_tracking(tmp_path, capsys):
+def test_without_colour_detecting_is_refused_and_without_depth_nothing_is_no_hand(tmp_path, capsys):
     deep = write(tmp_path / "deep", (64, 48), 1, None, lambda frame: np.full((48, 64), 600))
     assert "only depth images; the hand detector needs colour or infrared" in refusal(capsys, "detect", str(deep))
     grey: Draw = lambda frame: np.full((48, 64, 3), 90, dtype=np.uint8)  # noqa: E731
     flat = write(tmp_path / "flat", (64, 48), 1, grey, None)
-    said = refusal(capsys, "track", str(flat), "--out", str(tmp_path / "track"))
-    assert "None of its cameras has depth images" in said
+    said = refusal(capsys, "track", str(flat), "--no-detector", "--out", str(tmp_path / "track"))
+    assert "hand detector alone" in said
+    assert track(flat)["status"].tolist() == ["lost"]
+    capsys.readouterr()
     assert detect(flat, capsys) == 0
 
 

@@ -51,10 +51,12 @@ def test_a_printed_board_is_found_and_every_corner_is_where_it_should_be_on_pape
     assert np.abs(paper_m - board.corners[:, :2]).max() < 0.0001
 
 
-@pytest.mark.parametrize("board", BOARDS, ids=lambda board: f"{board.kind}-{board.columns}x{board.rows}")
+@pytest.mark.parametrize(
+    "board",
+    [board for board in BOARDS if board.kind != "checkerboard"],  # OpenCV draws none of these
+    ids=lambda board: f"{board.kind}-{board.columns}x{board.rows}",
+)
 def test_a_drawn_board_is_what_opencv_draws(board: Board) -> None:
-    if board.kind == "checkerboard":
-        pytest.skip("OpenCV draws no checkerboards")
     ours = draw_board(board, 4000.0)
     theirs = board.layout.generateImage((ours.shape[1], ours.shape[0]), marginSize=0, borderBits=1)
     theirs = cv2.bitwise_not(theirs) if board.is_inverted else theirs

@@ -6,6 +6,9 @@ import { createShelf, type Shelf } from "../../canvas/hand3d/shelf";
 import type { Stage } from "../../canvas/hand3d/stage";
 import { shownIn, soonShown, type Curation } from "../../state/curation";
 
+/** A hand that is drawn comes to the screen before the next ones are asked for: without a graphics card both take the same processor. */
+const AFTER_DRAWING_MS = 150;
+
 interface ShownHand {
   /** Whether the hand that is wanted is drawn. */
   readonly isDrawn: boolean;
@@ -48,14 +51,18 @@ export function useShownHand(stage: Stage | null, curation: Curation, drawn: Ref
       const failure = item ? made.failureOf(item.id) : null;
       setNow((before) => (before.id === id && before.isDrawn === Boolean(hand) && before.failure === failure ? before : { id, isDrawn: Boolean(hand), failure }));
     };
+    let asking: ReturnType<typeof setTimeout> | undefined;
     const follow = (): void => {
       present();
-      made.want(soonShown(curation.store.get()).map((item) => item.id));
+      const ids = soonShown(curation.store.get()).map((item) => item.id);
+      clearTimeout(asking);
+      asking = setTimeout(() => made.want(ids), ids[0] !== undefined && made.get(ids[0]) ? AFTER_DRAWING_MS : 0);
     };
     const stopFollowing = curation.store.watch(follow);
     const stopWatching = made.watch(present);
     follow();
     return () => {
+      clearTimeout(asking);
       stopFollowing();
       stopWatching();
       drawn.current = "";

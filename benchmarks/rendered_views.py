@@ -42,7 +42,7 @@ def main() -> None:
             for has_contours in (False, True):
                 iterations = fit_views.CONTOUR_ITERATIONS if has_contours else 0
                 with patch.object(fit_views, "CONTOUR_ITERATIONS", iterations):
-                    setup, state = start_tracking(sequence, TrackOptions(calibrate=False, cameras=ids))
+                    setup, state = start_tracking(sequence, TrackOptions(calibrate=False, cameras=ids, use_depth=False))
                     _, chunk = track_frames(sequence, setup, state, range(FRAMES))
                 track = join_chunks(sequence, setup, [chunk])
                 held = track.status != "lost"

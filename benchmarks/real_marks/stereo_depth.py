@@ -21,6 +21,9 @@ from tracker.capture.sequence import Sequence, load_sequence
 DISPARITIES, BLOCK = 96, 7
 """From 96 px, 7 cm before such a camera, to the wall; blocks as small as still tell skin apart."""
 
+DEPTH_SCALE = 0.0001
+"""m per unit of the depth images."""
+
 FARTHEST = 1.0
 """m; behind it half a pixel of disparity is 7 cm."""
 
@@ -44,14 +47,13 @@ def measure_disparity(left: npt.NDArray[np.uint8], right: npt.NDArray[np.uint8])
     return np.maximum(found, 0.0)
 
 
-def make_recording(data: Path, camera: int, out: Path) -> Sequence:
-    """Import the depth and the left image of one camera's pair into the folder `out`."""
+def write_images(data: Path, camera: int, color: Path, depths: Path) -> int:
+    """Write the left image and the depth (units of `DEPTH_SCALE`) of every frame of one camera's pair; their number."""
     about = json.loads((data / "meta.json").read_text())["cameras"][camera]
     lens, baseline = about["ir_left"], about["stereo_baseline_m"]
     pair = [cv2.VideoCapture(str(data / f"cam{camera}_ir{side}.avi")) for side in "LR"]
-    source = out.parent / f"{out.name}_images"
-    for kind in ("color", "depth"):
-        (source / kind).mkdir(parents=True, exist_ok=True)
+    for folder in (color, depths):
+        folder.mkdir(parents=True, exist_ok=True)
     count = 0
     while True:
         (is_left, left), (is_right, right) = (video.read() for video in pair)
@@ -61,16 +63,24 @@ def make_recording(data: Path, camera: int, out: Path) -> Sequence:
         with np.errstate(divide="ignore"):
             depth = np.where(disparity > 0, lens["fx"] * baseline / disparity, 0.0)
         depth[depth > FARTHEST] = 0.0
-        cv2.imwrite(str(source / "color" / f"{count:04d}.png"), left)
-        cv2.imwrite(str(source / "depth" / f"{count:04d}.png"), np.rint(10000.0 * depth).astype(np.uint16))
+        cv2.imwrite(str(color / f"{count:06d}.png"), left)
+        cv2.imwrite(str(depths / f"{count:06d}.png"), np.rint(depth / DEPTH_SCALE).astype(np.uint16))
         count += 1
+    return count
+
+
+def make_recording(data: Path, camera: int, out: Path) -> Sequence:
+    """Import the depth and the left image of one camera's pair into the folder `out`."""
+    source = out.parent / f"{out.name}_images"
+    write_images(data, camera, source / "color", source / "depth")
+    lens = json.loads((data / "meta.json").read_text())["cameras"][camera]["ir_left"]
     options = ImportOptions(
         fps=4.5,
         fx=lens["fx"],
         fy=lens["fy"],
         cx=lens["ppx"],
         cy=lens["ppy"],
-        depth_scale=0.0001,
+        depth_scale=DEPTH_SCALE,
         hands=("right",),
     )
     run_import(source, out, "rgbd_folder", options)

@@ -10,16 +10,17 @@ from __future__ import annotations
 import argparse
 import json
 import os
+from itertools import product
 from pathlib import Path
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
     os.environ.setdefault(name, "1")  # before numpy: one thread is measured
 
-import cv2  # noqa: E402
 import numpy as np  # noqa: E402
 import numpy.typing as npt  # noqa: E402
 
 from benchmarks.real_marks.marked import TIPS, MarkedRecording  # noqa: E402
+from benchmarks.real_marks.stereo_depth import DEPTH_SCALE, write_images  # noqa: E402
 from tracker.capture.frame_pattern import parse_pattern  # noqa: E402
 from tracker.capture.import_options import ImportOptions  # noqa: E402
 from tracker.capture.import_run import run_import  # noqa: E402
@@ -54,8 +55,8 @@ def read_two_cameras(data: Path, work: Path) -> Sequence:
 
 
 def read_infrared(data: Path, work: Path) -> Sequence:
-    """The left infrared images of the three cameras of `d405_take001` as a recording."""
-    out, source = work / "d405_take001_views", data / "d405_take001"
+    """The left infrared images of the cameras of `d405_take001`, with depth by stereo matching, as a recording."""
+    out, source = work / "d405_take001_depth_views", data / "d405_take001"
     if (out / "sequence.json").exists():
         return load_sequence(out)
     cameras, count = [], 0
@@ -66,25 +67,18 @@ def read_infrared(data: Path, work: Path) -> Sequence:
         T_camera_world[:3, :3], T_camera_world[:3, 3] = about["R_world2cam"], about["t_world2cam"]
         T_camera_left[:3, :3] = np.reshape(offset["R"], (3, 3)).T
         T_camera_left[:3, 3] = offset["T"]
-        (out / f"cam{number}").mkdir(parents=True, exist_ok=True)
-        video, count = cv2.VideoCapture(str(source / f"cam{number}_irL.avi")), 0
-        while True:
-            is_there, image = video.read()
-            if not is_there:
-                break
-            cv2.imwrite(str(out / f"cam{number}" / f"{count:06d}.png"), image)
-            count += 1
+        count = write_images(source, number, out / f"cam{number}", out / f"cam{number}_depth")
         T = np.linalg.inv(T_camera_world) @ T_camera_left
-        pattern = parse_pattern(f"cam{number}/{{:06d}}.png")
-        cameras.append(RecordedCamera(f"cam{number}", 640, 480, K, np.zeros(0), T, pattern))
+        color, depth = (parse_pattern(f"cam{number}{kind}/{{:06d}}.png") for kind in ("", "_depth"))
+        cameras.append(RecordedCamera(f"cam{number}", 640, 480, K, np.zeros(0), T, color, depth, DEPTH_SCALE))
     sequence = Sequence(out, "d405_take001", 4.5, count, tuple(cameras), ("right",))
     save_sequence_json(sequence)
     return sequence
 
 
-def follow(sequence: Sequence, cameras: tuple[str, ...]) -> Track:
+def follow(sequence: Sequence, cameras: tuple[str, ...], use_depth: bool = False) -> Track:
     """The track in some cameras, without any annotation."""
-    options = TrackOptions(cameras=",".join(cameras))
+    options = TrackOptions(cameras=",".join(cameras), use_depth=use_depth)
     setup, state = start_tracking(sequence, options)
     _, chunk = track_frames(sequence, setup, state, options.frame_range(sequence.frame_count))
     return join_chunks(sequence, setup, [chunk])
@@ -106,7 +100,8 @@ def write_row(recording: MarkedRecording, track: Track, camera: str) -> str:
     held = int(np.count_nonzero(track.status != "lost"))
     milliseconds = 1000.0 * track.seconds[1:]
     return (
-        f"| {recording.name.rpartition('_')[0]} | {', '.join(track.setup.view_ids)} | {held} of {len(track.frame)} | "
+        f"| {recording.name.rpartition('_')[0]} | {', '.join(track.setup.view_ids)}"
+        f"{' with depth' if track.setup.options.use_depth else ''} | {held} of {len(track.frame)} | "
         f"{camera} | {apart.size}, {tips.size} tips | {np.median(apart):.1f}, tips {np.median(tips):.1f} | "
         f"{100 * np.mean(apart < recording.limit):.0f} % < {recording.limit:g} px | {np.median(milliseconds):.0f} | "
         f"{np.percentile(milliseconds, 95):.0f} |"
@@ -148,8 +143,8 @@ def main() -> None:
     print(*rows, f"{millimetres:.1f} mm", sep="\n", flush=True)
     infrared = read_infrared(given.data, given.work)
     ids = tuple(camera.id for camera in infrared.cameras)
-    for left_out in (None, *ids):
-        track = follow(infrared, tuple(camera for camera in ids if camera != left_out))
+    for use_depth, left_out in product((False, True), (None, *ids)):
+        track = follow(infrared, tuple(camera for camera in ids if camera != left_out), use_depth)
         for camera in ids if left_out is None else (left_out,):
             rows.append(write_row(MarkedRecording.load(folder / f"d405_take001_{camera}"), track, camera))
             print(rows[-1], flush=True)
@@ -158,6 +153,7 @@ def main() -> None:
             "# Real recordings of several cameras, by marks\n",
             "`python -m benchmarks.real_marks.views DATA --write` writes this page. No annotation is used; the hand's",
             "shape is fitted to the first seconds. Joints were marked twice by eye; frames that are called lost count.",
+            "With depth: that of each infrared pair by stereo matching takes part too.",
             "*Judged in* a camera that is not among those tracked in: a left-out view.\n",
             HEAD,
             *rows,

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tracker.capture.camera import Camera
+
 
 @dataclass(frozen=True, eq=False)
 class Frame:
@@ -25,3 +27,16 @@ class Frame:
     color: npt.NDArray[np.uint8] | None
     depth: npt.NDArray[np.float32] | None
     is_hand: npt.NDArray[np.bool_] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class CameraFrame:
+    """A frame and the camera that took it.
+
+    Attributes:
+        camera: As the images are: without distortion where they were undistorted.
+        frame: Its images.
+    """
+
+    camera: Camera
+    frame: Frame

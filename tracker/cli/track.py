@@ -63,8 +63,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--cameras",
         metavar="A,B,...",
-        help="colour cameras to track in; a recording without depth is tracked in all of its cameras",
+        help="cameras to track in together; a recording without depth is tracked in all of its cameras",
     )
+    parser.add_argument("--no-depth", action="store_true", help="with --cameras: use the colour of all, no depth")
     parser.add_argument("--no-calibration", action="store_true", help="keep the models' size and shape as they are")
     parser.add_argument("--no-detector", action="store_true", help="do not look for hands in the colour images")
     parser.add_argument(
@@ -108,6 +109,7 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
         "last_frame": frames.stop - 1,
         "camera": args.camera,
         "cameras": args.cameras,
+        "use_depth": False if args.no_depth else None,
         "calibrate": False if args.no_calibration else None,
         "use_detector": False if args.no_detector else None,
         "use_skin": False if args.no_skin else None,

@@ -71,12 +71,14 @@ def draw(posed: PosedScene, observation: Observation) -> View:
     return render_view(posed, observation.K, observation.T_world_camera, height, width)
 
 
+def look_at(posed: PosedScene, observation: Observation) -> FrameContext:
+    """The scene drawn beside what was seen."""
+    return FrameContext(draw(posed, observation), observation, *label_scene(posed.scene))
+
+
 def find_residuals(posed: PosedScene, observation: Observation | None, objective: Objective) -> dict[str, Residual]:
     """Correspondences of every term at a posed scene."""
-    context = None
-    if observation is not None:
-        context = FrameContext(draw(posed, observation), observation, *label_scene(posed.scene))
-    return objective.find(posed, context)
+    return objective.find(posed, None if observation is None else look_at(posed, observation))
 
 
 def fit_frame(

@@ -13,7 +13,7 @@ from tracker.terms.data_to_surface import DataToSurface
 from tracker.terms.joint_prior import AnatomicalLimits, Bending, Regularization
 from tracker.terms.model_to_data import ModelToData
 from tracker.terms.normal_equations import NormalEquations
-from tracker.terms.residual import FrameContext, Residual, Term, Thinnable
+from tracker.terms.residual import FrameContext, JointResidual, Residual, Term, Thinnable
 from tracker.terms.silhouette import Silhouette
 from tracker.terms.uncovered import Uncovered
 
@@ -46,12 +46,18 @@ class Objective:
 
     def coarse(self) -> Objective:
         """The same with fewer matches where terms can do with fewer, for iterations that only have to come near."""
-        thinned = {n: term.coarse() if isinstance(term, Thinnable) else term for n, term in self.terms.items()}
-        return replace(self, terms=thinned)
+        return replace(self, terms=thin_terms(self.terms))
 
     def find(self, posed: PosedScene, context: FrameContext | None) -> dict[str, Residual]:
         """Correspondences of every term at the current pose."""
-        return {name: term.find(posed, context) for name, term in self.terms.items()}
+        found: dict[str, Residual] = {}
+        for name, term in self.terms.items():
+            residual = term.find(posed, context)
+            if isinstance(residual, JointResidual):
+                found |= {f"{name}_{part}": own for part, own in residual.parts.items()}
+            else:
+                found[name] = residual
+        return found
 
     def linearize(
         self, posed: PosedScene, residuals: dict[str, Residual], previous_pose: Array
@@ -107,3 +113,8 @@ class Objective:
             JtJ[own, before] -= scale * curvature
             JtJ[before, own] -= scale * curvature
         return JtJ, Jtr, costs
+
+
+def thin_terms(terms: dict[str, Term]) -> dict[str, Term]:
+    """The same terms, with fewer matches where they can do with fewer."""
+    return {name: term.coarse() if isinstance(term, Thinnable) else term for name, term in terms.items()}

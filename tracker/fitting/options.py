@@ -124,10 +124,16 @@ class TrackOptions:
     )
     cameras: str = _option(
         "",
-        "Colour cameras to track in, ids with commas between them; empty takes the depth camera, without one all.",
-        label="Colour cameras",
+        "Cameras to track in together, ids with commas between them; empty takes the depth camera, without one all.",
+        label="Several cameras",
         is_advanced=True,
         about="recording",
+    )
+    use_depth: bool = _option(
+        True,
+        "In several cameras: fit to the depth images of those that have some, too.",
+        label="Depth in several cameras",
+        is_advanced=True,
     )
     threads: int = _option(
         1,
@@ -157,7 +163,7 @@ class TrackOptions:
 
     @property
     def view_ids(self) -> tuple[str, ...]:
-        """The colour cameras that were chosen, by id; none where nobody chose any."""
+        """The cameras that were chosen to be tracked in together, by id; none where nobody chose any."""
         return tuple(name for name in (part.strip() for part in self.cameras.split(",")) if name)
 
     @property

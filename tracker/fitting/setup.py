@@ -11,10 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
-from tracker.capture.frame import Frame
+from tracker.capture.frame import CameraFrame, Frame
 from tracker.capture.sequence import Sequence
 from tracker.detection import Forest, OwnDetector, default_detector, load_detector, save_forest
 from tracker.errors import TrackingError, reading
+from tracker.fitting.map_views import map_views
 from tracker.fitting.options import TrackOptions
 from tracker.fitting.tracking_faults import find_tracking_faults
 from tracker.landmarks import HandDetector, default_hand_detector
@@ -35,12 +36,13 @@ class TrackSetup:
     Attributes:
         names: Of the models: `right`, `left` or an object's name.
         models: As they are tracked, calibrated.
-        camera_id: The depth camera; where colour cameras alone are tracked in, the first of them.
+        camera_id: The depth camera; of several cameras that are tracked in together the first one with depth, else
+            the first.
         options: What the user chose.
         marks: Name of a hand to its joints (21, 3) as marked in the first frame, px of an ideal lens and v.
         own_detector: Finds fingertips for the S of [T16] Eq. 5; None for the detector that comes along.
         static_scene: Planes and gravity; None where the run was begun without an object, or before they were kept.
-        view_ids: The colour cameras that are tracked in; none where a depth camera is.
+        view_ids: The cameras that are tracked in together; none where one depth camera is.
     """
 
     names: tuple[str, ...]
@@ -103,6 +105,18 @@ class TrackSetup:
         """A frame as an ideal pinhole camera sees it, and that camera."""
         return undistort(sequence.frame(index, self.camera_id), sequence.camera(self.camera_id))
 
+    def read_views(self, sequence: Sequence, index: int) -> list[CameraFrame]:
+        """The frames of all views: as recorded, those with depth as ideal pinhole cameras see them."""
+
+        def read(camera_id: str) -> CameraFrame:
+            camera = sequence.camera(camera_id)
+            if camera.has_depth and self.options.use_depth:
+                frame, ideal = undistort(sequence.frame(index, camera_id), camera)
+                return CameraFrame(ideal, frame)
+            return CameraFrame(camera, Frame(index, camera_id, sequence.color(index, camera_id), None))
+
+        return map_views(read, self.view_ids, self.options.threads)
+
     def save(self, folder: Path) -> None:
         """Write `setup.json`, `models/<name>.npz`, and `fingertips.npz` where a detector was given."""
         folder = Path(folder)
@@ -147,7 +161,7 @@ class TrackSetup:
 
 
 def choose_cameras(sequence: Sequence, options: TrackOptions) -> tuple[str, tuple[str, ...]]:
-    """The depth camera that a run tracks in and no views, or the first of the views it tracks in and all of them.
+    """The depth camera that a run tracks in and no views, or the main one of its views and all of them.
 
     Raises:
         TrackingError: The recording cannot be tracked so.
@@ -160,4 +174,5 @@ def choose_cameras(sequence: Sequence, options: TrackOptions) -> tuple[str, tupl
     if with_depth and not options.view_ids:
         return options.camera or with_depth[0], ()
     views = options.view_ids or tuple(with_color)
-    return views[0], views
+    deep = [camera_id for camera_id in views if camera_id in with_depth and options.use_depth]
+    return (deep or views)[0], () if deep and len(views) == 1 else views

@@ -133,13 +133,20 @@ def find_sightings(
     hands = name_hands(detector.find(frame.color, len(names), followed, turns, has_size), names)
     if not hands:
         return Sightings(frame, camera, {})
-    focal = float(camera.K[0, 0])
-    masks = [find_own_color(frame.color, depth, hand.points, focal) for hand in hands.values()]
-    is_hand = np.logical_or.reduce(masks)
+    is_hand = find_hand_pixels(frame, camera, hands)
     if len(hands) == len(names):  # of a hand that was not seen nobody knows the pixels
         frame = replace(frame, is_hand=is_hand)
     sightings = {name: Sighting(hand, _believe(hand, depth, is_hand)) for name, hand in hands.items()}
     return Sightings(frame, camera, sightings)
+
+
+def find_hand_pixels(frame: Frame, camera: Camera, hands: Mapping[str, DetectedHand]) -> npt.NDArray[np.bool_]:
+    """(H, W) pixels with depth that have the own colour of some detected hand; at least one was detected."""
+    assert frame.color is not None and frame.depth is not None
+    focal = float(camera.K[0, 0])
+    return np.logical_or.reduce(
+        [find_own_color(frame.color, frame.depth, hand.points, focal) for hand in hands.values()]
+    )
 
 
 def _has_size_of(hand: DetectedHand, depth: npt.NDArray[np.float32], camera: Camera) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tracker.fitting.options import TrackOptions
 
 MAX_VIEWS = 16
-"""Colour cameras of a run at most; more add time and hardly anything else."""
+"""Cameras of a run at most; more add time and hardly anything else."""
 
 
 def find_tracking_faults(
@@ -27,7 +27,7 @@ def find_tracking_faults(
         options: What somebody chose.
     """
     if options.view_ids or not depth_cameras:
-        faults = _find_view_faults(color_cameras, options)
+        faults = _find_view_faults(depth_cameras if options.use_depth else (), color_cameras, options)
     elif options.camera and options.camera not in depth_cameras:
         faults = [f"Camera {options.camera} has no depth images. Choose {' or '.join(depth_cameras)}."]
     else:
@@ -42,29 +42,32 @@ def find_tracking_faults(
     return faults
 
 
-def _find_view_faults(color_cameras: Sequence[str], options: TrackOptions) -> list[str]:
-    """What keeps colour cameras from being tracked in."""
+def _find_view_faults(depth_cameras: Sequence[str], color_cameras: Sequence[str], options: TrackOptions) -> list[str]:
+    """What keeps several cameras from being tracked in."""
     if not color_cameras:
-        return ["None of its cameras has colour or depth images, so there is nothing to track in."]
-    unknown = [name for name in options.view_ids if name not in color_cameras]
+        return ["None of its cameras has colour images, and hands are found in colour. Choose a single depth camera."]
+    able = sorted({*color_cameras, *depth_cameras})
+    unknown = [name for name in options.view_ids if name not in able]
     if unknown:
         return [
             f"{' and '.join(unknown)} {'are no cameras' if len(unknown) > 1 else 'is no camera'} with colour images of "
-            f"this recording. Choose among {', '.join(color_cameras)}."
+            f"this recording. Choose among {', '.join(able)}."
         ]
     views = options.view_ids or tuple(color_cameras)
     faults = []
+    if not set(views) & set(color_cameras):
+        faults.append(f"{' and '.join(views)} have no colour images, and hands are found in colour. Add one that has.")
     if len(set(views)) < len(views):
-        faults.append(f"Colour cameras were chosen twice ({options.cameras}). Name each once.")
+        faults.append(f"Cameras were chosen twice ({options.cameras}). Name each once.")
     if len(views) > MAX_VIEWS:
         faults.append(
-            f"{len(views)} colour cameras are too many; at most {MAX_VIEWS} are tracked in. Choose those that see the "
+            f"{len(views)} cameras are too many; at most {MAX_VIEWS} are tracked in. Choose those that see the "
             "hands best."
         )
     if not options.use_detector:
-        faults.append("Without depth images hands are found by the hand detector alone. Switch it on.")
+        faults.append("In colour images hands are found by the hand detector alone. Switch it on.")
     if options.is_as_written:
-        faults.append("The method T16 as written needs depth images. Choose Handloom's.")
+        faults.append("The method T16 as written needs one depth camera. Choose Handloom's.")
     return faults
 
 

@@ -34,12 +34,18 @@ class ViewHands:
     """The hands of a recording in the images of one moment.
 
     Attributes:
-        cameras: C of them.
+        cameras: C of them, with colour.
         hands: For each camera, by the name of the hand, what was seen in its image, px as recorded.
     """
 
     cameras: tuple[Camera, ...]
     hands: tuple[Mapping[str, DetectedHand], ...]
+
+    def of_camera(self, camera_id: str) -> Mapping[str, DetectedHand]:
+        """What was seen in a camera's image; nothing in one without colour."""
+        return next(
+            (hands for camera, hands in zip(self.cameras, self.hands, strict=True) if camera.id == camera_id), {}
+        )
 
     def points(self, name: str) -> Array:
         """(21, C, 2) px as recorded; NaN in views that do not see the hand."""
@@ -81,12 +87,14 @@ class ViewHands:
             joined, np.concatenate(directions), np.concatenate(moments), np.ones(len(joined)), reach=reach
         )
 
-    def add_to(self, objective: Objective, scene: Scene, names: tuple[str, ...], reach: float = REACH) -> Objective:
+    def add_to(
+        self, objective: Objective, scene: Scene, names: tuple[str, ...], reach: float = REACH, weight: float = 1.0
+    ) -> Objective:
         """The objective with the joints of all views, the S of [T16] Eq. 19 (`Sightings.add_to` says what differs)."""
         terms = dict(objective.terms)
         for model, name in enumerate(names):
             if self.count(name):
-                terms[f"joints_{name}"] = self.rays(scene, model, name, reach)
+                terms[f"joints_{name}"] = replace(self.rays(scene, model, name, reach), weight=weight)
         return replace(objective, terms=terms)
 
     def measure(self, posed: PosedScene, model: int, name: str) -> Array:

@@ -14,10 +14,10 @@ from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
 from tracker.detection import find_fingertips
 from tracker.fitting.frame_fit import draw, find_residuals
+from tracker.fitting.objective import Objective
 from tracker.fitting.region import region_around
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import find_sightings
-from tracker.fitting.view_hands import ViewHands
 from tracker.geometry import se3
 from tracker.inspection.shown_collisions import ShownCollisions, show_collisions
 from tracker.inspection.shown_contacts import ShownContacts, show_contacts
@@ -31,7 +31,7 @@ from tracker.observation import Observation, observe
 from tracker.physics import find_support
 from tracker.rendering import View, render_view
 from tracker.tracking.as_written import compose_objective
-from tracker.tracking.fit_views import see_hands
+from tracker.tracking.fit_views import compose_near, see_hands
 from tracker.tracking.hold import HoldOptions, with_contacts
 
 Array = npt.NDArray[np.float64]
@@ -81,7 +81,7 @@ class FrameView:
         camera: Camera,
         pose: Array,
         aids: ViewAids,
-        look_in_views: Callable[[PosedScene], ViewHands] | None = None,
+        look_in_views: Callable[[PosedScene], Objective] | None = None,
     ) -> None:
         self.aids = aids
         self.T_world_camera = camera.T_world_camera
@@ -120,8 +120,7 @@ class FrameView:
         """Name of each term of the run to its (M, 2, 3) segments from model to data, world, m."""
         tools, setup = self.aids.tools, self.aids.setup
         if self._look_in_views is not None:
-            joints = self._look_in_views(self._posed).add_to(tools.objective, setup.scene, setup.names)
-            found = find_residuals(self._posed, None, joints)
+            found = find_residuals(self._posed, None, self._look_in_views(self._posed))
             return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}
         if self._seen is None:
             return {}
@@ -209,11 +208,11 @@ def describe_frame(
     aids = aids or ViewAids(setup, camera.T_world_camera)
     if not setup.view_ids:
         return FrameView(frame, camera, pose, aids)
-    cameras = tuple(sequence.camera(camera_id) for camera_id in setup.view_ids)
 
-    def look(posed: PosedScene) -> ViewHands:
-        frames = [sequence.frame(index, camera.id) for camera in cameras]
-        return see_hands(setup, cameras, frames, posed, set())
+    def look(posed: PosedScene) -> Objective:
+        views = setup.read_views(sequence, index)
+        seen = see_hands(setup, views, posed, set())
+        return compose_near(aids.tools.objective, setup, seen, views, posed)
 
     return FrameView(frame, camera, pose, aids, look)
 

@@ -126,8 +126,8 @@ class HandDetector:
 
 
 @cache
-def default_hand_detector() -> HandDetector:
-    """One for the whole process."""
+def default_hand_detector(number: int = 0) -> HandDetector:
+    """One of those of the whole process; a second one looks at another image at the same time."""
     return HandDetector()
 
 

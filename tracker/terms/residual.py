@@ -62,6 +62,36 @@ class Residual(Protocol):
 
 
 @dataclass(frozen=True)
+class JointResidual:
+    """Correspondences of several terms together.
+
+    Attributes:
+        parts: By the name of the term.
+    """
+
+    parts: dict[str, Residual]
+
+    @property
+    def count(self) -> int:
+        return sum(part.count for part in self.parts.values())
+
+    def linearize(self, posed: PosedScene) -> ResidualBlock:
+        blocks = [part.linearize(posed) for part in self.parts.values()]
+        return ResidualBlock(
+            np.concatenate([block.residual for block in blocks]),
+            np.concatenate([block.jacobian for block in blocks]),
+            np.concatenate([block.weights for block in blocks]),
+        )
+
+    def add_to(self, equations: NormalEquations) -> None:
+        for part in self.parts.values():
+            part.add_to(equations)
+
+    def segments(self, posed: PosedScene) -> Array:
+        return np.concatenate([part.segments(posed) for part in self.parts.values()])
+
+
+@dataclass(frozen=True)
 class FrameContext:
     """What is known when correspondences are looked for.
 

@@ -1,4 +1,4 @@
-"""Fit a scene to what several colour views saw at one moment, and judge each hand."""
+"""Fit a scene to what several views saw at one moment, and judge each hand."""
 
 from __future__ import annotations
 
@@ -10,17 +10,23 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
-from tracker.capture.frame import Frame
+from tracker.capture.frame import CameraFrame, Frame
 from tracker.detection.image_hands import name_hands
+from tracker.fitting.depth_view import DepthView
 from tracker.fitting.frame_fit import Fit, FitOptions, fit_frame
+from tracker.fitting.map_views import map_views
 from tracker.fitting.objective import Objective
+from tracker.fitting.region import choose_stride, region_around
 from tracker.fitting.setup import TrackSetup
+from tracker.fitting.sighting import find_hand_pixels
 from tracker.fitting.view_hands import FOLLOWS, HOLDS, REACH, ViewHands
 from tracker.geometry import se3
-from tracker.landmarks import DetectedHand, HandDetector
+from tracker.landmarks import DetectedHand, HandDetector, default_hand_detector
 from tracker.model.scene import PosedScene
-from tracker.observation.image_edges import find_image_edges
+from tracker.observation import observe
+from tracker.observation.image_edges import ImageEdges, find_image_edges
 from tracker.terms.contours import Contours
+from tracker.terms.residual import Term
 from tracker.tracking.recovery import list_hands
 
 Array = npt.NDArray[np.float64]
@@ -33,6 +39,9 @@ ALL_TURNS = (0, 1, 2, 3)
 CONTOUR_ITERATIONS = 4
 """Iterations with contours: they are drawn anew in each, and the joints have brought them near."""
 
+BESIDE_DEPTH = 0.1
+"""Weight of detected joints beside depth images, which tell better where a finger is that they show."""
+
 EDGE_MARGIN = 0.015
 """m around the scene in which edges are looked for."""
 
@@ -43,52 +52,56 @@ MOST = 11
 """So many of the 21 joints are most of a hand."""
 
 
-def see_hands(
-    setup: TrackSetup, cameras: tuple[Camera, ...], frames: Sequence[Frame], posed: PosedScene, gone: set[int]
-) -> ViewHands:
-    """The hands in all views of a moment, looked for where the pose has them, and in whole images where that fails.
+def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene, gone: set[int]) -> ViewHands:
+    """The hands in all colour images of a moment, looked for where the pose has them, else in whole images.
 
     While two views see every hand, one view a frame is looked through for what it does not see, in turn.
 
     Args:
         setup: Models and options.
-        cameras: Of the views.
-        frames: Of the views.
+        views: All.
         posed: Where the hands are expected.
         gone: Hands that nobody knows the place of.
     """
-    detector = setup.hand_detector
-    assert detector is not None, "find_tracking_faults has seen to it"
-    names = setup.hand_names
+    names, threads = setup.hand_names, setup.options.threads
     known = [hand for hand in list_hands(setup) if hand not in gone]
-    seen = []
-    for camera, frame in zip(cameras, frames, strict=True):
-        expected = {setup.names[hand]: _expect(posed, hand, setup.names[hand], camera) for hand in known}
+    looked_at = [view for view in views if view.frame.color is not None]
+
+    def follow(number: int) -> dict[str, DetectedHand]:
+        view = looked_at[number]
+        expected = {setup.names[hand]: _expect(posed, hand, setup.names[hand], view.camera) for hand in known}
         places = {name: hand for name, hand in expected.items() if hand is not None}
-        seen.append(_find(detector, frame, names, places, ()) if places else {})
-    for view, frame in enumerate(frames):
-        is_scarce = any(sum(name in hands for hands in seen) < min(2, len(cameras)) for name in names)
-        if len(seen[view]) < len(names) and (is_scarce or frame.index % len(frames) == view):
+        detector = default_hand_detector(number % threads)
+        return _find(detector, view.frame, names, places, ()) if places else {}
+
+    seen = map_views(follow, range(len(looked_at)), threads)
+    detector = default_hand_detector()
+    for view, frame in enumerate(view.frame for view in looked_at):
+        is_scarce = any(sum(name in hands for hands in seen) < min(2, len(seen)) for name in names)
+        if len(seen[view]) < len(names) and (is_scarce or frame.index % len(seen) == view):
             turns = ALL_TURNS if gone else (0, 1 + frame.index % 3)
             seen[view] = _find(detector, frame, names, seen[view], turns)
-    return ViewHands(cameras, tuple(seen))
+    return ViewHands(tuple(view.camera for view in looked_at), tuple(seen))
 
 
 def fit_views(
-    setup: TrackSetup, objective: Objective, seen: ViewHands, frames: Sequence[Frame], pose: Array, iterations: int
+    setup: TrackSetup, objective: Objective, seen: ViewHands, views: Sequence[CameraFrame], pose: Array, iterations: int
 ) -> Fit:
     """Fit the scene from a pose (D,) to what the views saw.
 
-    First far joints alone count, then near ones with what the run's terms add, at last the contours in the images too.
+    First far joints alone count, then near ones with depth images and what the run's terms add, at last the contours in
+    colour images too.
     """
     scene, names = setup.scene, setup.names
     far = seen.add_to(replace(objective, terms={}), scene, names, FAR_REACH)
     first = fit_frame(scene, None, pose, pose, far, FitOptions(iterations=max(1, iterations // 2), fine=0))
-    near = seen.add_to(objective, scene, names)
+    started = perf_counter()
+    near = compose_near(objective, setup, seen, views, scene.pose_at(first.pose))
+    stages = {"preparing depth": perf_counter() - started}
     second = fit_frame(scene, None, first.pose, pose, near, FitOptions(iterations=iterations))
     started = perf_counter()
-    drawn = add_contours(near, scene.pose_at(second.pose), seen.cameras, frames)
-    stages = {"finding edges": perf_counter() - started}
+    drawn = add_contours(near, scene.pose_at(second.pose), views, setup.options.threads)
+    stages["finding edges"] = perf_counter() - started
     third = fit_frame(scene, None, second.pose, pose, drawn, FitOptions(iterations=CONTOUR_ITERATIONS))
     for fit in (first, second, third):
         for name, seconds in fit.stages.items():
@@ -96,18 +109,35 @@ def fit_views(
     return Fit(third.pose, (*first.costs, *second.costs, *third.costs), stages)
 
 
-def add_contours(
-    objective: Objective, posed: PosedScene, cameras: Sequence[Camera], frames: Sequence[Frame]
-) -> Objective:
+def add_contours(objective: Objective, posed: PosedScene, views: Sequence[CameraFrame], threads: int = 1) -> Objective:
     """The objective with the edges of each image near the scene."""
-    terms = dict(objective.terms)
-    for camera, frame in zip(cameras, frames, strict=True):
-        assert frame.color is not None
-        points, margin = find_place(posed, camera)
-        edges = find_image_edges(frame.color, camera, points, margin) if len(points) else None
-        if edges is not None:
-            terms[f"contours_{camera.id}"] = Contours(edges)
-    return replace(objective, terms=terms)
+
+    def look(view: CameraFrame) -> ImageEdges | None:
+        points, margin = find_place(posed, view.camera)
+        color = view.frame.color
+        return None if color is None or not len(points) else find_image_edges(color, view.camera, points, margin)
+
+    found = zip(views, map_views(look, views, threads), strict=True)
+    own: dict[str, Term] = {f"contours_{view.camera.id}": Contours(edges) for view, edges in found if edges is not None}
+    return replace(objective, terms=objective.terms | own)
+
+
+def compose_near(
+    objective: Objective, setup: TrackSetup, seen: ViewHands, views: Sequence[CameraFrame], posed: PosedScene
+) -> Objective:
+    """The objective with the joints of all views and the depth images of those that have some, around the scene."""
+    depths: dict[str, Term] = {}
+    for camera, frame in ((view.camera, view.frame) for view in views):
+        region = None if frame.depth is None else region_around(posed.vertices, camera)
+        if region is None:
+            continue
+        hands = seen.of_camera(camera.id)
+        if len(hands) == len(setup.hand_names):
+            frame = replace(frame, is_hand=find_hand_pixels(frame, camera, hands))
+        observation = observe(frame, camera, region, setup.preprocessing, choose_stride(region, camera))
+        depths[f"depth_{camera.id}"] = DepthView(observation, Objective().terms)
+    near = seen.add_to(objective, setup.scene, setup.names, weight=BESIDE_DEPTH if depths else 1.0)
+    return replace(near, terms=near.terms | depths)
 
 
 def find_place(posed: PosedScene, camera: Camera) -> tuple[Array, float]:
@@ -138,7 +168,8 @@ def _find(
     before: Mapping[str, DetectedHand],
     turns: tuple[int, ...],
 ) -> dict[str, DetectedHand]:
-    assert frame.color is not None
+    if frame.color is None:
+        return {}
     found = detector.find(frame.color, len(names), [before[name] for name in names if name in before], turns)
     return name_hands(found, names)
 

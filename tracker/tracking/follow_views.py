@@ -20,12 +20,11 @@ def follow_views(
 ) -> tuple[TrackState, FrameResult, ViewHands]:
     """Track the next frame in the views of a run; also what was seen in it."""
     read_at = perf_counter()
-    cameras = tuple(sequence.camera(camera_id) for camera_id in setup.view_ids)
-    frames = [sequence.frame(state.next_frame, camera.id) for camera in cameras]
+    views = setup.read_views(sequence, state.next_frame)
     started = perf_counter()
     scene, hands, gone = setup.scene, list_hands(setup), set(state.gone_hands(setup))
     pose = state.predict(scene)
-    seen = see_hands(setup, cameras, frames, scene.pose_at(pose), gone)
+    seen = see_hands(setup, views, scene.pose_at(pose), gone)
     stages = {"reading": started - read_at, "detecting hands": perf_counter() - started}
     found = set()
     for hand in sorted(gone):
@@ -34,7 +33,7 @@ def follow_views(
             pose[scene.pose_slices[hand]] = placed
             found.add(hand)
     iterations = setup.options.first_iterations if found else setup.options.iterations
-    fit = fit_views(setup, tools.objective, seen, frames, pose, iterations)
+    fit = fit_views(setup, tools.objective, seen, views, pose, iterations)
     pose, posed = fit.pose, scene.pose_at(fit.pose)
     verdicts = {hand: judge_hand(setup, seen, posed, hand) for hand in hands}
     lost = {hand for hand in hands if hand in gone - found or not verdicts[hand][0]}

@@ -12,6 +12,7 @@ from tracker.fitting.calibration import CalibrationFrame, calibrate_shapes
 from tracker.fitting.setup import TrackSetup
 from tracker.model.articulated import ArticulatedModel
 from tracker.search.tools import make_tools
+from tracker.tracking.fit_views import compose_near
 from tracker.tracking.follow_views import follow_views
 from tracker.tracking.state import TrackState
 
@@ -49,9 +50,13 @@ def _calibrate(
             progress("fitting the hand's shape", (index - frames[0]) / (len(frames) + CALIBRATED))
             state, result, seen = follow_views(sequence, setup, tools, state)
             if result.status == "ok" and all(seen.count(name) > 1 for name in setup.hand_names):
-                objective = seen.add_to(tools.objective, setup.scene, setup.names)
-                held.append(CalibrationFrame(None, result.pose, objective=objective))
+                held.append((index, result.pose, seen))
         if not held:
             return setup.models
-        chosen = [held[round(place)] for place in np.linspace(0, len(held) - 1, min(CALIBRATED, len(held)))]
+        chosen = []
+        for place in np.linspace(0, len(held) - 1, min(CALIBRATED, len(held))):
+            index, pose, seen = held[round(place)]
+            views = setup.read_views(sequence, index)
+            objective = compose_near(tools.objective, setup, seen, views, setup.scene.pose_at(pose))
+            chosen.append(CalibrationFrame(None, pose, objective=objective))
         return calibrate_shapes(setup.scene, chosen).models

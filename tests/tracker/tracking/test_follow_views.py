@@ -14,6 +14,7 @@ from tracker.capture.truth import Truth, load_truth
 from tracker.cli.__main__ import main
 from tracker.errors import FrameError
 from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import choose_cameras
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
 from tracker.synthesis.motion import perform
@@ -90,3 +91,36 @@ def test_a_missing_image_of_one_view_is_named(views, tmp_path):
             track_frames(views[0], setup, start, range(3))
     finally:
         hidden.rename(path)
+
+
+def test_depth_and_colour_together_are_better_than_either_alone(tmp_path):
+    """One camera with depth and colour, two with colour alone; the very hand that was drawn."""
+    performance = perform({"right": default_hand("right")}, "open-close", 60, 3, (480, 360))
+    write_recording(performance, tmp_path / "hand", RecordingOptions(range(6)), save_npz_model)
+    description = json.loads((tmp_path / "hand" / "sequence.json").read_text())
+    for camera in description["cameras"][1:]:
+        del camera["depth"], camera["depth_scale"]
+    (tmp_path / "hand" / "sequence.json").write_text(json.dumps(description))
+    sequence, truth = load_sequence(tmp_path / "hand"), load_truth(tmp_path / "hand" / "truth.npz")
+    errors = {}
+    for name, options in {
+        "depth": TrackOptions(calibrate=False, camera="cam0"),
+        "colour": TrackOptions(calibrate=False, cameras="cam1,cam2"),
+        "both": TrackOptions(calibrate=False, cameras="cam0,cam1,cam2", threads=2),
+    }.items():
+        setup, state = start_tracking(sequence, options)
+        assert setup.view_ids == options.view_ids
+        _, chunk = track_frames(sequence, setup, state, range(6))
+        track = join_chunks(sequence, setup, [chunk])
+        assert "lost" not in track.status
+        errors[name] = 1000.0 * np.linalg.norm(track.joints_3d - truth.joints_3d[:6], axis=2).mean()
+    assert errors["both"] < errors["depth"] < errors["colour"], errors
+
+
+def test_a_single_camera_with_depth_is_tracked_as_a_depth_camera(tmp_path):
+    performance = perform({"right": default_hand("right")}, "open-close", 60, 2, (320, 240))
+    write_recording(performance, tmp_path / "hand", RecordingOptions(range(1)), save_npz_model)
+    sequence = load_sequence(tmp_path / "hand")
+    assert choose_cameras(sequence, TrackOptions(cameras="cam1")) == ("cam1", ())
+    assert choose_cameras(sequence, TrackOptions(cameras="cam1", use_depth=False)) == ("cam1", ("cam1",))
+    assert choose_cameras(sequence, TrackOptions(cameras="cam1,cam0")) == ("cam1", ("cam1", "cam0"))

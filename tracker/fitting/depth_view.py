@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from tracker.fitting.frame_fit import look_at
-from tracker.fitting.objective import thin_terms
+from tracker.fitting.objective import Objective, thin_terms
 from tracker.model.scene import PosedScene
 from tracker.observation import Observation
 from tracker.terms.residual import JointResidual, Term
@@ -34,6 +35,12 @@ class DepthView:
         """Look for the correspondences of all terms in this camera's image."""
         own = look_at(posed, self.observation)
         return JointResidual({name: term.find(posed, own) for name, term in self.terms.items()})
+
+    @classmethod
+    def of(cls, observation: Observation, share: float) -> DepthView:
+        """With the usual terms of depth, each at this share of its weight."""
+        terms: dict[str, Any] = dict(Objective().terms)
+        return cls(observation, {name: replace(term, weight=share * term.weight) for name, term in terms.items()})
 
     def coarse(self) -> DepthView:
         return DepthView(self.observation, thin_terms(self.terms))

@@ -52,13 +52,13 @@ def near(truth: np.ndarray, rng: np.random.Generator) -> np.ndarray:
 def test_a_fit_is_the_same_whether_a_depth_image_is_the_frame_or_one_view_of_it(truth, observations, rng):
     start = near(truth, rng)
     alone = fit_frame(SCENE, observations[0], start, start, Objective(), FitOptions())
-    view = DepthView(observations[0], Objective().terms)
+    view = DepthView.of(observations[0], 1.0)
     in_view = fit_frame(SCENE, None, start, start, Objective(terms={"depth": view}), FitOptions())
     np.testing.assert_allclose(in_view.pose, alone.pose, atol=1e-12)
 
 
 def test_correspondences_of_all_views_are_looked_for_by_name(truth, observations):
-    views = {f"depth_{n}": DepthView(seen, Objective().terms) for n, seen in enumerate(observations)}
+    views = {f"depth_{n}": DepthView.of(seen, 1.0) for n, seen in enumerate(observations)}
     posed = SCENE.pose_at(truth)
     found = find_residuals(posed, None, Objective(terms=dict(views)))
     assert list(found) == [f"depth_{n}_{name}" for n in (0, 1) for name in Objective().terms]
@@ -75,7 +75,7 @@ def test_two_depth_images_tell_more_than_one(truth, observations, rng):
     start = near(truth, rng)
     errors = []
     for count in (1, 2):
-        terms = {f"depth_{n}": DepthView(seen, Objective().terms) for n, seen in enumerate(observations[:count])}
+        terms = {f"depth_{n}": DepthView.of(seen, 1.0) for n, seen in enumerate(observations[:count])}
         pose = fit_frame(SCENE, None, start, start, Objective(terms=dict(terms)), FitOptions(iterations=20)).pose
         apart = SCENE.pose_at(pose).landmarks(0) - SCENE.pose_at(truth).landmarks(0)
         errors.append(1000.0 * float(np.linalg.norm(apart, axis=1).mean()))

@@ -1,4 +1,4 @@
-"""Cameras calibrated from filmed boards."""
+"""Cameras calibrated from filmed boards, and imports that take theirs from them."""
 
 from __future__ import annotations
 
@@ -37,8 +37,10 @@ def upgrade() -> None:
         sa.CheckConstraint("state IN ('checked', 'refused')", name="ck_calibrations_state"),
     )
     op.create_index("ix_calibrations_created_at_id", "calibrations", ["created_at", "id"])
+    op.add_column("imports", sa.Column("calibration_id", sa.Uuid(), nullable=True))
 
 
 def downgrade() -> None:
+    op.drop_column("imports", "calibration_id")
     op.drop_index("ix_calibrations_created_at_id", "calibrations")
     op.drop_table("calibrations")

@@ -120,3 +120,33 @@ def test_a_cancelled_job_goes_on_with_the_corners_it_has(bench: ScanBench, clien
     assert sum(line.startswith("cam0: the board was found") for line in bench.log(job_id)) == 1
     retry = client.post(f"{API}/jobs/{job_id}/retry")
     assert retry.status_code == 422 and "calibrated already" in retry.json()["detail"]
+
+
+def test_an_import_takes_the_cameras_of_a_kept_calibration(bench: ScanBench, client: TestClient) -> None:
+    films = render_films()
+    calibration = send(client, films)
+    sent = client.post(f"{API}/imports", files=[("files", film) for film in films.items()]).json()
+    place = f"{API}/imports/{sent['id']}"
+    assert sent["state"] == "refused" and sent["calibration_id"] is None
+    assert "2 videos and no calibration" in sent["report"]["problems"][0]
+    too_early = client.put(f"{place}/calibration", json={"calibration_id": calibration})
+    assert too_early.status_code == 404 and "not calibrated yet" in too_early.json()["detail"]
+    assert client.get(place).json() == sent
+    job_id = start(client, calibration)
+    bench.start_worker()
+    bench.wait_for_end(job_id)
+    taken = client.put(f"{place}/calibration", json={"calibration_id": calibration}).json()
+    assert (taken["state"], taken["calibration_id"]) == ("checked", calibration), taken["report"]
+    assert taken["report"]["format"] == "synced_videos"
+    given_up = client.put(f"{place}/calibration", json={"calibration_id": None}).json()
+    assert (given_up["state"], given_up["calibration_id"]) == ("refused", None)
+    client.put(f"{place}/calibration", json={"calibration_id": calibration})
+    recording = client.post(f"{place}/confirm", json={"name": "hands"}).json()
+    cameras = client.get(f"{API}/sequences/{recording['id']}").json()["cameras"]
+    found = parse_anipose(client.get(f"{API}/calibrations/{calibration}/files/cameras.toml").content, "c.toml")
+    for camera, own in zip(cameras, found, strict=True):
+        assert camera["id"] == own.name
+        np.testing.assert_allclose(camera["K"], own.K)
+        np.testing.assert_allclose(camera["T_world_camera"], own.find_pose(1.0), atol=1e-9)
+    late = client.put(f"{place}/calibration", json={"calibration_id": None})
+    assert late.status_code == 409

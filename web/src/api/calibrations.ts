@@ -1,7 +1,7 @@
 /** Cameras calibrated from filmed boards. */
 
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
-import { API, request, upload } from "./client";
+import { API, fetchBytes, request, upload } from "./client";
 import type { DroppedFile } from "./imports";
 import { jobKeys } from "./jobs";
 import { fetchAll } from "./recordings";
@@ -83,6 +83,13 @@ export const coverageUrl = (id: string, camera: number): string => `${API}/calib
 /** The board as a page to print, or as a picture. */
 export const boardUrl = (board: BoardOptions, kind: "pdf" | "png"): string =>
   `${API}/calibrations/board.${kind}?${new URLSearchParams(Object.entries(board).map(([name, value]) => [name, String(value)]))}`;
+
+/** Why there is no such board, in the server's words. */
+export const askBoardFault = (board: BoardOptions): Promise<string> =>
+  fetchBytes(boardUrl(board, "png")).then(
+    () => "The picture could not be shown; the board is possible.",
+    (failure: Error) => failure.message,
+  );
 
 export function sendFilms(
   files: readonly DroppedFile[],

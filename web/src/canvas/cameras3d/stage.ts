@@ -25,7 +25,7 @@ export interface CamerasStage {
 
 const FIELD_DEG = 40;
 export const BOARD_COLORS = { fitted: "#5fae63", leftOut: "#b08cff" } as const;
-const DIRECTIONS = { behind: new Vector3(0.5, 0.7, 1), above: new Vector3(0, 1, 0.001), side: new Vector3(1, 0.15, 0) } as const;
+const DIRECTIONS = { behind: new Vector3(0.35, 0.6, 1), above: new Vector3(0, 1, 0.001), side: new Vector3(1, 0.15, 0) } as const;
 
 export function createCamerasStage(canvas: HTMLCanvasElement): CamerasStage {
   const renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -47,9 +47,13 @@ export function createCamerasStage(canvas: HTMLCanvasElement): CamerasStage {
   };
   controls.addEventListener("change", later);
 
-  function lookFrom(side: keyof typeof DIRECTIONS): void {
+  const fitDistance = (): number => {
     const half = (FIELD_DEG * Math.PI) / 360;
-    const distance = (1.02 * radius) / Math.sin(Math.atan(Math.tan(half) * Math.min(1, eye.aspect)));
+    return (0.95 * radius) / Math.sin(Math.atan(Math.tan(half) * Math.min(1, eye.aspect)));
+  };
+
+  function lookFrom(side: keyof typeof DIRECTIONS): void {
+    const distance = fitDistance();
     controls.target.set(0, 0, 0);
     eye.position.copy(DIRECTIONS[side].clone().normalize().multiplyScalar(distance));
     eye.near = distance / 100;
@@ -93,8 +97,11 @@ export function createCamerasStage(canvas: HTMLCanvasElement): CamerasStage {
     lookFrom,
     resize(width, height) {
       renderer.setSize(width, height, false);
+      const before = fitDistance();
       eye.aspect = width / Math.max(1, height);
       eye.updateProjectionMatrix();
+      eye.position.sub(controls.target).multiplyScalar(fitDistance() / before).add(controls.target);
+      controls.update();
       draw();
     },
     stop() {

@@ -2,7 +2,7 @@ import { Button, Checkbox, Group, NumberInput, SegmentedControl, Select, SimpleG
 import { IconDownload } from "@tabler/icons-react";
 import { useDebouncedValue } from "@mantine/hooks";
 import { useState } from "react";
-import { boardUrl, type BoardOptions, type CalibrationForm } from "../../api/calibrations";
+import { askBoardFault, boardUrl, type BoardOptions, type CalibrationForm } from "../../api/calibrations";
 import { formatNumber } from "../../model/format";
 import classes from "./calibrations.module.css";
 
@@ -18,14 +18,15 @@ const plain = (name: string): string => name.replace(/^DICT_/, "");
 function BoardPicture({ board }: { board: BoardOptions }) {
   const [settled] = useDebouncedValue(board, 250);
   const address = boardUrl(settled, "png");
-  const [broken, setBroken] = useState<string | null>(null);
-  if (broken === address)
+  const [fault, setFault] = useState<{ address: string; said: string } | null>(null);
+  const ask = (): void => void askBoardFault(settled).then((said) => setFault({ address, said }));
+  if (fault?.address === address)
     return (
-      <Text size="sm" c="var(--bad-text)" role="alert">
-        There is no such board: the counts, the sizes or the family of its markers do not go together.
+      <Text size="sm" c="var(--bad-text)" role="alert" mih={240}>
+        {fault.said}
       </Text>
     );
-  return <img key={address} src={address} alt={`The board: ${board.columns} by ${board.rows}`} className={classes.board} onError={() => setBroken(address)} />;
+  return <img key={address} src={address} alt={`The board: ${board.columns} by ${board.rows}`} className={classes.board} onError={ask} />;
 }
 
 /** Which board was filmed; printed from here it is the same. */

@@ -1,6 +1,6 @@
 import { Button, Group, Menu, SimpleGrid, Skeleton, Stack, Text, Title } from "@mantine/core";
 import { IconChevronDown, IconCircleCheck, IconDownload } from "@tabler/icons-react";
-import { calibrationFileUrl, coverageUrl, usePlacedBoards, type BoardOptions, type Calibration, type CalibrationResult as Result } from "../../api/calibrations";
+import { calibrationFileUrl, usePlacedBoards, type BoardOptions, type Calibration, type CalibrationResult as Result } from "../../api/calibrations";
 import { formatCount } from "../../model/format";
 import { Fact } from "../parts/Fact";
 import { Sentences } from "../parts/Sentences";
@@ -8,6 +8,7 @@ import { BoardPlot } from "./BoardPlot";
 import classes from "./calibrations.module.css";
 import { Cameras3d } from "./Cameras3d";
 import { CameraTable, sayResidual } from "./CameraTable";
+import { Coverage } from "./Coverage";
 
 const FILES: Readonly<Record<string, string>> = {
   "cameras.toml": "Anipose (.toml)",
@@ -84,24 +85,12 @@ export function CalibrationResult({ calibration, result }: { calibration: Calibr
         </section>
         <section aria-label="By moment">
           <Title order={2} mb="sm">
-            By moment
+            By moment, px by second
           </Title>
           {boards ? <BoardPlot result={result} boards={boards} /> : <Skeleton height={360} radius="lg" />}
         </section>
       </div>
-      <section aria-label="Where the board was seen">
-        <Title order={2}>Where the board was seen</Title>
-        <Text size="sm" className="quiet" mb="sm">
-          Where no dots are, the lens is a guess. A struck cell never saw a corner.
-        </Text>
-        <SimpleGrid cols={{ base: 1, sm: 2, lg: 3 }} spacing="md">
-          {result.cameras.map(({ id }, number) => (
-            <a key={id} href={coverageUrl(calibration.id, number)} target="_blank" rel="noreferrer" title="Open this picture alone">
-              <img src={coverageUrl(calibration.id, number)} alt={`Where ${id} saw the board`} className={classes.coverage} loading="lazy" />
-            </a>
-          ))}
-        </SimpleGrid>
-      </section>
+      <Coverage id={calibration.id} result={result} />
     </Stack>
   );
 }

@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session
 
 from server.accounts.audit import record_act
 from server.accounts.service import ReviewerAccount
+from server.calibrations.service import get_calibration
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import StudioError, error_responses
@@ -151,6 +152,7 @@ def create_calibrate_job(
     body: CalibrateCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
 ) -> JobOut:
     """Calibrate cameras from what they filmed of a board."""
+    get_calibration(session, body.calibration_id)
     job = make_calibrate_job(session, storage, body.calibration_id, account.id)
     record_act(session, account.id, "job.start", "job", job.id)
     return describe_job(session, job)

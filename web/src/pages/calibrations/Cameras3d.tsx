@@ -31,7 +31,7 @@ export function Cameras3d({ result, boards, boardSize }: Cameras3dProps) {
     });
   }, [stage, result, boards, width, height]);
   return (
-    <div ref={holder} className={classes.stage} role="img" aria-label={`${result.cameras.length} cameras and ${boards.length} places of the board in space`} data-ready={stage !== null}>
+    <div ref={holder} className={classes.stage} role="group" aria-label={`${result.cameras.length} cameras and ${boards.length} places of the board in space`} data-ready={stage !== null}>
       <canvas ref={canvas} aria-hidden />
       <div className={classes.sides} role="group" aria-label="Look from">
         {SIDES.map(([side, name]) => (

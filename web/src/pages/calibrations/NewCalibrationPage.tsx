@@ -82,14 +82,18 @@ export default function NewCalibrationPage() {
   if (!form) return <PageSkeleton />;
   return (
     <div className="page">
-      <Title order={1}>Calibrate cameras</Title>
-      <Text className="quiet" mt={4} mb="lg" maw={880}>
-        Let all cameras film while somebody moves a board slowly through the place where the hands will be: tilted in several directions, near and far, into the corners of every picture, and for a while where two cameras see it at once. Half a
-        minute is enough.{" "}
-        <Link to="/calibrations" className={classes.link}>
+      <Group justify="space-between" mb="lg" align="flex-start" wrap="nowrap">
+        <div style={{ minWidth: 0 }}>
+          <Title order={1}>Calibrate cameras</Title>
+          <Text className="quiet" mt={4} maw={880}>
+            Let all cameras film while somebody moves a board slowly through the place where the hands will be: tilted in several directions, near and far, into the corners of every picture, and for a while where two cameras see it at once. Half a
+            minute is enough.
+          </Text>
+        </div>
+        <Button variant="default" component={Link} to="/calibrations" style={{ flexShrink: 0 }}>
           All calibrations
-        </Link>
-      </Text>
+        </Button>
+      </Group>
       {upload.sent === null ? <Choosing form={form} upload={upload} /> : <Sending upload={upload} />}
     </div>
   );

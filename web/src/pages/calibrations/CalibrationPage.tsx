@@ -1,15 +1,30 @@
 import { Button, Group, Text, Title } from "@mantine/core";
 import { useEffect } from "react";
-import { Link, useParams } from "react-router";
-import { useCalibration } from "../../api/calibrations";
+import { Link, useNavigate, useParams } from "react-router";
+import { useCalibration, useCheckFilms, type Calibration } from "../../api/calibrations";
 import { isActive, useJob } from "../../api/jobs";
 import { formatAgo, formatBytes, formatCount } from "../../model/format";
 import { Failure } from "../parts/Failure";
+import { For } from "../parts/For";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { useTitle } from "../parts/useTitle";
+import { tellFailure } from "../projects/offerUndo";
 import { CalibrationResult, Downloads } from "./CalibrationResult";
 import { FilmsChecked } from "./FilmsChecked";
 import { Working } from "./Working";
+
+/** What has a result stays as it is: the same films with other options are another calibration. */
+function Again({ calibration }: { calibration: Calibration }) {
+  const check = useCheckFilms(calibration.id);
+  const navigate = useNavigate();
+  return (
+    <For role="lead">
+      <Button variant="default" loading={check.isPending} onClick={() => check.mutate(calibration.options, { onSuccess: ({ id }) => void navigate(`/calibrations/${id}`), onError: tellFailure })}>
+        With other options …
+      </Button>
+    </For>
+  );
+}
 
 /** One calibration: its films and what is wrong with them, then the job, then the cameras. The address can be sent to a colleague. */
 export default function CalibrationPage() {
@@ -47,6 +62,7 @@ export default function CalibrationPage() {
           <Button variant="default" component={Link} to="/calibrations">
             All calibrations
           </Button>
+          {result && <Again calibration={calibration} />}
           {result && <Downloads id={calibration.id} result={result} />}
         </Group>
       </Group>

@@ -10,13 +10,13 @@ const BAD_PX = 1;
 /** "0.31 / 0.22": rms and median. */
 export const sayResidual = ({ rms, median }: Residual): string => (rms === null ? "–" : `${formatNumber(rms, 2)} / ${formatNumber(median, 2)}`);
 
-const isBad = ({ median }: Residual): boolean => median !== null && median > BAD_PX;
-
-function Cell({ residual }: { residual: Residual }) {
+/** Marked where the tracker names a camera: moments left out are what it is judged by. */
+function Cell({ residual, isJudged = false }: { residual: Residual; isJudged?: boolean }) {
+  const isBad = isJudged && residual.median !== null && residual.median > BAD_PX;
   return (
-    <Table.Td ta="right" c={isBad(residual) ? "var(--bad-text)" : undefined} fw={isBad(residual) ? 600 : undefined}>
+    <Table.Td ta="right" c={isBad ? "var(--bad-text)" : undefined} fw={isBad ? 600 : undefined}>
       {sayResidual(residual)}
-      {isBad(residual) && " !"}
+      {isBad && " !"}
     </Table.Td>
   );
 }
@@ -54,7 +54,7 @@ export function CameraTable({ result }: { result: CalibrationResult }) {
                 {camera.frames_with_board} of {camera.frames}
               </Table.Td>
               <Cell residual={camera.residual_px.fitted} />
-              <Cell residual={camera.residual_px.left_out} />
+              <Cell residual={camera.residual_px.left_out} isJudged />
               <Cell residual={camera.residual_px.by_other_cameras} />
               <Table.Td ta="right">{camera.time_offset.known ? formatNumber(camera.time_offset.frames, 2) : "not told"}</Table.Td>
               <Table.Td ta="right">{camera.time_offset.known ? formatNumber(1000 * camera.time_offset.seconds) : "–"}</Table.Td>

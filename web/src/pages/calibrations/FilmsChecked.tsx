@@ -1,4 +1,4 @@
-import { Button, Group, Stack, Table, Text, Title } from "@mantine/core";
+import { Button, Group, Skeleton, Stack, Table, Text, Title } from "@mantine/core";
 import { useState } from "react";
 import { useCalibrationForm, useCheckFilms, useStartCalibrating, type Calibration, type FilmReport } from "../../api/calibrations";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
@@ -73,6 +73,9 @@ export function FilmsChecked({ calibration }: { calibration: Calibration }) {
           </section>
         )}
         <OptionsForm options={draft} onChange={setDraft} />
+      </Stack>
+      {form ? <BoardForm form={form} board={draft.board} onChange={(board) => setDraft({ ...draft, board })} /> : <Skeleton height={640} radius="lg" />}
+      <Stack gap="md">
         {check.error && <Refusal error={check.error} after="Nothing was changed." />}
         {!isChanged && <Obstacles check={count === 0 ? obstacles.data : undefined} failure={start.error} />}
         <Group justify="flex-end" gap="sm">
@@ -88,7 +91,6 @@ export function FilmsChecked({ calibration }: { calibration: Calibration }) {
           </For>
         </Group>
       </Stack>
-      {form && <BoardForm form={form} board={draft.board} onChange={(board) => setDraft({ ...draft, board })} />}
     </div>
   );
 }

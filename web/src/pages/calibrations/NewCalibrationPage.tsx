@@ -51,6 +51,9 @@ function Choosing({ form, upload }: { form: CalibrationForm; upload: FilmUpload 
         <Stack gap="md">
           <FilmChoice films={upload.films} lenses={upload.lenses} mostCameras={form.most_cameras} onFilms={(films) => changeFilmUpload({ films })} onLenses={(lenses) => changeFilmUpload({ lenses })} />
           <OptionsForm options={options} onChange={(next) => changeFilmUpload({ options: next })} />
+        </Stack>
+        <BoardForm form={form} board={options.board} onChange={(board) => changeFilmUpload({ options: { ...options, board } })} />
+        <Stack gap="md">
           {upload.films.length > 0 && <Sentences title="Before the films can be sent" sentences={faults} isProblem />}
           {upload.failure && <Refusal error={upload.failure} after="Nothing was kept; what you chose is still here." />}
           <Group align="flex-end" gap="sm" className={`card ${classes.card}`}>
@@ -60,7 +63,6 @@ function Choosing({ form, upload }: { form: CalibrationForm; upload: FilmUpload 
             </Button>
           </Group>
         </Stack>
-        <BoardForm form={form} board={options.board} onChange={(board) => changeFilmUpload({ options: { ...options, board } })} />
       </div>
     </form>
   );

@@ -49,7 +49,8 @@ export function createCamerasStage(canvas: HTMLCanvasElement): CamerasStage {
 
   const fitDistance = (): number => {
     const half = (FIELD_DEG * Math.PI) / 360;
-    return (0.95 * radius) / Math.sin(Math.atan(Math.tan(half) * Math.min(1, eye.aspect)));
+    const room = eye.aspect < 1.2 ? 1.15 : 0.95; // names stand out of the ball where it fills the width
+    return (room * radius) / Math.sin(Math.atan(Math.tan(half) * Math.min(1, eye.aspect)));
   };
 
   function lookFrom(side: keyof typeof DIRECTIONS): void {

@@ -19,14 +19,14 @@ export function Coverage({ id, result }: { id: string; result: CalibrationResult
       <Text size="sm" className="quiet" mb="sm">
         A struck cell never saw a corner: there the lens is a guess.{" "}
         {LEVELS.map(([color, words]) => (
-          <span key={words} style={{ marginRight: 12, whiteSpace: "nowrap" }}>
+          <span key={words} style={{ display: "inline-block", marginRight: 12 }}>
             <span aria-hidden style={{ color }}>
               ●
             </span>{" "}
             {words}
           </span>
         ))}
-        <span style={{ whiteSpace: "nowrap" }}>○ left out</span>
+        <span style={{ display: "inline-block" }}>○ left out</span>
       </Text>
       <SimpleGrid cols={{ base: 1, sm: 2, lg: 3 }} spacing="md">
         {result.cameras.map(({ id: camera, frames, frames_with_board: seen }, number) => (

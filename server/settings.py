@@ -75,7 +75,7 @@ class Settings(BaseSettings):
     abandoned_import_hours: float = Field(
         default=24.0,
         gt=0,
-        description="Hours after which an unconfirmed upload is removed, when the server starts.",
+        description="Hours after which an unconfirmed upload, or films that nobody uses, are removed at the start.",
     )
     image_cache_mb: int = Field(
         default=256, ge=0, description="Memory in MB for images that had to be encoded for the browser."

@@ -11,17 +11,20 @@ from typing import TYPE_CHECKING, Any
 from tracker.kernel_cache import use_kernel_cache
 
 if TYPE_CHECKING:
-    from tracker.calibration.board import Board
+    from tracker.calibration.board import BOARD_KINDS, Board, list_dictionaries
     from tracker.calibration.board_file import read_board
+    from tracker.calibration.board_pattern import draw_board
     from tracker.calibration.board_pdf import make_board_pdf
     from tracker.calibration.calibrate import CalibrationOptions, calibrate_cameras
-    from tracker.calibration.calibration_output import write_calibration
+    from tracker.calibration.calibration_output import encode_cameras, encode_report, write_calibration
     from tracker.calibration.calibration_report import describe_calibration, say_calibration
     from tracker.calibration.camera_calibration import CameraCalibration
-    from tracker.calibration.camera_source import CameraSource, find_sources
+    from tracker.calibration.camera_source import MAX_CAMERAS, CameraSource, find_sources, open_source
     from tracker.calibration.coverage import encode_coverage
+    from tracker.calibration.film_folder import FilmFolder, list_films
     from tracker.calibration.known_lenses import load_lenses
     from tracker.calibration.sightings import Sightings, find_sightings
+    from tracker.calibration.source_check import SourceCheck, check_sources
     from tracker.capture.annotations import Annotation, Annotations, load_annotations, save_annotations
     from tracker.capture.archive import ArchiveLimits, extract_archive
     from tracker.capture.camera import Camera
@@ -151,6 +154,9 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Board": "tracker.calibration.board",
+    "BOARD_KINDS": "tracker.calibration.board",
+    "list_dictionaries": "tracker.calibration.board",
+    "draw_board": "tracker.calibration.board_pattern",
     "read_board": "tracker.calibration.board_file",
     "make_board_pdf": "tracker.calibration.board_pdf",
     "CalibrationOptions": "tracker.calibration.calibrate",
@@ -158,12 +164,20 @@ _HOMES = {
     "CameraCalibration": "tracker.calibration.camera_calibration",
     "describe_calibration": "tracker.calibration.calibration_report",
     "say_calibration": "tracker.calibration.calibration_report",
+    "encode_cameras": "tracker.calibration.calibration_output",
+    "encode_report": "tracker.calibration.calibration_output",
     "write_calibration": "tracker.calibration.calibration_output",
     "encode_coverage": "tracker.calibration.coverage",
     "CameraSource": "tracker.calibration.camera_source",
+    "MAX_CAMERAS": "tracker.calibration.camera_source",
+    "open_source": "tracker.calibration.camera_source",
     "find_sources": "tracker.calibration.camera_source",
     "Sightings": "tracker.calibration.sightings",
     "find_sightings": "tracker.calibration.sightings",
+    "SourceCheck": "tracker.calibration.source_check",
+    "check_sources": "tracker.calibration.source_check",
+    "FilmFolder": "tracker.calibration.film_folder",
+    "list_films": "tracker.calibration.film_folder",
     "load_lenses": "tracker.calibration.known_lenses",
     "DETECTOR_LABEL": "tracker.detection.image_hands",
     "find_image_hands": "tracker.detection.image_hands",
@@ -334,6 +348,7 @@ _HOMES = {
 }
 
 __all__ = [
+    "BOARD_KINDS",
     "DETECTOR_LABEL",
     "EXPORT_KINDS",
     "HAND_EDGES",
@@ -344,6 +359,7 @@ __all__ = [
     "JUDGING",
     "LABEL_FORMATS",
     "LONGEST_SCENE",
+    "MAX_CAMERAS",
     "MIN_FIT_JOINTS",
     "PRESETS",
     "SCAN_SUFFIXES",
@@ -368,6 +384,7 @@ __all__ = [
     "DetectedHand",
     "Evaluation",
     "ExportedLabels",
+    "FilmFolder",
     "Frame",
     "FrameError",
     "FrameResult",
@@ -398,6 +415,7 @@ __all__ = [
     "Sequence",
     "SequenceError",
     "Sightings",
+    "SourceCheck",
     "StreamProbe",
     "Track",
     "TrackChunk",
@@ -418,6 +436,7 @@ __all__ = [
     "articulated_of",
     "calibrate_cameras",
     "check_import",
+    "check_sources",
     "choose_held_out",
     "choose_sources",
     "choose_views",
@@ -429,9 +448,12 @@ __all__ = [
     "describe_frame",
     "describe_origin",
     "detect_hands",
+    "draw_board",
     "draw_item",
+    "encode_cameras",
     "encode_coverage",
     "encode_jpeg",
+    "encode_report",
     "evaluate_track",
     "export_labels",
     "export_track",
@@ -458,6 +480,8 @@ __all__ = [
     "join_chunks",
     "join_recorded_hands",
     "keep_joints",
+    "list_dictionaries",
+    "list_films",
     "list_image_names",
     "load_annotations",
     "load_blend_model",
@@ -478,6 +502,7 @@ __all__ = [
     "measure_model",
     "measure_size",
     "mirror_blend",
+    "open_source",
     "pack_arrays",
     "pack_files",
     "plan_start",

@@ -15,6 +15,10 @@ from server.annotations.service import find_annotated_frames
 from server.app import health
 from server.bin import routes as bin_routes
 from server.bin.kinds import BinKind
+from server.calibrations import board_routes
+from server.calibrations import routes as calibrations
+from server.calibrations.bin import CALIBRATIONS
+from server.calibrations.lifespan import clean_films
 from server.decisions import routes as decisions
 from server.detectors import routes as detectors
 from server.detectors.bin import DETECTORS
@@ -62,6 +66,8 @@ ROUTERS: tuple[APIRouter, ...] = (
     people_routes.router,
     hand_models.router,
     detectors.router,
+    board_routes.router,
+    calibrations.router,
     sequences.router,
     frame_routes.router,
     annotations.router,
@@ -90,7 +96,7 @@ ROUTERS: tuple[APIRouter, ...] = (
 PAGE_ROUTERS: tuple[APIRouter, ...] = (viewer.page_router,)
 """Those with addresses of their own, such as the viewer's page."""
 
-LIFESPANS: tuple[Lifespan, ...] = (clean_imports, viewer.lifespan)
+LIFESPANS: tuple[Lifespan, ...] = (clean_imports, clean_films, viewer.lifespan)
 """Entered in this order when the app starts (database and storage are there), left in reverse when it stops."""
 
 SEQUENCE_FACTS: tuple[FactFinder, ...] = (find_annotated_frames, find_best_tracks)
@@ -102,7 +108,16 @@ SCAN_FACTS: tuple[ScanFactFinder, ...] = (find_newest,)
 SCAN_RESIZED: tuple[Resized, ...] = (settle_current,)
 """What rooms above the scans do when the size of one was corrected."""
 
-BIN_KINDS: tuple[BinKind, ...] = (RECORDINGS, TRACKS, SCANS, HAND_MODELS, DETECTORS, PROJECTS, REPLICA_SETS)
+BIN_KINDS: tuple[BinKind, ...] = (
+    RECORDINGS,
+    TRACKS,
+    SCANS,
+    HAND_MODELS,
+    DETECTORS,
+    CALIBRATIONS,
+    PROJECTS,
+    REPLICA_SETS,
+)
 """What is put into the bin instead of being destroyed."""
 
 PLACE_GUARDS: tuple[PlaceGuard, ...] = (ASSIGNMENTS,)

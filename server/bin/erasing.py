@@ -42,6 +42,7 @@ FOLDERS = {
     "registrations": "registrations",
     "hand_models": "models",
     "detectors": "detectors",
+    "calibrations": "calibrations",
     "jobs": "jobs",
     "imports": "uploads",
 }

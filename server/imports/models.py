@@ -26,6 +26,8 @@ class ImportRow(Base):
     file_count: Mapped[int]
     byte_count: Mapped[int] = mapped_column(BigInteger)
     sequence_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("sequences.id"))
+    calibration_id: Mapped[uuid.UUID | None]
+    """The kept calibration whose cameras lie beside the files."""
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     updated_at: Mapped[datetime] = mapped_column(default=utc_now)
     created_by: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))

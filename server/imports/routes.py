@@ -19,6 +19,7 @@ from server.imports.models import ImportRow
 from server.imports.pictures import make_picture
 from server.imports.schemas import (
     OPTIONS_HELP,
+    ImportCalibration,
     ImportCheck,
     ImportConfirm,
     ImportField,
@@ -27,6 +28,7 @@ from server.imports.schemas import (
     SensorPresetOut,
 )
 from server.imports.service import ImportDesk
+from server.imports.taken_cameras import take_cameras
 from server.sequences.facts import FactsDep, describe_sequences
 from server.sequences.schemas import SequenceOut
 from server.storage import StorageDep
@@ -125,6 +127,14 @@ def get_import_picture(
 def check_import(import_id: uuid.UUID, body: ImportCheck, desk: DeskDep) -> ImportRow:
     """Check again with other options."""
     return service.check_again(desk, import_id, body.options)
+
+
+@router.put(
+    "/{import_id}/calibration", response_model=ImportOut, dependencies=by_lead, responses=error_responses(404, 409)
+)
+def take_import_cameras(import_id: uuid.UUID, body: ImportCalibration, desk: DeskDep) -> ImportRow:
+    """Take the cameras of videos from a kept calibration, and check again."""
+    return take_cameras(desk, import_id, body.calibration_id)
 
 
 @router.post("/{import_id}/confirm", status_code=201, dependencies=by_lead, responses=error_responses(404, 409))

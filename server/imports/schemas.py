@@ -32,6 +32,7 @@ class ImportOut(BaseModel):
     file_count: int
     byte_count: int
     sequence_id: uuid.UUID | None = Field(description="The recording that it has become.")
+    calibration_id: uuid.UUID | None = Field(description="The kept calibration that its cameras are taken from.")
     created_at: datetime
 
 
@@ -41,6 +42,14 @@ class ImportCheck(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     options: Options = Field(description=OPTIONS_HELP)
+
+
+class ImportCalibration(BaseModel):
+    """Where the cameras are to come from."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    calibration_id: uuid.UUID | None = Field(description="A finished calibration; null: the files that came along.")
 
 
 class ImportConfirm(BaseModel):

@@ -112,7 +112,7 @@ def get_import(desk: ImportDesk, import_id: uuid.UUID) -> ImportRow:
 
 def check_again(desk: ImportDesk, import_id: uuid.UUID, options: dict[str, Any]) -> ImportRow:
     """Look at an upload with other options."""
-    row = _get_open(desk, import_id)
+    row = get_open(desk, import_id)
     ImportOptions.from_json(options)
     name = (options.get("name") or row.name).strip()
     report = _check(desk, import_id, options, name)
@@ -220,7 +220,7 @@ def import_recording(
 
 def drop_import(desk: ImportDesk, import_id: uuid.UUID) -> None:
     """Forget an upload."""
-    _get_open(desk, import_id)
+    get_open(desk, import_id)
     with desk.database.writing() as session:
         session.execute(delete(ImportRow).where(ImportRow.id == import_id, ImportRow.state != "confirmed"))
     drop_files(desk, import_id)
@@ -292,7 +292,7 @@ def _clean(report: ImportReport, source: Path) -> dict[str, Any]:
     return json.loads(text.replace(json.dumps(f"{source}/")[1:-1], ""))
 
 
-def _get_open(desk: ImportDesk, import_id: uuid.UUID) -> ImportRow:
+def get_open(desk: ImportDesk, import_id: uuid.UUID) -> ImportRow:
     row = get_import(desk, import_id)
     if row.state == "confirmed":
         raise ConflictError("The upload has become a recording already. Change or delete the recording instead.")

@@ -8,6 +8,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.accounts.service import find_names
+from server.jobs.calibrating import KIND
 from server.jobs.models import JobRow, WorkerRow
 from server.jobs.schemas import JobOut, JobWorker
 from server.jobs.service import FRAME_KINDS
@@ -31,7 +32,7 @@ def describe_jobs(session: Session, rows: Sequence[JobRow]) -> list[JobOut]:
             {field: getattr(row, field) for field in own}
             | {
                 "title": row.title if row.sequence_id is None else recordings[row.sequence_id],
-                "unit": "frames" if row.kind in FRAME_KINDS else "scans",
+                "unit": "frames" if row.kind in FRAME_KINDS else "cameras" if row.kind == KIND else "scans",
                 "created_by_name": people.get(row.created_by),
                 "worker": _describe_worker(workers.get(row.worker_id)) if row.worker_id is not None else None,
             }

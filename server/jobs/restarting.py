@@ -6,6 +6,7 @@ import uuid
 
 from sqlalchemy.orm import Session
 
+from server.jobs.calibrating import KIND, find_calibrate_obstacles, read_calibration_id
 from server.jobs.files import JobFiles
 from server.jobs.making import list_job_scans
 from server.jobs.models import JobRow
@@ -13,6 +14,7 @@ from server.jobs.obstacles import find_detect_obstacles, find_model_obstacles, f
 from server.jobs.schemas import LoopCreate, RestartCheck, TrainCreate
 from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles
 from server.storage import Storage
+from tracker import say_count
 
 ACTS = ("retry", "resume")
 
@@ -31,6 +33,8 @@ def find_restart_obstacles(session: Session, storage: Storage, job: JobRow) -> l
     if job.kind == "detect":
         assert job.sequence_id is not None, "a detecting job has a recording"
         return find_detect_obstacles(session, job.sequence_id)
+    if job.kind == KIND:
+        return find_calibrate_obstacles(session, storage, read_calibration_id(job), again=True)
     if job.kind == "register":
         return find_model_obstacles(session, storage, uuid.UUID(job.params["model_id"]), deleted_too=True)
     if job.kind == "train":
@@ -50,7 +54,10 @@ def list_kept(storage: Storage, job: JobRow) -> list[str]:
         return _list_kept_of_tracking(storage, job)
     if job.kind == "detect":
         return _list_kept_frames(JobFiles(storage.folder("jobs", job.id), storage.remote_folder("jobs", job.id)))
-    kept = []
+    kept: list[str] = []
+    if job.kind == KIND:
+        cameras = len(list(storage.folder("jobs", job.id).glob("corners-*.json")))
+        return [f"where the board was seen in {say_count(cameras, 'camera')}"] if cameras else []
     if job.frames_done > 0:
         kept.append("1 registration" if job.frames_done == 1 else f"{job.frames_done} registrations")
     if job.hand_model_id is not None:

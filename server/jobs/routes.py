@@ -12,10 +12,13 @@ from sqlalchemy.orm import Session
 
 from server.accounts.audit import record_act
 from server.accounts.service import ReviewerAccount
+from server.calibrations.service import get_calibration
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import StudioError, error_responses
 from server.jobs import batches, events, making, restarting, service, workers
+from server.jobs.calibrating import KIND as CALIBRATE
+from server.jobs.calibrating import find_calibrate_obstacles, follow_job, make_calibrate_job
 from server.jobs.describe import describe_job, describe_jobs
 from server.jobs.form import track_form
 from server.jobs.models import ENDED_STATES, JobRow, WorkerRow
@@ -35,6 +38,7 @@ from server.jobs.schemas import (
     BulkAct,
     BulkDone,
     BulkRefusal,
+    CalibrateCreate,
     DetectCreate,
     JobCheck,
     JobCreate,
@@ -131,6 +135,25 @@ def check_loop_job(body: LoopCreate, session: SessionDep, storage: StorageDep, a
 def create_loop_job(body: LoopCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
     """Register all, choose, train, register all again with the new model; several rounds of it when asked."""
     job = making.make_loop_job(session, storage, body, account.id)
+    record_act(session, account.id, "job.start", "job", job.id)
+    return describe_job(session, job)
+
+
+@router.post("/jobs/calibrate/check", responses=error_responses(404))
+def check_calibrate_job(
+    body: CalibrateCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
+) -> JobCheck:
+    """Whether such a job can be started, and why not. Nothing is started."""
+    return make_check(session, find_calibrate_obstacles(session, storage, body.calibration_id))
+
+
+@router.post("/jobs/calibrate", status_code=201, responses=error_responses(404))
+def create_calibrate_job(
+    body: CalibrateCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
+) -> JobOut:
+    """Calibrate cameras from what they filmed of a board."""
+    get_calibration(session, body.calibration_id)
+    job = make_calibrate_job(session, storage, body.calibration_id, account.id)
     record_act(session, account.id, "job.start", "job", job.id)
     return describe_job(session, job)
 
@@ -244,6 +267,8 @@ def _act(session: Session, storage: Storage, act: str, job_id: uuid.UUID, accoun
     if act == "retry":
         job = service.retry_job(session, job_id, account_id)
         making.copy_job_scans(session, job_id, job.id)
+        if job.kind == CALIBRATE:
+            follow_job(session, job)
     else:
         job = service.cancel_job(session, job_id) if act == "cancel" else service.resume_job(session, job_id)
     record_act(session, account_id, f"job.{act}", "job", job_id)

@@ -12,7 +12,7 @@ from server.database.numbers import Whole
 from server.database.texts import Label, Name
 from server.training_sets.schemas import TrainingRule
 
-JobKind = Literal["track", "detect", "register", "train", "loop"]
+JobKind = Literal["track", "detect", "register", "train", "loop", "calibrate"]
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
@@ -32,6 +32,14 @@ class DetectCreate(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     sequence_id: uuid.UUID
+
+
+class CalibrateCreate(BaseModel):
+    """Films of a board whose cameras are to be calibrated, with the options that were checked last."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    calibration_id: uuid.UUID
 
 
 class RegisterCreate(BaseModel):
@@ -168,9 +176,9 @@ class JobOut(BaseModel):
     params: dict[str, Any]
     progress: float = Field(ge=0, le=1)
     stage: str = Field(description="What is being done, for people.")
-    frames_done: int = Field(description="Or scans, see `unit`.")
+    frames_done: int = Field(description="Or scans or cameras, see `unit`.")
     frames_total: int = Field(description="0 while not known.")
-    unit: Literal["frames", "scans"] = Field(description="What is counted.")
+    unit: Literal["frames", "scans", "cameras"] = Field(description="What is counted.")
     seconds_left: float | None
     error: str | None = Field(description="What went wrong, for people.")
     attempt: int = Field(description="1, and one more for every resume.")

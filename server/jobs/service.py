@@ -20,7 +20,7 @@ from server.jobs.models import ENDED_STATES, JobLogRow, JobRow, WorkerRow
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
 
-KINDS = ("track", "detect", "register", "train", "loop")
+KINDS = ("track", "detect", "register", "train", "loop", "calibrate")
 FRAME_KINDS = ("track", "detect")
 """Those that go through the frames of a recording."""
 

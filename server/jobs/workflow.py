@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from uuid import UUID
 
+from server.jobs.calibrate_workflow import register_calibrate_workflow
 from server.jobs.detect_workflow import register_detect_workflow
 from server.jobs.run import WorkerContext
 from server.jobs.scan_workflow import register_scan_workflows
@@ -29,5 +30,6 @@ def register_workflows(context: WorkerContext) -> dict[str, Workflow]:
     return {
         "track": register_track_workflow(context),
         "detect": register_detect_workflow(context),
+        "calibrate": register_calibrate_workflow(context),
         **register_scan_workflows(context),
     }

@@ -22,7 +22,18 @@ from server.storage.storage import Storage
 log = logging.getLogger(__name__)
 
 SHARED_AREAS = frozenset(
-    {"sequences", "tracks", "snapshots", "scans", "registrations", "models", "training_sets", "detectors"}
+    {
+        "sequences",
+        "tracks",
+        "snapshots",
+        "scans",
+        "registrations",
+        "models",
+        "training_sets",
+        "detectors",
+        "films",
+        "calibrations",
+    }
 )
 """Whose folders are finished when they are published. Jobs keep their working files in the store step by step."""
 

@@ -19,6 +19,8 @@ PAGES = [
     ("annotator", "/recordings/{recording}/annotate", "[data-picture][aria-busy=false]"),
     ("labels", "/recordings/{recording}/labels", "main :is(h1, h2)"),
     ("label check", "/recordings/{recording}/check", "main :is(h1, h2)"),
+    ("calibrations", "/calibrations", "main :is(h1, h2)"),
+    ("new calibration", "/calibrations/new", "main :is(h1, h2)"),
     ("projects", "/projects", "main :is(h1, h2)"),
     ("scans", "/scans", "main :is(h1, h2)"),
     ("curate", "/curate", "main :is(h1, h2)"),

@@ -37,6 +37,27 @@ def choose_format(out: Path) -> str:
     return chosen
 
 
+def encode_cameras(result: CameraCalibration, chosen: str) -> dict[str, bytes]:
+    """The cameras in one of `CALIBRATION_FORMATS`, by file name; the name is empty where the format is one file.
+
+    Raises:
+        CalibrationError: The format cannot hold a camera.
+    """
+    if chosen == "anipose":
+        offsets = [offset.seconds for offset in result.offsets]
+        return {"": write_anipose(result.cameras, offsets, result.left_out.rms)}
+    return {"": write_opencv(result.cameras)} if chosen == "opencv" else write_colmap(result.cameras)
+
+
+def encode_report(result: CameraCalibration) -> dict[str, bytes]:
+    """What says how good a calibration is, by file name; the pictures of the coverage not."""
+    return {
+        "report.json": json.dumps(describe_calibration(result), indent=1, allow_nan=False).encode(),
+        "report.txt": (say_calibration(result) + "\n").encode(),
+        "board.toml": write_board(result.board),
+    }
+
+
 def write_calibration(result: CameraCalibration, out: Path) -> dict[str, str]:
     """Write the cameras, and beside them a folder `<name>_report`.
 
@@ -48,19 +69,9 @@ def write_calibration(result: CameraCalibration, out: Path) -> dict[str, str]:
     Raises:
         CalibrationError: As `choose_format`, or the format cannot hold a camera.
     """
-    chosen = choose_format(out)
-    offsets = [offset.seconds for offset in result.offsets]
-    cameras = {
-        "anipose": lambda: {out: write_anipose(result.cameras, offsets, result.left_out.rms)},
-        "opencv": lambda: {out: write_opencv(result.cameras)},
-        "colmap": lambda: {out / name: data for name, data in write_colmap(result.cameras).items()},
-    }[chosen]()
+    cameras = {out / name if name else out: data for name, data in encode_cameras(result, choose_format(out)).items()}
     folder = out.with_name(f"{out.stem}_report")
-    files = {
-        folder / "report.json": json.dumps(describe_calibration(result), indent=1, allow_nan=False).encode(),
-        folder / "report.txt": (say_calibration(result) + "\n").encode(),
-        folder / "board.toml": write_board(result.board),
-    }
+    files = {folder / name: data for name, data in encode_report(result).items()}
     for number in range(len(result.cameras)):
         name = "".join(sign if sign.isalnum() or sign in "-_" else "_" for sign in result.cameras[number].id)
         files[folder / f"coverage_{name}.png"] = encode_coverage(result, number)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,30 +24,51 @@ OUT_OF_STEP = 0.2
 """Of a frame: less makes no difference to what is marked or tracked."""
 
 
+@dataclass(frozen=True)
+class FilmLength:
+    """How long a camera filmed: its name, its frames, and how many of them a second."""
+
+    camera: str
+    frames: int
+    fps: float
+
+    @property
+    def seconds(self) -> float:
+        return self.frames / self.fps
+
+
+def find_length_faults(lengths: Sequence[FilmLength], find_offsets: bool) -> list[str]:
+    """Which videos are too short to be of the same, and without offsets which differ in length; a sentence for each."""
+    faults = []
+    longest = max(lengths, key=lambda length: length.seconds, default=None)
+    for own in lengths:
+        assert longest is not None
+        if own.seconds < STOPS * longest.seconds:
+            faults.append(
+                f"{own.camera}: stops in the middle: its video has {own.frames} frames ({own.seconds:.1f} s), that of "
+                f"{longest.camera} lasts {longest.seconds:.1f} s. Film again, leave this camera out, or cut the others "
+                "to the part that all have."
+            )
+        elif not find_offsets and abs(own.seconds - longest.seconds) * own.fps > 0.5:
+            faults.append(
+                f"{own.camera}: its video has {own.frames} frames ({own.seconds:.2f} s), that of {longest.camera} "
+                f"lasts {longest.seconds:.2f} s, so frames of one number need not show one moment. Let the offsets be "
+                "found, or cut the videos to one length."
+            )
+    return faults
+
+
 def check_lengths(sightings: Sequence[Sightings], find_offsets: bool) -> None:
     """Videos long enough to be of the same, and without offsets of equal length.
 
     Raises:
         CalibrationError: Names the camera.
     """
-    lengths = {seen.camera: len(seen.times) / seen.fps for seen in sightings}
-    longest = max(lengths, key=lambda name: lengths[name])
-    for seen in sightings:
-        own = lengths[seen.camera]
-        if own < STOPS * lengths[longest]:
-            raise CalibrationError(
-                f"{seen.camera}: stops in the middle: its video has {len(seen.times)} frames ({own:.1f} s), that of "
-                f"{longest} lasts {lengths[longest]:.1f} s. Film again, leave this camera out, or cut the others to "
-                "the part that "
-                "all have."
-            )
-        if not find_offsets and abs(own - lengths[longest]) * seen.fps > 0.5:
-            raise CalibrationError(
-                f"{seen.camera}: its video has {len(seen.times)} frames ({own:.2f} s), that of {longest} lasts "
-                f"{lengths[longest]:.2f} s, so frames of one number need not show one moment. Let the offsets be "
-                "found, or cut the "
-                "videos to one length."
-            )
+    faults = find_length_faults(
+        [FilmLength(seen.camera, len(seen.times), seen.fps) for seen in sightings], find_offsets
+    )
+    if faults:
+        raise CalibrationError(faults[0])
 
 
 def find_warnings(result: CameraCalibration, sightings: Sequence[Sightings], find_offsets: bool) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -86,20 +86,33 @@ def find_sources(paths: list[Path], fps: float | None = None) -> list[CameraSour
         inside = _list(paths[0], VIDEO_SUFFIXES)
         folders = [entry.name for entry in paths[0].iterdir() if entry.is_dir() and _list(entry, COLOR_SUFFIXES)]
         paths = [paths[0] / name for name in sort_naturally(inside or folders)] or paths
-    if not 2 <= len(paths) <= MAX_CAMERAS:
-        raise CalibrationError(
-            f"{say_count(len(paths), 'camera')} ({', '.join(path.name for path in paths[:4])}"
-            f"{', ...' if len(paths) > 4 else ''}); needed 2 to {MAX_CAMERAS}: name one video or folder of images for "
-            "each, "
-            + ("or calibrate them in groups that share a camera." if len(paths) > 2 else "or a folder that holds them.")
-        )
+    if fault := find_count_fault([path.name for path in paths]):
+        raise CalibrationError(fault)
     names = [path.stem if path.is_file() else path.name for path in paths]
     if len(set(names)) < len(names):
         names = [f"cam{index}" for index in range(len(paths))]
-    return [_open(name, path, fps) for name, path in zip(names, paths, strict=True)]
+    return [open_source(name, path, fps) for name, path in zip(names, paths, strict=True)]
 
 
-def _open(name: str, path: Path, fps: float | None) -> CameraSource:
+def find_count_fault(names: Sequence[str]) -> str:
+    """Why so many cameras cannot be calibrated together; empty when they can."""
+    if 2 <= len(names) <= MAX_CAMERAS:
+        return ""
+    shown = f" ({', '.join(names[:4])}{', ...' if len(names) > 4 else ''})" if names else ""
+    return (
+        f"{say_count(len(names), 'camera')}{shown}; needed 2 to {MAX_CAMERAS}: name one video or folder of images for "
+        "each, "
+        + ("or calibrate them in groups that share a camera." if len(names) > 2 else "or a folder that holds them.")
+    )
+
+
+def open_source(name: str, path: Path, fps: float | None = None) -> CameraSource:
+    """One camera's video or folder of images; `fps` is for what does not say it.
+
+    Raises:
+        CalibrationError: Nothing is there, or no images are in the folder.
+        FrameError: The video cannot be read.
+    """
     if not path.exists():
         raise CalibrationError(f"{name}: {path} does not exist.")
     if path.is_dir():

@@ -98,6 +98,8 @@ def fill(app: FastAPI, sender: Sender, rendered: Path, track: Path, hand: Genera
         "/retry": {"job_id": ids["cancelled_job_id"]},
         "/unit": {"metres_per_unit": 1.0},
         "/files/{name}": {"name": "track.npz"},
+        "/calibrations/{calibration_id}/files/{name}": {"name": "cameras.toml"},
+        "/calibrations/{calibration_id}/check": {"options": {}, "name": "fed"},
     }
     return Known(ids, places)
 
@@ -179,3 +181,5 @@ def _add_uploads(app: FastAPI, sender: Sender, ids: dict[str, Any], hand: Genera
     options = {"fps": 30, "fx": 30, "fy": 30, "cx": 15.5, "cy": 11.5}
     found = sender.upload("/imports", pictures, options=json.dumps(options))
     ids |= {"import_id": found["id"], "name": "waving/color/000000.png", "options": options}
+    films = {f"{camera}/{frame}.png": picture for camera in "ab" for frame in range(2)}
+    ids["calibration_id"] = sender.upload("/calibrations", films)["id"]

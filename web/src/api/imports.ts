@@ -45,6 +45,14 @@ export function useCheckAgain(id: string) {
   });
 }
 
+export function useTakeCameras(id: string) {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: (calibration: string | null) => request<Import>("PUT", `/imports/${id}/calibration`, { body: { calibration_id: calibration } }),
+    onSuccess: (checked) => client.setQueryData(importKey(id), checked),
+  });
+}
+
 export function useConfirmImport(id: string) {
   const client = useQueryClient();
   return useMutation({

@@ -24,7 +24,7 @@ const TRAINING_LABELS: Readonly<Record<string, string>> = {
 export function describeParams(params: Readonly<Record<string, unknown>>, form?: JobForm): [label: string, value: string][] {
   const { options, ...rest } = params;
   const fields = listFields(form);
-  const training = typeof options === "object" && options !== null ? Object.entries(options) : [];
+  const training = typeof options === "object" && options !== null ? listParams(options as Record<string, unknown>) : [];
   return [
     ...listParams(rest).map(([name, value]): [string, string] => [fields.get(name)?.label ?? formatName(name), showParam(fields.get(name), value)]),
     ...training.map(([name, value]): [string, string] => [TRAINING_LABELS[name] ?? formatName(name), showValue(value)]),

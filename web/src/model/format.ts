@@ -54,7 +54,7 @@ export function formatBytes(bytes: number): string {
 /** "depth_residual_mm" or "depth-residual" as words. */
 export const formatName = (name: string): string => name.replaceAll(/[_-]+/g, " ").replace(/^./, (letter) => letter.toUpperCase());
 
-const JOB_WORDS: Record<string, string> = { detect: "Find hands in" };
+const JOB_WORDS: Record<string, string> = { detect: "Find hands in", calibrate: "Calibrate" };
 
 /** What a job does, before the name of what it does it to: "Track", "Find hands in". */
 export const formatJobKind = (kind: string): string => JOB_WORDS[kind] ?? formatName(kind);

@@ -14,6 +14,7 @@ import { ImportOptionsForm } from "./parts/ImportOptionsForm";
 import { ImportPictures } from "./parts/ImportPictures";
 import { PageSkeleton } from "./parts/PageSkeleton";
 import { Sentences } from "./parts/Sentences";
+import { TakenCameras } from "./parts/TakenCameras";
 import { useLiveCheck } from "./parts/useLiveCheck";
 import { useTitle } from "./parts/useTitle";
 
@@ -68,6 +69,10 @@ function Confirm({ checked, options, needed, isBehind }: ConfirmProps) {
   );
 }
 
+/** Videos whose cameras may come from a calibration that was made in the studio. */
+const isOfCameras = ({ calibration_id: taken, report }: Import): boolean =>
+  taken !== null || (report.format === "synced_videos" && report.cameras.length > 1) || report.problems.some((problem) => problem.includes("videos and no calibration") || problem.includes("calibrated cameras"));
+
 const KIND_OF: Record<string, string> = { depth_pattern: "depth", color_pattern: "color" };
 
 /** A report, and the form beside it: one page from the files to the recording. */
@@ -81,6 +86,7 @@ function Checked({ checked }: { checked: Import }) {
   return (
     <Stack gap="md">
       <Sentences title={problems.length === 1 ? "One thing must be mended" : `${formatCount(problems.length, "thing")} must be mended`} sentences={problems} isProblem />
+      {isOfCameras(checked) && <TakenCameras checked={checked} />}
       {!isHopeless && <ImportPictures importId={checked.id} cameras={report.cameras} open={needed.flatMap(({ field }) => KIND_OF[field] ?? [])} />}
       {(report.takes ?? []).length > 0 && <ImportOptionsForm importId={checked.id} report={report} live={live} />}
       {!isHopeless && <Confirm checked={checked} options={checked.options as ImportOptions} needed={needed} isBehind={live.isBehind} />}

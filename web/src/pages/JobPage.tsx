@@ -5,7 +5,7 @@ import { useRestartCheck } from "../api/jobChecks";
 import { isActive, useJob, useJobForm, useJobLog } from "../api/jobs";
 import { useRecording } from "../api/recordings";
 import { describeParams } from "../model/compareJobs";
-import { formatAgo, formatDuration, formatJobKind } from "../model/format";
+import { formatAgo, formatDuration, formatJobKind, formatName } from "../model/format";
 import { CompareWith } from "./jobs/CompareWith";
 import { JobResult } from "./jobs/JobResult";
 import { Restart } from "./jobs/Restart";
@@ -109,7 +109,7 @@ export function JobPage() {
         <Fact label="Started by">{job.created_by_name ?? "–"}</Fact>
         <Fact label={job.state === "running" ? "Runs on" : "Ran on"}>{job.worker ? job.worker.name : "–"}</Fact>
         {job.kind !== "train" && (
-          <Fact label={job.unit === "scans" ? "Scans" : "Frames"}>{job.frames_total ? `${job.frames_done ?? 0} of ${job.frames_total}` : "–"}</Fact>
+          <Fact label={formatName(job.unit)}>{job.frames_total ? `${job.frames_done ?? 0} of ${job.frames_total}` : "–"}</Fact>
         )}
       </SimpleGrid>
       {job.track_id && <JobResult trackId={job.track_id} />}

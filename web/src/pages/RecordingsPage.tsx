@@ -1,6 +1,6 @@
-import { CloseButton, Group, SimpleGrid, Skeleton, TextInput, Title } from "@mantine/core";
-import { IconHandFinger, IconSearch } from "@tabler/icons-react";
-import { useSearchParams } from "react-router";
+import { Button, CloseButton, Group, SimpleGrid, Skeleton, TextInput, Title } from "@mantine/core";
+import { IconCamera, IconHandFinger, IconSearch } from "@tabler/icons-react";
+import { Link, useSearchParams } from "react-router";
 import { useRecordings } from "../api/recordings";
 import { formatCount } from "../model/format";
 import { EmptyState } from "./parts/EmptyState";
@@ -26,7 +26,11 @@ export function RecordingsPage() {
     return (
       <EmptyState icon={<IconHandFinger size={56} stroke={1.25} />} title="No recordings yet" action={<ImportButton label="Import the first recording" />}>
         Drop a folder, files or a .zip anywhere on this page: a recording folder, depth and colour images of an RGB-D camera, or several
-        videos with their calibration. You see a report of what was found before anything is stored.
+        videos with their calibration. You see a report of what was found before anything is stored. Cameras without a calibration:{" "}
+        <Link to="/calibrations" style={{ color: "var(--accent-text)" }}>
+          calibrate them from a filmed board
+        </Link>
+        .
       </EmptyState>
     );
   }
@@ -47,6 +51,9 @@ export function RecordingsPage() {
             rightSection={search && <CloseButton size="sm" aria-label="Clear the filter" onClick={() => setSearch("")} />}
             w={240}
           />
+          <Button variant="default" component={Link} to="/calibrations" leftSection={<IconCamera size={16} aria-hidden />}>
+            Cameras
+          </Button>
           <ImportButton label="Import" />
         </Group>
       </Group>

@@ -17,10 +17,10 @@ const ROOMS = [
 /** Pages behind the menu of the person, which have no place among the rooms. */
 const OTHERS: Readonly<Record<string, string>> = { "/bin": "Bin", "/people": "People", "/account": "Account", "/audit": "Audit trail", "/docs": "API" };
 
-/** An annotator's address lies below its recording, but it is another room. */
+/** An annotator's address lies below its recording, but it is another room; what leads to recordings is in theirs. */
 export function roomOf(path: string): string {
   if (path.endsWith("/annotate")) return "/annotate";
-  return path.startsWith("/imports") ? "/recordings" : `/${path.split("/")[1] ?? ""}`;
+  return /^\/(imports|calibrations)/.test(path) ? "/recordings" : `/${path.split("/")[1] ?? ""}`;
 }
 
 export const nameOfRoom = (room: string): string => ROOMS.find(({ to }) => to === room)?.label ?? OTHERS[room] ?? "Handloom";

@@ -31,6 +31,9 @@ const BinPage = lazy(() => import("./account/BinPage"));
 const AgreementPage = lazy(() => import("./projects/AgreementPage"));
 const ProjectPage = lazy(() => import("./projects/ProjectPage"));
 const ProjectsPage = lazy(() => import("./projects/ProjectsPage"));
+const CalibrationsPage = lazy(() => import("./calibrations/CalibrationsPage"));
+const CalibrationPage = lazy(() => import("./calibrations/CalibrationPage"));
+const NewCalibrationPage = lazy(() => import("./calibrations/NewCalibrationPage"));
 const LabelCheckPage = lazy(() => import("./quality/LabelCheckPage"));
 const TrackPage = lazy(() => import("./TrackPage"));
 
@@ -53,6 +56,9 @@ export const router = createBrowserRouter([
           { path: "annotate", element: <AnnotateChooser /> },
           { path: "imports/new", element: <NewImportPage /> },
           { path: "imports/:importId", element: <ImportPage /> },
+          { path: "calibrations", element: <CalibrationsPage /> },
+          { path: "calibrations/new", element: <NewCalibrationPage /> },
+          { path: "calibrations/:calibrationId", element: <CalibrationPage /> },
           { path: "projects", element: <ProjectsPage /> },
           { path: "projects/:projectId", element: <ProjectPage /> },
           { path: "projects/:projectId/agreement/:setId", element: <AgreementPage /> },

@@ -18,6 +18,7 @@ const KINDS = [
   { value: "scan", label: "Scans" },
   { value: "hand_model", label: "Hand models" },
   { value: "detector", label: "Fingertip detectors" },
+  { value: "calibration", label: "Camera calibrations" },
   { value: "project", label: "Projects" },
   { value: "replica_set", label: "Blind replicas" },
 ];

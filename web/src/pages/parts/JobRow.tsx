@@ -44,8 +44,8 @@ const tookOf = (job: Job): string =>
 
 const sayWhy = (failure: Error): void => void notifications.show({ color: "red", title: "Not done", message: failure.message });
 
-/** What can be done with a job; `restart` says of one that ended whether it can go on or be tried again. */
-export function JobActions({ job, restart }: { job: Job; restart?: RestartCheck | undefined }) {
+/** What can be done with a job; `restart` says of one that ended whether it can go on or be tried again. `isHere`: on the page of what it makes. */
+export function JobActions({ job, restart, isHere = false }: { job: Job; restart?: RestartCheck | undefined; isHere?: boolean }) {
   const cancel = useJobAction("cancel");
   const retry = useJobAction("retry");
   const resume = useJobAction("resume");
@@ -59,6 +59,11 @@ export function JobActions({ job, restart }: { job: Job; restart?: RestartCheck 
       {job.kind === "detect" && job.state === "succeeded" && (
         <Button size="xs" component={Link} to={`/recordings/${job.sequence_id}/annotate`}>
           Annotate
+        </Button>
+      )}
+      {job.kind === "calibrate" && !isHere && (
+        <Button size="xs" variant={isActive(job) ? "default" : "filled"} component={Link} to={`/calibrations/${String(job.params["calibration_id"])}`}>
+          Open the calibration
         </Button>
       )}
       {job.hand_model_id && (

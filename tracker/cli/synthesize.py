@@ -23,7 +23,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "T16. It holds colour, depth, annotations of every frame, truth.npz and the models that were rendered.",
     )
     source = parser.add_mutually_exclusive_group(required=True)
-    source.add_argument("--motion", metavar="NAME", help="a simple motion: open-close, wave, count or pinch")
+    source.add_argument(
+        "--motion", metavar="NAME", help="open-close, wave, count or pinch; with two hands crossing or passing"
+    )
     source.add_argument("--twin", type=Path, metavar="FOLDER", help="T16's models and motions")
     parser.add_argument("--sequence", metavar="NN", help="with --twin: which of its sequences, such as 09")
     parser.add_argument("--full-mesh", action="store_true", help="with --twin: the full meshes, not the tracker's size")
@@ -49,6 +51,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--size", type=parse_size, default=(640, 480), metavar="WxH", help="with --motion: size of the images, px"
     )
+    parser.add_argument("--texture", action="store_true", help="spots on skin and a still, spotted wall in the colour")
+    parser.add_argument("--circles", type=int, default=0, metavar="N", help="discs that disturb each colour image")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="a folder that does not exist yet")
     add_json(parser)
     parser.set_defaults(run=run_guarded(synthesize, show))
@@ -58,11 +62,13 @@ def synthesize(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.model import save_model
     from tracker.synthesis.recording import RecordingOptions, write_recording
     from tracker.synthesis.sensor import StructuredLight
+    from tracker.synthesis.texture import Texture
+    from tracker.synthesis.view_noise import ViewNoise
 
     if not 1 <= args.cameras <= 8 or (args.twin is not None and (args.cameras, args.size) != (1, (640, 480))):
         raise TrackerError("--cameras must be 1 to 8; a twin (--twin) has the one camera of its recording, 640x480 px.")
-    if args.step < 1 or args.seed < 0 or args.background < 0:
-        raise TrackerError("--step must be at least 1, --seed and --background at least 0.")
+    if args.step < 1 or args.seed < 0 or args.background < 0 or args.circles < 0:
+        raise TrackerError("--step must be at least 1, --seed, --background and --circles at least 0.")
     began = time.monotonic()
     performance = _load_twin(args) if args.twin is not None else _perform(args)
     options = RecordingOptions(
@@ -70,6 +76,8 @@ def synthesize(args: argparse.Namespace) -> dict[str, Any]:
         sensor=StructuredLight() if args.noise == "structured-light" else None,
         seed=args.seed,
         background=args.background,
+        texture=Texture(args.seed) if args.texture else None,
+        view_noise=ViewNoise(circles=args.circles) if args.circles else None,
     )
     line = ProgressLine(f"rendering {performance.name}")
     sequence = write_recording(performance, args.out, options, save_model, line.show)
@@ -96,10 +104,15 @@ def _load_twin(args: argparse.Namespace):
 
 
 def _perform(args: argparse.Namespace):
+    from tracker.synthesis.interplay import INTERPLAYS, play
     from tracker.synthesis.motion import MOTIONS, perform
 
-    if args.motion not in MOTIONS:
-        raise TrackerError(f"There is no motion {args.motion!r}; choose one of {', '.join(MOTIONS)}.")
+    if args.motion not in {**MOTIONS, **INTERPLAYS}:
+        names = ", ".join((*MOTIONS, *INTERPLAYS))
+        raise TrackerError(f"There is no motion {args.motion!r}; choose one of {names}.")
+    if args.motion in INTERPLAYS:
+        models = load_hands(args.hand or [], ("right", "left"))
+        return play(models, args.motion, args.frames[1] or MOTION_FRAMES, args.cameras, args.size)
     given = args.hand or [("right", None)]
     models = load_hands(given, tuple(name for name in dict(given) if name != TRAINED) or ("right",))
     return perform(models, args.motion, args.frames[1] or MOTION_FRAMES, args.cameras, args.size)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.fitting.objective import Objective
+from tracker.fitting.ray_agreement import ENOUGH, find_believed
 from tracker.landmarks import DetectedHand
 from tracker.model.joints import HAND_JOINTS
 from tracker.model.scene import PosedScene, Scene
@@ -21,6 +22,9 @@ WRIST, MIDDLE_MCP = HAND_JOINTS.index("wrist"), HAND_JOINTS.index("middle_mcp")
 
 REACH = 15.0
 """mm; a joint that far from the detector's place has a quarter of its pull, as with depth (`sighting.REACH`)."""
+
+SUPPORTED = 11
+"""Where four views or more make sure of so many joints of a hand, these alone pull from afar."""
 
 HOLDS = 0.5
 """A view holds a hand whose joints lie so near to where it was seen there, `ViewHands.measure`."""
@@ -68,16 +72,22 @@ class ViewHands:
         return replace(self, hands=tuple(kept))
 
     def rays(self, scene: Scene, model: int, name: str, reach: float = REACH) -> MarkedJoints:
-        """The viewing rays of one hand's joints, in all views together."""
+        """The viewing rays of one hand's joints, in all views together, without those that most others contradict."""
         first = scene.landmark_slices[model].start
         ids, directions, moments = [np.zeros(0, np.int32)], [np.zeros((0, 3))], [np.zeros((0, 3))]
-        for camera, hands in zip(self.cameras, self.hands, strict=True):
-            if name not in hands:
-                continue
-            rays = camera.unproject(hands[name].points)
-            known = np.flatnonzero(np.isfinite(rays).all(axis=1))
-            own = rays[known] @ camera.T_world_camera[:3, :3].T
-            own /= np.linalg.norm(own, axis=1, keepdims=True)
+        every = np.full((21, len(self.cameras), 3), np.nan)
+        for view, (camera, hands) in enumerate(zip(self.cameras, self.hands, strict=True)):
+            if name in hands:
+                rays = camera.unproject(hands[name].points) @ camera.T_world_camera[:3, :3].T
+                every[:, view] = rays / np.linalg.norm(rays, axis=1, keepdims=True)
+        origins = np.array([camera.T_world_camera[:3, 3] for camera in self.cameras])
+        believed, supported = find_believed(origins, every)
+        if reach > REACH and len(origins) > ENOUGH and np.count_nonzero(supported.any(axis=1)) >= SUPPORTED:
+            believed = supported
+        is_known = np.isfinite(every).all(axis=2) & believed
+        for view, camera in enumerate(self.cameras):
+            known = np.flatnonzero(is_known[:, view])
+            own = every[known, view]
             ids.append(np.asarray(first + known, dtype=np.int32))
             directions.append(own)
             origin = np.broadcast_to(camera.T_world_camera[:3, 3], own.shape)

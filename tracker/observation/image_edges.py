@@ -9,15 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
+from tracker.observation.image_part import frame_points
 
 DIRECTIONS = 6
 """Bins of 30 degrees; an edge belongs to its own and to both neighbours, so that directions may differ by 30 to 60."""
 
 WEAK, STRONG = 30.0, 90.0
 """Canny's thresholds, of 255 times 4 (Sobel)."""
-
-SMALLEST = 16
-"""A part with fewer rows or columns shows nothing of a hand, px."""
 
 
 @dataclass(frozen=True)
@@ -47,21 +45,10 @@ def find_image_edges(
         points: (N, 2) px of an ideal lens, around which edges are looked for.
         margin: px.
     """
-    points = points[np.isfinite(points).all(axis=1)]
-    if not len(points):
+    window = frame_points(camera, points, margin)
+    if window is None:
         return None
-    low = np.maximum(np.floor(points.min(axis=0) - margin), 0).astype(int)
-    high = np.minimum(np.ceil(points.max(axis=0) + margin) + 1, (camera.width, camera.height)).astype(int)
-    width, height = (high - low).tolist()
-    if width < SMALLEST or height < SMALLEST:
-        return None
-    K = camera.K.copy()
-    K[:2, 2] -= low
-    if camera.distortion.size:
-        maps = cv2.initUndistortRectifyMap(camera.K, camera.distortion, None, K, (width, height), cv2.CV_16SC2)
-        part = cv2.remap(image, maps[0], maps[1], cv2.INTER_LINEAR)
-    else:
-        part = image[low[1] : high[1], low[0] : high[0]]
+    width, height, part = window.width, window.height, window.cut(image)
     grey = cv2.GaussianBlur(cv2.cvtColor(np.ascontiguousarray(part), cv2.COLOR_RGB2GRAY), (3, 3), 0)
     dx, dy = (cv2.Sobel(grey, cv2.CV_16S, *order).astype(np.int16) for order in ((1, 0), (0, 1)))
     is_edge = cv2.Canny(dx, dy, WEAK, STRONG) > 0
@@ -72,7 +59,7 @@ def find_image_edges(
     for direction in range(DIRECTIONS):
         beside = (bins - direction) % DIRECTIONS
         _nearest_into(nearest[direction], is_edge & ((beside <= 1) | (beside == DIRECTIONS - 1)), places)
-    return ImageEdges(K, camera.T_world_camera, nearest)
+    return ImageEdges(window.K, camera.T_world_camera, nearest)
 
 
 def _refine(

@@ -158,6 +158,19 @@ def find_closing(model: ArticulatedModel) -> Array:
 
 def _place(model: ArticulatedModel, x: float) -> Array:
     """(4, 4) model to world: fingers up in the image, palm towards the camera, middle knuckle on the axis."""
+    up, palm = np.array([0.0, -1.0, 0.0]), np.array([0.0, 0.0, -1.0])
+    return stand_hand(model, up, palm, np.array([x, 0.02, DISTANCE]))
+
+
+def stand_hand(model: ArticulatedModel, towards: Array, faced: Array, at: Array) -> Array:
+    """(4, 4) model to world of a hand at rest.
+
+    Args:
+        model: The hand.
+        towards: (3,) unit, world; where the fingers point.
+        faced: (3,) unit, world, across `towards`; where the palm looks.
+        at: (3,) world, m; the middle knuckle's place.
+    """
     scene = Scene((model,))
     rest = scene.pose_at(scene.rest_pose()).landmarks(0)
     pose = scene.rest_pose()
@@ -171,8 +184,8 @@ def _place(model: ArticulatedModel, x: float) -> Array:
     palm -= up * (palm @ up)
     palm /= np.linalg.norm(palm)
     model_axes = np.stack([up, palm, np.cross(up, palm)], axis=1)
-    world_axes = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    world_axes = np.stack([towards, faced, np.cross(towards, faced)], axis=1)
     T = np.eye(4)
     T[:3, :3] = world_axes @ model_axes.T
-    T[:3, 3] = np.array([x, 0.02, DISTANCE]) - T[:3, :3] @ knuckle
+    T[:3, 3] = at - T[:3, :3] @ knuckle
     return T

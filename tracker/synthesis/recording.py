@@ -28,6 +28,8 @@ from tracker.synthesis.actor import Actor
 from tracker.synthesis.performance import Moment, Performance, render_moment
 from tracker.synthesis.sensor import StructuredLight
 from tracker.synthesis.shading import compute_cosines, shade
+from tracker.synthesis.texture import Texture
+from tracker.synthesis.view_noise import ViewNoise, disturb_image
 from tracker.synthesis.visibility import find_visibility
 
 log = logging.getLogger(__name__)
@@ -35,6 +37,9 @@ log = logging.getLogger(__name__)
 SaveModel = Callable[[ArticulatedModel, Path], None]
 
 TRUTH_FILE = "truth.npz"
+
+DISCS = 3
+"""Stream of chance of the discs."""
 
 
 @dataclass(frozen=True)
@@ -46,12 +51,16 @@ class RecordingOptions:
         sensor: Noise of the depth camera; None for exact images.
         seed: Of the noise. The noise of a moment depends on the seed and the moment only, not on what else is recorded.
         background: Depth of a wall behind everything, m; 0 for none.
+        texture: Of skin and walls in the colour images, which then have the noise of a camera; None leaves them plain.
+        view_noise: Discs in the colour images; None for none. Annotations stay exact.
     """
 
     moments: range
     sensor: StructuredLight | None = field(default_factory=StructuredLight)
     seed: int = 0
     background: float = 0.0
+    texture: Texture | None = None
+    view_noise: ViewNoise | None = None
 
     @property
     def depth_scale(self) -> float:
@@ -147,9 +156,15 @@ def _write_images(
 ) -> None:
     """What the camera of this number sees; a performance before it alone."""
     seed = [options.seed, moment.index, *([number] if number else [])]
-    rng = np.random.default_rng(seed) if options.sensor is not None else None
+    is_noisy = options.sensor is not None or options.texture is not None
+    rng = np.random.default_rng(seed) if is_noisy else None
     cosines = compute_cosines(performance, moment)
-    color = shade(performance, moment, cosines, rng)
+    if options.texture is None:
+        color = shade(performance, moment, cosines, rng)
+    else:
+        color = options.texture.shade(performance, moment, rng)
+    if options.view_noise is not None:
+        color, _ = disturb_image(color, options.view_noise, np.random.default_rng([*seed, number, DISCS]))
     depth = moment.depth
     if options.background > 0.0:
         is_empty = moment.face < 0

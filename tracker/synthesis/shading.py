@@ -52,18 +52,18 @@ def shade(
 ) -> npt.NDArray[np.uint8]:
     """Colour image (H, W, 3) RGB of a moment, lit from the camera; `rng` adds sensor noise to the surfaces."""
     image = np.empty((*moment.face.shape, 3), dtype=np.uint8)
-    image[:] = np.rint(_encode(np.array(BACKGROUND))).astype(np.uint8)
+    image[:] = np.rint(encode(np.array(BACKGROUND))).astype(np.uint8)
     rows, columns = np.nonzero(moment.face >= 0)
     albedos = np.array([actor.albedo for actor in performance.actors])
     albedo = albedos[performance.face_actors[moment.face[rows, columns]]]
     light = AMBIENT + (1.0 - AMBIENT) * cosines[rows, columns]
-    levels = _encode(albedo * light[:, None])
+    levels = encode(albedo * light[:, None])
     if rng is not None:
         levels += rng.normal(0.0, SENSOR_STD, levels.shape)
     image[rows, columns] = np.clip(np.rint(levels), 0, 255).astype(np.uint8)
     return image
 
 
-def _encode(linear: Array) -> Array:
+def encode(linear: Array) -> Array:
     """Linear light in 0..1 to levels of 255, with a display's exponent of 2.2."""
     return 255.0 * np.clip(linear, 0.0, 1.0) ** (1.0 / 2.2)

@@ -28,6 +28,7 @@ from tracker.model.scene import PosedScene
 from tracker.observation import observe
 from tracker.observation.image_edges import ImageEdges, find_image_edges
 from tracker.terms.contours import Contours
+from tracker.terms.joint_prior import Regularization
 from tracker.terms.marked_joints import MarkedJoints
 from tracker.terms.residual import Term
 from tracker.tracking.recovery import list_hands
@@ -36,6 +37,19 @@ Array = npt.NDArray[np.float64]
 
 FAR_REACH = 4.0 * REACH
 """mm; the first iterations of a frame hear joints from farther off, where a hand moved fast."""
+
+MANY = 4
+"""Where so many views or more are tracked in, contours hold a hand better than single joints do, and the constants
+below count. They were chosen on rendered views (docs/studies/rendered_views.md); the real recordings at hand have two
+or three views, in which nothing changes."""
+
+MANY_REACH = 5.0
+"""mm; the reach of joints in the iterations with contours."""
+
+MANY_CONTOUR_ITERATIONS = 8
+
+MANY_REGULARIZATION = 0.1
+"""Weight of the pull to the frame before: a hidden finger that few joints tell of must not run away."""
 
 ALL_TURNS = (0, 1, 2, 3)
 
@@ -97,6 +111,9 @@ def fit_views(
     colour images too.
     """
     scene, names = setup.scene, setup.names
+    has_many = len(seen.cameras) >= MANY
+    if has_many:
+        objective = replace(objective, regularization=Regularization(weight=MANY_REGULARIZATION))
     far = seen.add_to(replace(objective, terms={}), scene, names, FAR_REACH)
     first = fit_frame(scene, None, pose, pose, far, FitOptions(iterations=max(1, iterations // 2), fine=0))
     started = perf_counter()
@@ -104,12 +121,14 @@ def fit_views(
     stages = {"preparing depth": perf_counter() - started}
     second = fit_frame(scene, None, first.pose, pose, near, FitOptions(iterations=iterations))
     started = perf_counter()
-    drawn = add_contours(near, scene.pose_at(second.pose), views, setup.options.threads)
+    last = seen.add_to(near, scene, names, MANY_REACH) if has_many else near
+    drawn = add_contours(last, scene.pose_at(second.pose), views, setup.options.threads)
     stages["finding edges"] = perf_counter() - started
-    third = fit_frame(scene, None, second.pose, pose, drawn, FitOptions(iterations=CONTOUR_ITERATIONS))
+    count = FitOptions(iterations=MANY_CONTOUR_ITERATIONS if has_many else CONTOUR_ITERATIONS)
+    third = fit_frame(scene, None, second.pose, pose, drawn, count)
     settled = leave_to_depth(drawn, scene.pose_at(third.pose))
     if settled is not None:
-        third = fit_frame(scene, None, third.pose, pose, settled, FitOptions(iterations=CONTOUR_ITERATIONS))
+        third = fit_frame(scene, None, third.pose, pose, settled, count)
     for fit in (first, second, third):
         for name, seconds in fit.stages.items():
             stages[name] = stages.get(name, 0.0) + seconds

@@ -1,4 +1,4 @@
-"""Number of colour cameras against error: `python -m benchmarks.rendered_views [--cameras 1 2 3 4 8]`.
+"""Number of colour cameras against error: `python -m benchmarks.rendered_views.own_detector [--cameras 1 2 3 4 8]`.
 
 A rendered hand opens and closes before up to eight cameras of 640x480 px; it is tracked without depth and without
 annotation, with the very hand that was drawn, with contours and without. Errors are of all joints against the truth.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import tempfile
+from contextlib import nullcontext
 from pathlib import Path
 from unittest.mock import patch
 
@@ -40,9 +41,10 @@ def main() -> None:
         for count in given.cameras:
             ids = ",".join(camera.id for camera in sequence.cameras[:count])
             for has_contours in (False, True):
-                iterations = fit_views.CONTOUR_ITERATIONS if has_contours else 0
-                with patch.object(fit_views, "CONTOUR_ITERATIONS", iterations):
-                    setup, state = start_tracking(sequence, TrackOptions(calibrate=False, cameras=ids, use_depth=False))
+                none = {} if has_contours else {"CONTOUR_ITERATIONS": 0, "MANY_CONTOUR_ITERATIONS": 0}
+                options = TrackOptions(calibrate=False, cameras=ids, use_depth=False)
+                with patch.multiple(fit_views, **none) if none else nullcontext():
+                    setup, state = start_tracking(sequence, options)
                     _, chunk = track_frames(sequence, setup, state, range(FRAMES))
                 track = join_chunks(sequence, setup, [chunk])
                 held = track.status != "lost"

@@ -1,0 +1,1 @@
+"""Rendered hands before several colour cameras: what [T16] §4.4.1 measures."""

@@ -1,0 +1,159 @@
+"""Follow both hands through a rendered recording with some of the terms of [T16] Table 15.
+
+The frame is fitted by the tracker's own `fit_views`; without S, where that has no joints to come near with, contours
+are looked for farther off first. As in the paper the first pose is given; what was lost is not looked for again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from time import perf_counter
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from benchmarks.rendered_views.setting import TIPS, Setting
+from benchmarks.rendered_views.shown import Shown
+from tracker.capture.frame import CameraFrame, Frame
+from tracker.fitting.frame_fit import FitOptions, fit_frame
+from tracker.fitting.objective import Objective
+from tracker.fitting.options import TrackOptions
+from tracker.fitting.setup import TrackSetup
+from tracker.fitting.view_hands import ViewHands
+from tracker.landmarks import DetectedHand
+from tracker.model.scene import PosedScene
+from tracker.observation.image_flow import find_image_flow
+from tracker.synthesis.view_noise import ViewNoise, disturb_image, disturb_joints
+from tracker.terms.collision import Collision
+from tracker.terms.contours import Contours
+from tracker.terms.flow import Flow, follow_surface, join_flows
+from tracker.terms.joint_prior import Regularization
+from tracker.tracking.fit_views import (
+    MANY_CONTOUR_ITERATIONS,
+    MANY_REGULARIZATION,
+    add_contours,
+    find_place,
+    fit_views,
+    see_hands,
+)
+from tracker.tracking.state import TrackState
+
+Array = npt.NDArray[np.float64]
+
+VISIBLE = 2
+FAR_EDGE = 0.015
+"""m; contours alone look so far for their edges at first."""
+
+IMAGES, JOINTS = 1, 2
+"""Streams of chance."""
+
+
+def follow(shown: Shown, setting: Setting, moments: range | None = None) -> tuple[Array, Array]:
+    """Joints (T, 42, 3) of the hands, world, m, and seconds (T,) without reading and disturbing the images.
+
+    Args:
+        shown: The recording.
+        setting: What is switched on.
+        moments: Consecutive frames; None for all.
+    """
+    cv2.setNumThreads(1)
+    scene, sequence = shown.scene, shown.sequence
+    cameras = tuple(sequence.cameras[: setting.cameras])
+    options = TrackOptions(calibrate=False, cameras=",".join(camera.id for camera in cameras), use_depth=False)
+    setup = TrackSetup(shown.names, scene.models, cameras[0].id, options, view_ids=options.view_ids)
+    noise = replace(ViewNoise(), detected=setting.detected) if setting.is_noisy else None
+    moments = moments or range(sequence.frame_count)
+    first = shown.poses[moments[0]]
+    state = TrackState(moments[0], first, first)
+    before: tuple[list[Frame], list[npt.NDArray[np.bool_] | None]] | None = None
+    joints, seconds = [], []
+    for index in moments:
+        frames, covers = _read(shown, cameras, index, noise, setting.seed)
+        started = perf_counter()
+        predicted = state.predict(scene)
+        objective = Objective(terms={"collision": Collision()} if setting.has("C") else {})
+        if setting.has("O") and before is not None:
+            flow = _find_flow(scene.pose_at(state.pose), cameras, before, (frames, covers), setting.flow_weight)
+            if flow is not None:
+                objective = replace(objective, terms={**objective.terms, "flow": flow})
+        if setting.has("S"):
+            seen = _see(shown, setup, setting, cameras, frames, noise, scene.pose_at(predicted))
+            pose = fit_views(setup, objective, seen, _pair(cameras, frames), predicted, setting.iterations).pose
+        else:
+            pose = _fit_contours(setup, objective, cameras, frames, predicted, setting.iterations)
+        seconds.append(perf_counter() - started)
+        state = TrackState(index + 1, pose, state.pose)
+        posed = scene.pose_at(pose)
+        joints.append(np.concatenate([posed.landmarks(0), posed.landmarks(1)]))
+        before = frames, covers
+    return np.array(joints), np.array(seconds)
+
+
+def _read(shown: Shown, cameras, index: int, noise: ViewNoise | None, seed: int):
+    """The images of a moment, disturbed, and what the disturbance covers."""
+    frames, covers = [], []
+    for number, camera in enumerate(cameras):
+        image, covered = shown.sequence.color(index, camera.id), None
+        if noise is not None:
+            image, covered = disturb_image(image, noise, np.random.default_rng([seed, IMAGES, index, number]))
+        frames.append(Frame(index, camera.id, image, None))
+        covers.append(covered)
+    return frames, covers
+
+
+def _pair(cameras, frames) -> list[CameraFrame]:
+    return [CameraFrame(camera, frame) for camera, frame in zip(cameras, frames, strict=True)]
+
+
+def _see(
+    shown: Shown, setup: TrackSetup, setting: Setting, cameras, frames, noise: ViewNoise | None, posed: PosedScene
+) -> ViewHands:
+    """What is detected of the hands."""
+    if setting.joints == "sees":
+        return see_hands(setup, _pair(cameras, frames), posed, set())
+    index, hands = frames[0].index, []
+    for number in range(len(cameras)):
+        rng = np.random.default_rng([setting.seed, JOINTS, index, number])
+        own = {}
+        for hand, name in enumerate(("right", "left")):
+            where = slice(21 * hand, 21 * hand + 21)
+            points = shown.truth.joints_2d[index, number, where].copy()
+            is_seen = shown.truth.visibility[index, number, where] == VISIBLE
+            points = (
+                disturb_joints(points, is_seen, noise, rng) if noise else np.where(is_seen[:, None], points, np.nan)
+            )
+            if setting.joints == "tips":
+                points[np.setdiff1d(np.arange(21), TIPS)] = np.nan
+            own[name] = DetectedHand(points, np.zeros((21, 3)), 1.0, float(name == "right"))
+        hands.append(own)
+    return ViewHands(tuple(cameras), tuple(hands))
+
+
+def _find_flow(posed: PosedScene, cameras, before, now, weight: float) -> Flow | None:
+    """O in all views together; flow that begins or ends in a disc is dropped (§4.4.1)."""
+    parts = []
+    for number, camera in enumerate(cameras):
+        points, margin = find_place(posed, camera)
+        first, second = before[1][number], now[1][number]
+        covered = None if first is None else first | second
+        images = before[0][number].color, now[0][number].color
+        flow = find_image_flow(*images, camera, points, margin, covered) if len(points) else None
+        if flow is not None:
+            parts.append(follow_surface(posed, flow))
+    return join_flows(parts, weight) if parts else None
+
+
+def _fit_contours(setup: TrackSetup, objective: Objective, cameras, frames, pose: Array, iterations: int) -> Array:
+    """The pose (D,) by contours without any joint, from far edges to near ones, as far as can be as `fit_views`."""
+    scene, start = setup.scene, pose
+    objective = replace(objective, regularization=Regularization(weight=MANY_REGULARIZATION))
+    for reach, count in ((FAR_EDGE, iterations), (Contours.max_distance, MANY_CONTOUR_ITERATIONS)):
+        drawn = add_contours(objective, scene.pose_at(pose), _pair(cameras, frames))
+        terms = {
+            name: replace(term, max_distance=reach) if isinstance(term, Contours) else term
+            for name, term in drawn.terms.items()
+        }
+        how = FitOptions(iterations=count)
+        pose = fit_frame(scene, None, pose, start, replace(drawn, terms=terms), how).pose
+    return pose

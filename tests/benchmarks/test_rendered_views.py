@@ -1,0 +1,38 @@
+"""What the study of rendered views counts, and what it runs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.rendered_views.errors import Errors, find_interval
+from benchmarks.rendered_views.page import list_settings, write_page
+
+
+def test_errors_are_distances_of_joints_and_angles_of_bones(rng):
+    truth = rng.uniform(-0.1, 0.1, (4, 42, 3))
+    moved = Errors.of(truth + np.array([0.003, 0.0, 0.004]), truth)
+    np.testing.assert_allclose(moved.mm, 5.0)
+    np.testing.assert_allclose(moved.degrees, 0.0, atol=1e-4)
+    turned = truth.copy()
+    wrist, tip = truth[0, 21 + 7], truth[0, 21 + 8]
+    turned[0, 21 + 8] = wrist + np.cross(np.array([0.0, 0.0, 1.0]), tip - wrist)
+    degrees = Errors.of(turned, truth).degrees
+    assert np.count_nonzero(degrees > 1e-3) == 1
+    assert degrees[0].max() <= 90.0
+
+
+def test_an_interval_holds_the_mean_and_is_as_wide_as_blocks_differ():
+    frames = np.repeat([1.0, 3.0], 40)
+    low, high = find_interval(frames)
+    assert low < 2.0 < high
+    assert high - low == pytest.approx(2 * 1.96 / np.sqrt(10), rel=0.3)  # ten blocks, each 1 or 3
+    assert find_interval(np.full(20, 7.0)) == (7.0, 7.0)
+
+
+def test_every_setting_is_run_once_and_a_page_without_runs_has_its_heads(tmp_path):
+    settings = list_settings()
+    assert len({setting.key for setting in settings}) == len(settings)
+    page = write_page(tmp_path, 4, (64, 48))
+    assert "Table 15" in page
+    assert "64x48" in page

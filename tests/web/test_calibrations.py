@@ -9,6 +9,7 @@ import pytest
 
 from tests.server.calibrations.films import OFFSET_S, render_films
 from tests.web.test_accessibility import find_faults
+from tests.web.test_pages import NOTHING_LOADS
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(420)]
 
@@ -90,8 +91,9 @@ def test_a_board_is_chosen_films_are_sent_checked_and_calibrated_and_a_recording
     page.keyboard.press("Escape")
 
     page.goto("/recordings")
+    page.wait_for_function(NOTHING_LOADS)  # until then the page has another button to import by
     page.get_by_test_id("choose-files").set_input_files(files("cam0.avi", "cam1.avi"))
-    page.wait_for_url(re.compile(r"/imports/[0-9a-f-]{36}$"))
+    page.wait_for_url(re.compile(r"/imports/[0-9a-f-]{36}$"), timeout=90_000)
     expect(page.get_by_text("2 videos and no calibration")).to_be_visible()
     cameras = page.get_by_role("region", name="Cameras of these videos")
     cameras.get_by_role("combobox").click()

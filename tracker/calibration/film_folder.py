@@ -34,7 +34,7 @@ class FilmFolder:
 def list_films(folder: Path) -> FilmFolder:
     """The cameras in a folder; one that holds nothing but another folder stands for that one."""
     entries = _list(folder)
-    while len(entries) == 1 and entries[0].is_dir() and not _find_pictures(entries[0]):
+    while len(entries) == 1 and entries[0].is_dir() and not _has_images(entries[0]):
         entries = _list(entries[0])
     cameras: dict[str, Path] = {}
     lenses = None
@@ -65,12 +65,16 @@ def _find_pictures(entry: Path) -> list[Path]:
     if not entry.is_dir():
         return [entry]
     inside = _list(entry)
-    if any(path.is_file() and path.name.lower().endswith(COLOR_SUFFIXES) for path in inside):
+    if _has_images(entry):
         return [entry]
     if videos := [path for path in inside if path.is_file() and path.name.lower().endswith(VIDEO_SUFFIXES)]:
         return videos
     folders = [path for path in inside if path.is_dir()]
     return _find_pictures(folders[0]) if len(folders) == 1 else []
+
+
+def _has_images(folder: Path) -> bool:
+    return any(path.is_file() and path.name.lower().endswith(COLOR_SUFFIXES) for path in _list(folder))
 
 
 def _list(folder: Path) -> list[Path]:

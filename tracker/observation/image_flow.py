@@ -63,7 +63,7 @@ def find_image_flow(
     if window is None:
         return None
     first, second = (_grey(window.cut(image)) for image in (before, now))
-    search = cv2.DISOpticalFlow_create(cv2.DISOPTICAL_FLOW_PRESET_FAST)
+    search = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_FAST)
     there = search.calc(first, second, None)
     back = search.calc(second, first, None)
     columns, rows = np.meshgrid(np.arange(window.width, dtype=np.float32), np.arange(window.height, dtype=np.float32))

@@ -5,8 +5,10 @@ from __future__ import annotations
 from time import perf_counter
 
 from tracker.capture.sequence import Sequence
+from tracker.fitting.frame_fit import Fit
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.view_hands import ViewHands
+from tracker.search.part import Part
 from tracker.search.place_in_views import place_in_views
 from tracker.search.tools import Tools
 from tracker.tracking.fit_views import fit_views, judge_hand, see_hands
@@ -33,8 +35,12 @@ def follow_views(
             pose[scene.pose_slices[hand]] = placed
             found.add(hand)
     iterations = setup.options.first_iterations if found else setup.options.iterations
-    fit = fit_views(setup, tools.objective, seen, views, pose, iterations)
-    pose, posed = fit.pose, scene.pose_at(fit.pose)
+    part = Part.without(setup, tuple(gone - found))  # what is lost is nowhere: it hides and touches nothing
+    fit = Fit(part.take(pose), (), {})
+    if part.kept:
+        fit = fit_views(part.setup, tools.objective, seen, views, fit.pose, iterations)
+    pose = part.put(fit.pose, pose)
+    posed = scene.pose_at(pose)
     verdicts = {hand: judge_hand(setup, seen, posed, hand) for hand in hands}
     lost = {hand for hand in hands if hand in gone - found or not verdicts[hand][0]}
     left = {hand for hand in lost if hand in gone or not verdicts[hand][1]}

@@ -14,13 +14,15 @@ from tracker.capture.truth import Truth, load_truth
 from tracker.cli.__main__ import main
 from tracker.errors import FrameError
 from tracker.fitting.options import TrackOptions
-from tracker.fitting.setup import choose_cameras
+from tracker.fitting.setup import TrackSetup, choose_cameras
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
+from tracker.search.tools import make_tools
 from tracker.synthesis.motion import perform
 from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow import track_frames
+from tracker.tracking.follow_views import follow_views
 from tracker.tracking.start import start_tracking
 from tracker.tracking.state import TrackState
 from tracker.tracking.track import join_chunks
@@ -72,6 +74,24 @@ def test_a_run_goes_on_from_a_stored_state_as_if_it_had_never_stopped(run, views
     state.save(tmp_path / "state.npz")
     _, second = track_frames(views[0], setup, TrackState.load(tmp_path / "state.npz"), range(5, FRAMES))
     np.testing.assert_array_equal(TrackChunk.join([first, second]).pose, whole.pose)
+
+
+def test_a_lost_hand_has_no_say_wherever_it_was_last(run, views):
+    models = (default_hand("right"), default_hand("left"))
+    options = TrackOptions(calibrate=False)
+    setup = TrackSetup(("right", "left"), models, "cam0", options, view_ids=("cam0", "cam1", "cam2"))
+    right, poses = run[2].pose[1], []
+    for shift in (0.0, 0.02, 1.0):
+        left = right.copy()
+        left[:3] += shift
+        pose = np.concatenate([right, left])
+        state = TrackState(2, pose, pose, is_lost=True, lost_hands=(1,))
+        with make_tools(setup, np.eye(4)) as tools:
+            _, result, _ = follow_views(views[0], setup, tools, state)
+        assert result.hand_status == ("ok", "lost")
+        poses.append(result.pose[: len(right)])
+    np.testing.assert_array_equal(poses[1], poses[0])
+    np.testing.assert_array_equal(poses[2], poses[0])
 
 
 def test_one_camera_alone_is_said_to_guess_the_distance(run, views, tmp_path, capsys):

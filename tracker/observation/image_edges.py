@@ -51,40 +51,56 @@ def find_image_edges(
     width, height, part = window.width, window.height, window.cut(image)
     grey = cv2.GaussianBlur(cv2.cvtColor(np.ascontiguousarray(part), cv2.COLOR_RGB2GRAY), (3, 3), 0)
     dx, dy = (cv2.Sobel(grey, cv2.CV_16S, *order).astype(np.int16) for order in ((1, 0), (0, 1)))
-    is_edge = cv2.Canny(dx, dy, WEAK, STRONG) > 0
-    places = _refine(np.hypot(dx.astype(np.float32), dy.astype(np.float32)), dx, dy)
-    angle = np.arctan2(dy.astype(np.float32), dx.astype(np.float32)) % np.pi
+    rows, columns = np.nonzero(cv2.Canny(dx, dy, WEAK, STRONG))
+    places = _refine(dx, dy, rows, columns)
+    angle = np.arctan2(dy[rows, columns].astype(np.float32), dx[rows, columns].astype(np.float32)) % np.pi
     bins = (angle * (DIRECTIONS / np.pi)).astype(np.int8) % DIRECTIONS
     nearest = np.full((DIRECTIONS, height, width, 2), np.nan, dtype=np.float32)
     for direction in range(DIRECTIONS):
         beside = (bins - direction) % DIRECTIONS
-        _nearest_into(nearest[direction], is_edge & ((beside <= 1) | (beside == DIRECTIONS - 1)), places)
+        chosen = (beside <= 1) | (beside == DIRECTIONS - 1)
+        _nearest_into(nearest[direction], rows[chosen], columns[chosen], places[chosen])
     return ImageEdges(window.K, camera.T_world_camera, nearest)
 
 
 def _refine(
-    strength: npt.NDArray[np.float32], dx: npt.NDArray[np.int16], dy: npt.NDArray[np.int16]
+    dx: npt.NDArray[np.int16], dy: npt.NDArray[np.int16], rows: npt.NDArray[np.intp], columns: npt.NDArray[np.intp]
 ) -> npt.NDArray[np.float32]:
-    """(H, W, 2) row and column where the gradient is strongest, along its larger part, by a parabola through three."""
-    height, width = strength.shape
-    rows, columns = np.indices((height, width), dtype=np.float32)
-    padded = np.pad(strength, 1, mode="edge")
-    is_across = np.abs(dx.astype(np.int32)) >= np.abs(dy.astype(np.int32))
-    before = np.where(is_across, padded[1:-1, :-2], padded[:-2, 1:-1])
-    after = np.where(is_across, padded[1:-1, 2:], padded[2:, 1:-1])
-    curve = 2.0 * strength - before - after
+    """(N, 2) row and column where the gradient (H, W) is strongest near pixels (N,), along its larger part.
+
+    By a parabola through three pixels.
+    """
+    height, width = dx.shape
+    is_across = np.abs(dx[rows, columns].astype(np.int32)) >= np.abs(dy[rows, columns].astype(np.int32))
+
+    def strength(step: int) -> npt.NDArray[np.float32]:
+        at = (
+            np.clip(np.where(is_across, rows, rows + step), 0, height - 1),
+            np.clip(np.where(is_across, columns + step, columns), 0, width - 1),
+        )
+        return np.hypot(dx[at].astype(np.float32), dy[at].astype(np.float32))
+
+    before, here, after = strength(-1), strength(0), strength(1)
+    curve = 2.0 * here - before - after
     shift = np.clip(np.where(curve > 0, 0.5 * (after - before) / np.maximum(curve, 1e-6), 0.0), -0.5, 0.5)
-    return np.stack([rows + np.where(is_across, 0.0, shift), columns + np.where(is_across, shift, 0.0)], axis=2)
+    places = np.stack([rows + np.where(is_across, 0.0, shift), columns + np.where(is_across, shift, 0.0)], axis=1)
+    return places.astype(np.float32)
 
 
 def _nearest_into(
-    nearest: npt.NDArray[np.float32], chosen: npt.NDArray[np.bool_], places: npt.NDArray[np.float32]
+    nearest: npt.NDArray[np.float32],
+    rows: npt.NDArray[np.intp],
+    columns: npt.NDArray[np.intp],
+    places: npt.NDArray[np.float32],
 ) -> None:
-    """Place (H, W, 2) of the nearest chosen pixel (H, W)."""
-    if not chosen.any():
+    """For every pixel (H, W, 2) the place (N, 2) of the nearest of some pixels (N,)."""
+    if not len(rows):
         return
-    found = cv2.distanceTransformWithLabels((~chosen).astype(np.uint8), cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL)
-    labels = found[1].astype(np.int64)
-    where = np.zeros((int(labels.max()) + 1, 2), dtype=np.float32)
-    where[labels[chosen]] = places[chosen]
-    nearest[:] = where[labels]
+    is_far = np.ones(nearest.shape[:2], dtype=np.uint8)
+    is_far[rows, columns] = 0
+    found = cv2.distanceTransformWithLabels(is_far, cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL)
+    labels = found[1].astype(np.int32, copy=False)
+    where = np.zeros((int(labels[rows, columns].max()) + 1, 2), dtype=np.float32)
+    where[labels[rows, columns]] = places
+    # Both numbers of a place are copied as one of 8 bytes.
+    np.take(where.view(np.float64)[:, 0], labels, mode="clip", out=nearest.view(np.float64)[:, :, 0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -64,8 +65,9 @@ def find_image_flow(
         return None
     first, second = (_grey(window.cut(image)) for image in (before, now))
     search = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_FAST)
-    there = search.calc(first, second, None)
-    back = search.calc(second, first, None)
+    no_guess: Any = None  # OpenCV's types do not say that there may be none
+    there = search.calc(first, second, no_guess)
+    back = search.calc(second, first, no_guess)
     columns, rows = np.meshgrid(np.arange(window.width, dtype=np.float32), np.arange(window.height, dtype=np.float32))
     ends = there + np.dstack([columns, rows])
     returned = cv2.remap(back, ends[:, :, 0], ends[:, :, 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)

@@ -79,9 +79,12 @@ def test_two_tracks_are_chosen_compared_and_the_address_holds_it_all(studio, jud
     page.set_viewport_size({"width": 1200, "height": 720})
     table = page.get_by_role("table", name="Error of each track")
     assert table.evaluate("(table) => table.parentElement.scrollWidth - table.parentElement.clientWidth") == 0
-    assert table.get_by_role("columnheader").evaluate_all(
-        "(cells) => cells.filter((cell) => cell.offsetHeight > 48).length"
-    ) == 0
+    assert (
+        table.get_by_role("columnheader").evaluate_all(
+            "(cells) => cells.filter((cell) => cell.offsetHeight > 48).length"
+        )
+        == 0
+    )
     page.set_viewport_size({"width": 1280, "height": 720})
 
     second.get_by_role("radio").click()

@@ -97,7 +97,7 @@ function Checked({ checked }: { checked: Import }) {
 }
 
 /** What was found in an import, before anything is stored; the address can be sent to a colleague. */
-export function ImportPage() {
+export default function ImportPage() {
   const { importId = "" } = useParams();
   const { data: checked, error, refetch } = useImport(importId);
   const navigate = useNavigate();

@@ -1,11 +1,8 @@
 import { lazy } from "react";
 import { createBrowserRouter, Navigate } from "react-router";
 import { BrokenPage } from "./BrokenPage";
-import { ImportPage } from "./ImportPage";
-import { ComparePage } from "./jobs/ComparePage";
 import { JobPage } from "./JobPage";
 import { JobsPage } from "./JobsPage";
-import { LabelsPage } from "./labels/LabelsPage";
 import { MissingPage } from "./MissingPage";
 import { NewImportPage } from "./NewImportPage";
 import { RecordingPage } from "./RecordingPage";
@@ -16,6 +13,9 @@ import { WholeAddress } from "./WholeAddress";
 
 const AnnotatePage = lazy(() => import("./AnnotatePage"));
 const AnnotateChooser = lazy(() => import("./AnnotateChooser"));
+const ComparePage = lazy(() => import("./jobs/ComparePage"));
+const LabelsPage = lazy(() => import("./labels/LabelsPage"));
+const ImportPage = lazy(() => import("./ImportPage"));
 const CuratePage = lazy(() => import("./curate/CuratePage"));
 const ReviewAgreementPage = lazy(() => import("./curate/ReviewAgreementPage"));
 const ScansPage = lazy(() => import("./scans/ScansPage"));

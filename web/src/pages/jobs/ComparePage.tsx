@@ -124,7 +124,7 @@ function Comparison({ first, second }: { first: Job; second: Job }) {
 }
 
 /** Two runs side by side; the address holds the pair. */
-export function ComparePage() {
+export default function ComparePage() {
   useTitle("Compare two runs");
   const [address, setAddress] = useSearchParams();
   const [a, b] = [address.get("a") ?? "", address.get("b") ?? ""];

@@ -15,7 +15,7 @@ import { SnapshotTable } from "./SnapshotTable";
 import { For } from "../parts/For";
 
 /** Labels of a recording: kept as snapshots, compared, taken out and in. `?compare=` and `?with=` hold what is compared. */
-export function LabelsPage() {
+export default function LabelsPage() {
   const { recordingId = "" } = useParams();
   const [query, setQuery] = useSearchParams();
   const { data: recording, error, refetch } = useRecording(recordingId);

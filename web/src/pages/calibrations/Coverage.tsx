@@ -17,7 +17,7 @@ export function Coverage({ id, result }: { id: string; result: CalibrationResult
     <section aria-label="Where the board was seen">
       <Title order={2}>Where the board was seen</Title>
       <Text size="sm" className="quiet" mb="sm">
-        A struck cell never saw a corner: there the lens is a guess.{" "}
+        In a crossed-out cell no corner was ever seen: there the lens is a guess.{" "}
         {LEVELS.map(([color, words]) => (
           <span key={words} style={{ display: "inline-block", marginRight: 12 }}>
             <span aria-hidden style={{ color }}>

@@ -386,3 +386,18 @@ def test_projects_are_made_put_away_and_brought_back(join, open_as, screenshots)
     expect(page.get_by_role("link", name=name)).to_have_count(0)
     page.get_by_role("button", name="Undo").click()
     expect(page.get_by_role("heading", name=name)).to_be_visible()
+
+
+def test_a_page_that_only_leads_may_use_says_so_and_offers_a_way_on(join, open_as) -> None:
+    page = open_as(join("Ada", "annotator"))
+    refused = []
+    page.on("response", lambda answer: refused.append(answer.url) if answer.status == 403 else None)
+    page.goto("/calibrations/new")
+    page.get_by_role("heading", name="Leads calibrate cameras").wait_for()
+    page.get_by_role("link", name="To the calibrated cameras").click()
+    page.wait_for_url("**/calibrations")
+    assert refused == []
+    page.goto("/people")
+    page.get_by_role("heading", name="This is not open to you now").wait_for()
+    page.get_by_role("link", name="To the recordings").click()
+    page.wait_for_url("**/recordings")

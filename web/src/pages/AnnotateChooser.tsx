@@ -6,6 +6,7 @@ import { lastPlace } from "../state/lastPlace";
 import { EmptyState } from "./parts/EmptyState";
 import { Failure } from "./parts/Failure";
 import { ImportButton } from "./parts/ImportButton";
+import { Thumbnail } from "./parts/Thumbnail";
 import { useTitle } from "./parts/useTitle";
 import { workText } from "./parts/WorkProgress";
 import classes from "./AnnotateChooser.module.css";
@@ -44,7 +45,7 @@ export default function AnnotateChooser() {
       <SimpleGrid cols={{ base: 2, lg: 3 }} spacing="md">
         {data.map((recording) => (
           <Link key={recording.id} to={`/recordings/${recording.id}/annotate`} className={`card ${classes.row}`}>
-            <img src={thumbnailUrl(recording, recording.cameras[0]?.id ?? "", 0)} alt="" width={112} height={80} className={classes.picture} />
+            <Thumbnail src={thumbnailUrl(recording, recording.cameras[0]?.id ?? "", 0)} alt="" width={112} height={80} className={classes.picture} />
             <div style={{ minWidth: 0 }}>
               <Text fw={600} className="one-line">
                 {recording.name}

@@ -80,7 +80,7 @@ export default function PeoplePage() {
             <Table verticalSpacing="sm" miw={720}>
               <Table.Thead>
                 <Table.Tr>
-                  <Table.Th>Name</Table.Th>
+                  <Table.Th miw={160}>Name</Table.Th>
                   <Table.Th>Role</Table.Th>
                   <Table.Th>State</Table.Th>
                   <Table.Th>Last seen</Table.Th>

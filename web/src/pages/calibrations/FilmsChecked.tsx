@@ -3,6 +3,7 @@ import { useState } from "react";
 import { useCalibrationForm, useCheckFilms, useStartCalibrating, type Calibration, type FilmReport } from "../../api/calibrations";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
 import { formatNumber } from "../../model/format";
+import { hasRole, useMe } from "../../state/me";
 import { For } from "../parts/For";
 import { Obstacles } from "../parts/Obstacles";
 import { Refusal } from "../parts/Refusal";
@@ -53,8 +54,10 @@ export function FilmsChecked({ calibration }: { calibration: Calibration }) {
   const check = useCheckFilms(calibration.id);
   const start = useStartCalibrating(calibration.id);
   const { report } = calibration;
+  const me = useMe();
+  const isLead = hasRole(me, "lead");
   const isChanged = JSON.stringify(draft) !== JSON.stringify(calibration.options);
-  const obstacles = useJobCheck("/jobs/calibrate", { calibration_id: calibration.id }, report.problems.length === 0);
+  const obstacles = useJobCheck("/jobs/calibrate", { calibration_id: calibration.id }, report.problems.length === 0 && hasRole(me, "reviewer"));
   const count = report.problems.length;
   return (
     <div className={classes.columns}>
@@ -72,12 +75,21 @@ export function FilmsChecked({ calibration }: { calibration: Calibration }) {
             </Text>
           </section>
         )}
-        <OptionsForm options={draft} onChange={setDraft} />
+        <fieldset disabled={!isLead} className={classes.fields}>
+          <OptionsForm options={draft} onChange={setDraft} />
+        </fieldset>
       </Stack>
-      {form ? <BoardForm form={form} board={draft.board} onChange={(board) => setDraft({ ...draft, board })} /> : <Skeleton height={640} radius="lg" />}
+      <fieldset disabled={!isLead} className={classes.fields}>
+        {form ? <BoardForm form={form} board={draft.board} onChange={(board) => setDraft({ ...draft, board })} /> : <Skeleton height={640} radius="lg" />}
+      </fieldset>
       <Stack gap="md">
         {check.error && <Refusal error={check.error} after="Nothing was changed." />}
         {!isChanged && <Obstacles check={count === 0 ? obstacles.data : undefined} failure={start.error} />}
+        {!isLead && (
+          <Text size="sm" className="quiet">
+            A lead describes the board and the cameras’ clocks.
+          </Text>
+        )}
         <Group justify="flex-end" gap="sm">
           <For role="lead">
             <Button variant={isChanged || count > 0 ? "filled" : "default"} loading={check.isPending} disabled={!isChanged} onClick={() => check.mutate(draft)}>

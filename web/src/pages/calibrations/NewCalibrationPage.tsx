@@ -1,10 +1,13 @@
 import { Button, Group, Loader, Progress, Stack, Text, TextInput, Title } from "@mantine/core";
+import { IconLock } from "@tabler/icons-react";
 import { useEffect } from "react";
 import { Link, useNavigate } from "react-router";
 import { useCalibrationForm, type CalibrationForm } from "../../api/calibrations";
 import { formatBytes, formatCount } from "../../model/format";
+import { hasRole, useMe } from "../../state/me";
 import { listFaults } from "../../model/films";
 import { changeFilmUpload, endFilmUpload, sendChosenFilms, stopFilmUpload, useFilmUpload, type FilmUpload } from "../../state/filmUpload";
+import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { Refusal } from "../parts/Refusal";
@@ -68,6 +71,22 @@ function Choosing({ form, upload }: { form: CalibrationForm; upload: FilmUpload 
   );
 }
 
+function ForLeads() {
+  return (
+    <EmptyState
+      icon={<IconLock size={40} stroke={1.5} />}
+      title="Leads calibrate cameras"
+      action={
+        <Button variant="default" component={Link} to="/calibrations">
+          To the calibrated cameras
+        </Button>
+      }
+    >
+      Ask a lead to send the films of the board, or to change your role.
+    </EmptyState>
+  );
+}
+
 /** From films of a board to an upload that is checked. */
 export default function NewCalibrationPage() {
   useTitle("Calibrate cameras");
@@ -80,6 +99,7 @@ export default function NewCalibrationPage() {
     void navigate(`/calibrations/${done}`, { replace: true });
     endFilmUpload();
   }, [done, navigate]);
+  if (!hasRole(useMe(), "lead")) return <ForLeads />;
   if (error && !form) return <Failure what="The form could not be loaded" error={error} safe="Calibrations that were made are untouched." onRetry={() => void refetch()} />;
   if (!form) return <PageSkeleton />;
   return (

@@ -1,6 +1,7 @@
 import { Button, Group, Stack, Text, Title } from "@mantine/core";
 import { IconAlertTriangle, IconLock, IconPlugConnectedX } from "@tabler/icons-react";
 import type { ReactNode } from "react";
+import { Link } from "react-router";
 import { ApiError } from "../../api/client";
 
 interface FailureProps {
@@ -37,6 +38,11 @@ export function Failure({ what, error, safe, onRetry, children }: FailureProps) 
           </Button>
         )}
         {children}
+        {isForbidden && !children && (
+          <Button variant="default" component={Link} to="/recordings">
+            To the recordings
+          </Button>
+        )}
       </Group>
     </Stack>
   );

@@ -1,4 +1,5 @@
 import { HAND_LENGTH } from "../../model/scanUnit";
+import { Thumbnail } from "../parts/Thumbnail";
 import classes from "./HandForScale.module.css";
 
 interface HandForScaleProps {
@@ -39,7 +40,7 @@ export function HandForScale({ picture, pictureSide, length }: HandForScaleProps
           <Hand height={Math.max(2, pixels * HAND_LENGTH)} />
         </div>
         <div className={classes.one}>
-          <img src={picture} alt="" width={Math.max(2, pixels * pictureSide)} height={Math.max(2, pixels * pictureSide)} className={classes.picture} style={{ marginBottom: -EMPTY * pixels * pictureSide }} />
+          <Thumbnail src={picture} alt="" width={Math.max(2, pixels * pictureSide)} height={Math.max(2, pixels * pictureSide)} className={classes.picture} style={{ marginBottom: -EMPTY * pixels * pictureSide }} />
         </div>
       </div>
       <div className={classes.captions}>

@@ -12,6 +12,7 @@ import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
+import { Thumbnail } from "../parts/Thumbnail";
 import { useTitle } from "../parts/useTitle";
 import { offerUndo, tellFailure } from "../projects/offerUndo";
 import { AddScansButton, ScanDrops } from "./AddScans";
@@ -263,7 +264,7 @@ export default function ScansPage() {
                   </Table.Td>
                   <Table.Td className={classes.cell} title={scan.name}>
                     <Link to={`/scans/${scan.id}`} className={`${classes.link} ${classes.named}`}>
-                      <img className={classes.picture} src={scanThumbnailUrl(scan)} alt="" loading="lazy" width={32} height={32} />
+                      <Thumbnail className={classes.picture} src={scanThumbnailUrl(scan)} alt="" width={32} height={32} />
                       <span className="one-line">{scan.name}</span>
                     </Link>
                   </Table.Td>

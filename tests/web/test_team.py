@@ -399,5 +399,5 @@ def test_a_page_that_only_leads_may_use_says_so_and_offers_a_way_on(join, open_a
     assert refused == []
     page.goto("/people")
     page.get_by_role("heading", name="This is not open to you now").wait_for()
-    page.get_by_role("link", name="To the recordings").click()
+    page.get_by_role("link", name="To the recordings", exact=True).click()
     page.wait_for_url("**/recordings")

@@ -59,6 +59,16 @@ class ViewHands:
                 found[:, view] = hands[name].points
         return found
 
+    def stack(self, names: tuple[str, ...], camera_ids: tuple[str, ...]) -> npt.NDArray[np.float32]:
+        """(C, H, 21, 2) px as recorded of the named hands in the named cameras; NaN where a hand was not seen."""
+        found = np.full((len(camera_ids), len(names), 21, 2), np.nan, dtype=np.float32)
+        for place, camera_id in enumerate(camera_ids):
+            hands = self.of_camera(camera_id)
+            for row, name in enumerate(names):
+                if name in hands:
+                    found[place, row] = hands[name].points
+        return found
+
     def count(self, name: str) -> int:
         """Views in which a hand was seen."""
         return sum(name in hands for hands in self.hands)

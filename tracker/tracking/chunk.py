@@ -37,6 +37,9 @@ class TrackChunk:
             after a frame's last iteration and where a term had no part. I is 0 in tracks made before it was recorded.
         object_status: (T, O) index into OBJECT_STATUSES. O is 0 in tracks made before it was recorded.
         hand_status: (T, H) index into STATUSES. H is 0 in tracks made before it was recorded.
+        seen: (T, C, H, 21, 2) float32, where the detector saw the joints in each of the run's colour views, px as
+            recorded; NaN where it saw none. C is 0 where one depth camera is tracked in, and in tracks made before it
+            was recorded.
         object_score: (T, O) how well each object's pose explains what is in sight of it, 0 to 1.
     """
 
@@ -56,6 +59,7 @@ class TrackChunk:
     object_status: npt.NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), dtype=np.int8))
     object_score: Array = field(default_factory=lambda: np.zeros((0, 0)))
     hand_status: npt.NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), dtype=np.int8))
+    seen: npt.NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0, 0, 21, 2), dtype=np.float32))
 
     @classmethod
     def of(cls, results: Several[FrameResult]) -> TrackChunk:
@@ -88,6 +92,7 @@ class TrackChunk:
             object_score=np.array([[one.quality.score for one in result.objects] for result in results]).reshape(
                 len(results), -1
             ),
+            seen=np.stack([result.seen for result in results]),
         )
 
     @classmethod
@@ -97,7 +102,7 @@ class TrackChunk:
         cost_names = sorted({str(name) for chunk in chunks for name in chunk.cost_names})
         stage_names = sorted({str(name) for chunk in chunks for name in chunk.stage_names})
         plain = ("frame", "pose", "status", "seconds", "depth_residual_mm", "silhouette_iou", "score", "iterations")
-        plain = (*plain, "object_status", "object_score", "hand_status")
+        plain = (*plain, "object_status", "object_score", "hand_status", "seen")
         return cls(
             **{name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in plain},
             cost_names=np.array(cost_names, dtype=np.str_),
@@ -114,7 +119,7 @@ class TrackChunk:
     @classmethod
     def load(cls, path: Path) -> TrackChunk:
         """Read what `save` wrote, or what it wrote before the costs of iterations and the objects were recorded."""
-        later = ("iteration_costs", "object_status", "object_score", "hand_status")
+        later = ("iteration_costs", "object_status", "object_score", "hand_status", "seen")
         arrays = load_arrays(path, tuple(f.name for f in fields(cls) if f.name not in later), optional=later)
         frames = len(arrays["frame"])
         nothing = {
@@ -122,6 +127,7 @@ class TrackChunk:
             "object_status": np.zeros((frames, 0), dtype=np.int8),
             "object_score": np.zeros((frames, 0)),
             "hand_status": np.zeros((frames, 0), dtype=np.int8),
+            "seen": np.zeros((frames, 0, 0, 21, 2), dtype=np.float32),
         }
         return cls(**{**nothing, **arrays})
 

@@ -60,6 +60,7 @@ def follow_views(
         fit.costs,
         fit.stages | stages,
         hand_status=statuses,
+        seen=seen.stack(setup.hand_names, setup.view_ids),
     )
     after = TrackState(state.next_frame + 1, pose, earlier, is_lost=bool(left), lost_hands=tuple(sorted(left)))
     return after, result, seen

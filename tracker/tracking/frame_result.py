@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +27,8 @@ class FrameResult:
         stages: Seconds by stage, "reading" among them though not in `seconds`.
         objects: What became of each object, in the order of `TrackSetup.object_names`.
         hand_status: One of STATUSES for each hand, in the order of `TrackSetup.hand_names`; `status` is the worst.
+        seen: (C, H, 21, 2) where the detector saw each hand's joints in each of `TrackSetup.view_ids`, px as recorded;
+            NaN where it saw none.
     """
 
     frame: int
@@ -38,3 +40,4 @@ class FrameResult:
     stages: dict[str, float]
     objects: tuple[WatchedObject, ...] = ()
     hand_status: tuple[str, ...] = ()
+    seen: npt.NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0, 21, 2), dtype=np.float32))

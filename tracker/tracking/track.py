@@ -14,12 +14,17 @@ import numpy.typing as npt
 from tracker.capture.sequence import Sequence
 from tracker.errors import TrackingError
 from tracker.fitting.setup import TrackSetup
+from tracker.model.joints import HAND_JOINTS
 from tracker.tracking.arrays_file import load_arrays, save_arrays
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.frame_result import STATUSES
+from tracker.tracking.view_errors import ViewErrors, measure_views
 from tracker.tracking.watch_objects import OBJECT_STATUSES
 
 Array = npt.NDArray[np.float64]
+
+VIEWS_FILE = "views.npz"
+"""In a track's folder, where several colour cameras were tracked in."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,7 @@ class Track:
         joints_3d: (T, J, 3) world, m.
         joints_2d: (T, C, J, 2) px of each camera of the recording, NaN behind it.
         T_world_object: (T, O, 4, 4) m.
+        views: How well the colour cameras agree, where several are tracked in.
     """
 
     setup: TrackSetup
@@ -41,6 +47,7 @@ class Track:
     joints_3d: Array
     joints_2d: Array
     T_world_object: Array
+    views: ViewErrors | None = None
 
     @property
     def frame(self) -> npt.NDArray[np.int64]:
@@ -97,6 +104,7 @@ class Track:
             "threads": self.setup.options.threads,
             "colour_cameras": list(self.setup.view_ids),
             "is_distance_guessed": self.setup.is_distance_guessed,
+            "views": {} if self.views is None else self.views.summary(),
             "detector": None if self.setup.own_detector is None else self.setup.own_detector.to_json(),
             "objects": {
                 name: {status: int(np.count_nonzero(found == status)) for status in OBJECT_STATUSES}
@@ -129,6 +137,8 @@ class Track:
         self.setup.save(folder)
         self.chunk.save(folder / "frames.npz")
         save_arrays(folder / "track.npz", self.arrays())
+        if self.views is not None:
+            self.views.save(folder / VIEWS_FILE)
         temporary = folder / ".summary.json.part"
         temporary.write_text(json.dumps(self.summary(), indent=1))
         temporary.replace(folder / "summary.json")
@@ -153,7 +163,8 @@ def join_chunks(sequence: Sequence, setup: TrackSetup, chunks: Several[TrackChun
     joints_3d = np.stack(joints)
     joints_2d = np.stack([[camera.project(points) for camera in sequence.cameras] for points in joints_3d])
     camera_ids = tuple(camera.id for camera in sequence.cameras)
-    return Track(setup, camera_ids, chunk, joints_3d, joints_2d, np.stack(objects))
+    views = _compare_views(sequence, setup, chunk, joints_3d)
+    return Track(setup, camera_ids, chunk, joints_3d, joints_2d, np.stack(objects), views)
 
 
 def load_track(folder: Path) -> Track:
@@ -161,7 +172,19 @@ def load_track(folder: Path) -> Track:
     folder = Path(folder)
     arrays = load_arrays(folder / "track.npz", ("camera_ids", "joints_3d", "joints_2d", "T_world_object"))
     camera_ids = tuple(str(camera_id) for camera_id in arrays.pop("camera_ids"))
-    return Track(TrackSetup.load(folder), camera_ids, TrackChunk.load(folder / "frames.npz"), **arrays)
+    views = ViewErrors.load(folder / VIEWS_FILE) if (folder / VIEWS_FILE).is_file() else None
+    return Track(TrackSetup.load(folder), camera_ids, TrackChunk.load(folder / "frames.npz"), **arrays, views=views)
+
+
+def _compare_views(sequence: Sequence, setup: TrackSetup, chunk: TrackChunk, joints_3d: Array) -> ViewErrors | None:
+    """None unless the chunk tells what two cameras or more saw."""
+    seen = np.isfinite(chunk.seen).any(axis=(0, 2, 3, 4)) if chunk.seen.shape[1] else np.zeros(0, dtype=np.bool_)
+    if np.count_nonzero(seen) < 2:
+        return None
+    cameras = [sequence.camera(setup.view_ids[number]) for number in np.flatnonzero(seen)]
+    places = [setup.joint_names.index(f"{name}/{joint}") for name in setup.hand_names for joint in HAND_JOINTS]
+    joints = joints_3d[:, places].reshape(len(joints_3d), len(setup.hand_names), len(HAND_JOINTS), 3)
+    return measure_views(cameras, chunk.seen[:, seen], joints, chunk.hand_status == STATUSES.index("lost"))
 
 
 def _median(values: Array) -> float | None:

@@ -25,7 +25,7 @@ from tracker.tracking.follow import track_frames
 from tracker.tracking.follow_views import follow_views
 from tracker.tracking.start import start_tracking
 from tracker.tracking.state import TrackState
-from tracker.tracking.track import join_chunks
+from tracker.tracking.track import join_chunks, load_track
 
 FRAMES, HIDDEN = 9, range(4, 6)
 """In two of the frames nothing is to be seen."""
@@ -74,6 +74,27 @@ def test_a_run_goes_on_from_a_stored_state_as_if_it_had_never_stopped(run, views
     state.save(tmp_path / "state.npz")
     _, second = track_frames(views[0], setup, TrackState.load(tmp_path / "state.npz"), range(5, FRAMES))
     np.testing.assert_array_equal(TrackChunk.join([first, second]).pose, whole.pose)
+
+
+def test_every_camera_is_compared_with_the_fit_and_with_the_others(run, tmp_path):
+    track = run[2]
+    errors = track.views
+    assert errors is not None
+    assert errors.camera_ids.tolist() == ["cam0", "cam1", "cam2"]
+    is_lost = track.status == "lost"
+    assert np.isnan(errors.fit_px[is_lost]).all()
+    assert np.isnan(errors.left_out_px[is_lost]).all()
+    assert np.nanmedian(errors.fit_px) < 5.0
+    track.save(tmp_path)
+    back = load_track(tmp_path)
+    assert back.views is not None
+    np.testing.assert_array_equal(back.views.left_out_px, errors.left_out_px)
+    np.testing.assert_array_equal(back.chunk.seen, track.chunk.seen)
+    assert set(json.loads((tmp_path / "summary.json").read_text())["views"]["cam1"]) == {
+        "fit_px",
+        "left_out_px",
+        "weight",
+    }
 
 
 def test_a_lost_hand_has_no_say_wherever_it_was_last(run, views):

@@ -29,6 +29,17 @@ class TrackOut(BaseModel):
     deleted_at: datetime | None
 
 
+class TrackView(BaseModel):
+    """How well one camera agrees, as columns with one value per frame, the worse hand's; null where it saw none."""
+
+    camera: str
+    fit_px: list[float | None] = Field(description="From the fitted joints to where the detector saw them, median.")
+    left_out_px: list[float | None] = Field(
+        description="From where the detector saw the joints to what the other cameras make of them, median."
+    )
+    weight: list[float | None] = Field(description="0 to 1, mean of the camera's joints in the fit.")
+
+
 class TrackFrames(BaseModel):
     """Columns with one value per frame; null where nothing was measured."""
 
@@ -42,6 +53,7 @@ class TrackFrames(BaseModel):
         description="Of each term at the last iteration, mm²; null where it had no part."
     )
     stages: dict[str, list[float | None]] = Field(description="Of each stage of the work, s.")
+    views: list[TrackView] = Field(description="Of a track in several colour cameras; none in others.")
 
 
 class TrackJoints(BaseModel):

@@ -114,7 +114,22 @@ def read_columns(folder: Path) -> dict[str, Any]:
         "iterations": chunk.iterations.tolist(),
         "costs": {str(name): _as_list(costs[:, place]) for place, name in enumerate(chunk.cost_names)},
         "stages": {str(name): _as_list(chunk.stages[:, place]) for place, name in enumerate(chunk.stage_names)},
+        "views": _read_views(folder / "views.npz"),
     }
+
+
+def _read_views(path: Path) -> list[dict[str, Any]]:
+    """How well each camera agrees, of the worse hand of every frame; nothing where one camera was tracked in."""
+    if not path.is_file():
+        return []
+    with np.load(path, allow_pickle=False) as arrays:
+        far = {name: np.fmax.reduce(arrays[name], axis=2) for name in ("fit_px", "left_out_px")}
+        worse = far | {"weight": np.fmin.reduce(arrays["weight"], axis=2)}
+        names = arrays["camera_ids"].tolist()
+    return [
+        {"camera": camera, **{name: _as_list(np.round(values[:, place], 3)) for name, values in worse.items()}}
+        for place, camera in enumerate(names)
+    ]
 
 
 def read_energy(folder: Path, frame: int) -> dict[str, Any]:

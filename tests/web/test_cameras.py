@@ -7,6 +7,7 @@ import json
 import re
 import subprocess
 import sys
+import time
 import uuid
 import zipfile
 from pathlib import Path
@@ -17,6 +18,7 @@ import numpy as np
 import pytest
 
 from tests.web.conftest import ROOT, HeldBack
+from tests.web.test_accessibility import find_faults
 from tracker import Camera, load_sequence, triangulate
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
@@ -345,3 +347,45 @@ def test_each_picture_takes_gestures_by_itself_once_it_is_there(studio, recordin
     assert [round(value) for value in find_points(studio, recording, first, frame=1)[0]] == [120, 90, 2]
     marked = [[round(x), round(y)] for x, y, v in find_points(studio, recording, second, frame=1) if v]
     assert marked == [[160, 110]], "the click on the picture of frame 0 left nothing"
+
+
+def test_a_track_in_all_cameras_shows_every_picture_and_how_well_each_camera_agrees(
+    studio, recording, open_page, screenshots
+):
+    from playwright.sync_api import expect
+
+    names = [camera["id"] for camera in recording["cameras"]]
+    job = studio.send("POST", "/jobs", json={"sequence_id": recording["id"], "params": {"calibrate": False}}).json()
+    deadline = time.monotonic() + 150
+    while job["state"] in ("queued", "running") and time.monotonic() < deadline:
+        time.sleep(0.5)
+        job = studio.get(f"/jobs/{job['id']}")
+    assert job["state"] == "succeeded", job["error"]
+    views = studio.get(f"/tracks/{job['track_id']}/frames")["views"]
+    assert [view["camera"] for view in views] == names
+    summary = studio.get(f"/tracks/{job['track_id']}")["summary"]["views"]
+
+    page = open_page(width=1920, height=1080)
+    page.goto(f"/tracks/{job['track_id']}")
+    table = page.get_by_role("table", name="Cameras")
+    expect(table.get_by_role("row")).to_have_count(1 + CAMERAS)
+    for name in names:
+        row = table.get_by_role("row", name=re.compile(f"^{name} "))
+        own = summary[name]
+        expect(row.get_by_role("cell")).to_have_text(
+            [name, f"{own['fit_px']:.1f}", f"{own['left_out_px']:.1f}", f"{own['weight']:.2f}"]
+        )
+    table.get_by_role("button", name="cam3").click()
+    expect(page.get_by_role("combobox", name="Camera", exact=True)).to_have_value("cam3")
+    expect(page.get_by_label("How well cam3 agrees, by frame")).to_be_visible()
+
+    page.get_by_role("combobox", name="Camera", exact=True).click()
+    page.get_by_role("option", name="All cameras").click()
+    for name in names:
+        expect(page.get_by_label(f"Image of {name} of frame 0 with the fitted hand")).to_be_visible()
+    assert not find_faults(page)
+    screenshots.take(page, "track-all-cameras-dark-1920")
+    page.reload()
+    page.get_by_role("button", name="cam5", exact=True).first.click()
+    expect(page.get_by_role("combobox", name="Camera", exact=True)).to_have_value("cam5")
+    expect(page.get_by_label("Image of frame 0 with the fitted hand")).to_have_count(1)

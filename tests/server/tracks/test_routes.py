@@ -39,6 +39,7 @@ def test_columns_have_a_value_for_every_frame(client: TestClient, address: str) 
     for name in ("seconds", "depth_residual_mm", "silhouette_iou", "iterations"):
         assert len(columns[name]) == 12
     assert all(len(column) == 12 for column in (*columns["costs"].values(), *columns["stages"].values()))
+    assert columns["views"] == [], "one depth camera is compared with no other"
 
 
 def test_the_energy_of_a_frame_is_told_by_term_and_iteration(client: TestClient, address: str) -> None:

@@ -8470,6 +8470,11 @@ export interface components {
             };
             /** Status */
             status: ("ok" | "lost" | "recovered")[];
+            /**
+             * Views
+             * @description Of a track in several colour cameras; none in others.
+             */
+            views: components["schemas"]["TrackView"][];
         };
         /**
          * TrackJoints
@@ -8530,6 +8535,29 @@ export interface components {
             summary: {
                 [key: string]: unknown;
             };
+        };
+        /**
+         * TrackView
+         * @description How well one camera agrees, as columns with one value per frame, the worse hand's; null where it saw none.
+         */
+        TrackView: {
+            /** Camera */
+            camera: string;
+            /**
+             * Fit Px
+             * @description From the fitted joints to where the detector saw them, median.
+             */
+            fit_px: (number | null)[];
+            /**
+             * Left Out Px
+             * @description From where the detector saw the joints to what the other cameras make of them, median.
+             */
+            left_out_px: (number | null)[];
+            /**
+             * Weight
+             * @description 0 to 1, mean of the camera's joints in the fit.
+             */
+            weight: (number | null)[];
         };
         /**
          * TrainCreate

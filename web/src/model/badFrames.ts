@@ -1,16 +1,16 @@
 /** Frames of a track that want a look. */
 
 import type { TrackFrames } from "../api/types";
+import { frameError } from "./frameError";
 
-/** Lost frames in order; when none is lost, the tenth with the largest residual. */
+/** Lost frames in order; when none is lost, the tenth with the largest error. */
 export function badFrames(track: TrackFrames): number[] {
   const lost = track.frame.filter((_, index) => track.status[index] === "lost");
   if (lost.length > 0) return lost;
-  const byResidual = track.frame
-    .map((frame, index) => ({ frame, residual: track.depth_residual_mm[index] ?? -1 }))
-    .sort((a, b) => b.residual - a.residual);
+  const { values } = frameError(track);
+  const byError = track.frame.map((frame, index) => ({ frame, error: values[index] ?? -1 })).sort((a, b) => b.error - a.error);
   const count = Math.max(1, Math.ceil(track.frame.length / 10));
-  return byResidual
+  return byError
     .slice(0, count)
     .map(({ frame }) => frame)
     .sort((a, b) => a - b);

@@ -2,6 +2,7 @@ import { expect, test } from "vitest";
 import type { TrackFrames } from "../api/types";
 import { badFrames, nextIn } from "./badFrames";
 import { errorColor } from "./errorColor";
+import { frameError } from "./frameError";
 import { trackRows } from "./trackRows";
 
 const track: TrackFrames = {
@@ -13,11 +14,23 @@ const track: TrackFrames = {
   iterations: [10, 0, 10, 10],
   costs: {},
   stages: {},
+  views: [],
 };
 
 test("lost frames come first; without any, those with the largest residual", () => {
   expect(badFrames(track)).toEqual([11]);
   expect(badFrames({ ...track, status: ["ok", "ok", "ok", "ok"] })).toEqual([12]);
+});
+
+test("in several colour cameras the worst camera's distance from the detector counts", () => {
+  const seen = { left_out_px: [1, 1, 1, 1], weight: [1, 1, 1, 1] };
+  const views = [
+    { camera: "left", fit_px: [3, null, 2, 4], ...seen },
+    { camera: "right", fit_px: [5, null, null, 1], ...seen },
+  ];
+  expect(frameError({ ...track, views })).toMatchObject({ unit: "px", values: [5, null, 2, 4] });
+  expect(badFrames({ ...track, views, status: ["ok", "ok", "ok", "ok"] })).toEqual([10]);
+  expect(frameError(track)).toMatchObject({ unit: "mm", values: track.depth_residual_mm });
 });
 
 test("the way through bad frames goes around", () => {

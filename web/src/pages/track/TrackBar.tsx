@@ -32,6 +32,8 @@ interface TrackBarProps {
   isPlaying: boolean;
   hasLost: boolean;
   camera: string;
+  /** The choice of all cameras. */
+  all: string;
   onCamera: (camera: string) => void;
   onPlay: () => void;
   onStep: (by: number) => void;
@@ -43,7 +45,7 @@ const STATUS_ICONS = { ok: IconCircleCheck, lost: IconAlertTriangle, recovered: 
 
 /** Which track, which frame, and how it went there. */
 export function TrackBar(props: TrackBarProps) {
-  const { track, recording, frame, status, isPlaying, hasLost, camera, onCamera, onPlay, onStep, onBad, onAnnotate } = props;
+  const { track, recording, frame, status, isPlaying, hasLost, camera, all, onCamera, onPlay, onStep, onBad, onAnnotate } = props;
   const hint = useHint();
   const remove = useDeleteTrack();
   const restore = useRestoreTrack();
@@ -77,7 +79,7 @@ export function TrackBar(props: TrackBarProps) {
         </Tooltip>
       )}
       {recording.cameras.length > 1 && (
-        <Select size="xs" w={136} aria-label="Camera" allowDeselect={false} data={recording.cameras.map((one) => one.id)} value={camera} onChange={(id) => id && onCamera(id)} />
+        <Select size="xs" w={136} aria-label="Camera" allowDeselect={false} data={[{ value: all, label: "All cameras" }, ...recording.cameras.map((one) => one.id)]} value={camera} onChange={(id) => id && onCamera(id)} />
       )}
       <Group gap={4} ml="auto" wrap="nowrap" className={classes.controls}>
         <Group gap={4} wrap="nowrap" className={classes.status} data-status={status ?? ""} role="status">

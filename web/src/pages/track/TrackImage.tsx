@@ -1,4 +1,4 @@
-import { Checkbox } from "@mantine/core";
+import { UnstyledButton } from "@mantine/core";
 import { useEffect, useMemo, useState, type RefObject } from "react";
 import { overlayUrl, unknownUrl, useTrackJoints } from "../../api/tracks";
 import type { Camera, Recording, Track } from "../../api/types";
@@ -8,6 +8,7 @@ import { useOverlay } from "../../canvas/useOverlay";
 import { usePictures } from "../../canvas/usePictures";
 import type { View } from "../../canvas/view";
 import { createPointerStore } from "../../state/pointer";
+import type { Overlays } from "./TrackPictures";
 import classes from "./TrackReview.module.css";
 
 interface TrackImageProps {
@@ -15,24 +16,20 @@ interface TrackImageProps {
   recording: Recording;
   camera: Camera;
   frame: number;
-  isMeshShown: boolean;
-  isSkeletonShown: boolean;
-  isUnknownShown: boolean;
+  overlays: Overlays;
   onStep: (by: 1 | -1) => void;
-  onMesh: (isShown: boolean) => void;
-  onSkeleton: (isShown: boolean) => void;
-  onUnknown: (isShown: boolean) => void;
-  /** Is told whether the picture is that of the frame, so that playing leaves none out. */
-  ready: RefObject<boolean>;
+  /** One of several pictures: it is named, and a click on the name shows it alone. */
+  onChoose: (() => void) | undefined;
+  ready: RefObject<Record<string, boolean>>;
 }
 
 /** What the camera saw, with the fitted mesh and joints over it. */
-export function TrackImage({ track, recording, camera, frame, isMeshShown, isSkeletonShown, isUnknownShown, onStep, onMesh, onSkeleton, onUnknown, ready }: TrackImageProps) {
+export function TrackImage({ track, recording, camera, frame, overlays, onStep, onChoose, ready }: TrackImageProps) {
   const [view, setView] = useState<View | null>(null);
   const [pointer] = useState(createPointerStore);
   const pictures = usePictures(recording, camera, frame, { color: camera.has_color, depth: !camera.has_color, palette: "grey" }, null);
-  const overlay = useOverlay("mesh", isMeshShown ? overlayUrl(track.id, camera.id, frame) : null);
-  const unknown = useOverlay("unknown", isUnknownShown ? unknownUrl(track.id, camera.id, frame) : null);
+  const overlay = useOverlay("mesh", overlays.mesh ? overlayUrl(track.id, camera.id, frame) : null);
+  const unknown = useOverlay("unknown", overlays.unknown ? unknownUrl(track.id, camera.id, frame) : null);
   const joints = useTrackJoints(track.id, camera.id).data;
   // What lies over the picture is of the picture's own frame.
   const { shownFrame } = pictures;
@@ -45,11 +42,11 @@ export function TrackImage({ track, recording, camera, frame, isMeshShown, isSke
     { picture: shownFrame === frame ? overlay.picture : null, opacity: 0.75 },
   ];
   const failure = overlay.failure ?? unknown.failure;
-  ready.current = !pictures.isStale || pictures.setback !== null;
+  ready.current[camera.id] = !pictures.isStale || pictures.setback !== null;
   return (
     <div className={classes.image}>
       <ImagePane
-        label={`Image of frame ${frame} with the fitted hand`}
+        label={onChoose ? `Image of ${camera.id} of frame ${frame} with the fitted hand` : `Image of frame ${frame} with the fitted hand`}
         camera={camera}
         layers={layers}
         view={view}
@@ -67,21 +64,11 @@ export function TrackImage({ track, recording, camera, frame, isMeshShown, isSke
         onRetry={pictures.retry}
         overlay={
           <>
-            <div className={classes.imageTools} data-over-picture>
-              <Checkbox size="xs" label="Mesh" checked={isMeshShown} onChange={(event) => onMesh(event.currentTarget.checked)} />
-              <Checkbox size="xs" label="Skeleton" checked={isSkeletonShown} onChange={(event) => onSkeleton(event.currentTarget.checked)} />
-              <Checkbox
-                size="xs"
-                label={
-                  <>
-                    Unknown things <i className={classes.unknown} aria-hidden />
-                  </>
-                }
-                title="What the run left out near the hands: held things without a model, sleeves, what hides the hand. Seen in the depth camera that was tracked in."
-                checked={isUnknownShown}
-                onChange={(event) => onUnknown(event.currentTarget.checked)}
-              />
-            </div>
+            {onChoose && (
+              <UnstyledButton className={classes.pictureName} data-over-picture title={`Show ${camera.id} alone`} onClick={onChoose}>
+                {camera.id}
+              </UnstyledButton>
+            )}
             {failure && (
               <span className={classes.note} role="alert">
                 {failure.message}
@@ -90,7 +77,7 @@ export function TrackImage({ track, recording, camera, frame, isMeshShown, isSke
           </>
         }
       >
-        {(shown) => isSkeletonShown && joints && row >= 0 && <TrackShape names={joints.joint_names} points={joints.points[row] ?? []} view={shown} />}
+        {(shown) => overlays.skeleton && joints && row >= 0 && <TrackShape names={joints.joint_names} points={joints.points[row] ?? []} view={shown} />}
       </ImagePane>
     </div>
   );

@@ -6,6 +6,7 @@ import type { Track, TrackFrames } from "../../api/types";
 import { Plot } from "../../canvas/Plot";
 import type { Curve } from "../../canvas/series";
 import { formatMeasure } from "../../model/format";
+import { CameraPlots } from "./CameraPlots";
 import { EnergyPlots } from "./EnergyPlots";
 import classes from "./TrackReview.module.css";
 
@@ -17,11 +18,12 @@ interface TrackPlotsProps {
   camera: string;
   tab: string;
   onTab: (tab: string) => void;
+  onCamera: (camera: string) => void;
   onSeek: (frame: number) => void;
 }
 
 /** Error and timing by frame; a click goes there. */
-export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onSeek }: TrackPlotsProps) {
+export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onCamera, onSeek }: TrackPlotsProps) {
   const evaluation = useEvaluation(track.id).data;
   const [isLog, setLog] = useLocalStorage({ key: "handloom/energy-log", defaultValue: true, getInitialValueInEffect: false });
 
@@ -52,19 +54,23 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
   );
 
   const leftOut = evaluation && evaluation.left_out_joints > 0 ? `, ${evaluation.left_out_joints} joints that a track had a part in left out` : "";
+  const hasDepth = frames.depth_residual_mm.some((value) => value !== null);
   const hasEnergy = Object.keys(frames.costs).length > 0;
   const stages = Object.entries(track.summary.stages_ms ?? {});
   return (
-    <Tabs value={tab} onChange={(next) => next && onTab(next)} className={classes.plots} data-tall={tab === "energy" || (tab === "error" && annotatedCurves.length > 0) || undefined} keepMounted={false}>
+    <Tabs value={tab} onChange={(next) => next && onTab(next)} className={classes.plots} data-tall={tab === "energy" || tab === "cameras" || (tab === "error" && annotatedCurves.length > 0) || undefined} keepMounted={false}>
       <Tabs.List style={{ flexWrap: "nowrap" }}>
         <Tabs.Tab value="error">Error</Tabs.Tab>
+        {frames.views.length > 0 && <Tabs.Tab value="cameras">Cameras</Tabs.Tab>}
         {hasEnergy && <Tabs.Tab value="energy">Energy</Tabs.Tab>}
         <Tabs.Tab value="timing">Timing</Tabs.Tab>
         {tab === "energy" && (
           <Switch size="xs" ml="auto" my="auto" px={12} label="Logarithmic" checked={isLog} onChange={(event) => setLog(event.currentTarget.checked)} />
         )}
         <Text size="xs" className="quiet one-line" ml="auto" my="auto" px={12} hidden={tab === "energy"}>
-          {tab === "timing"
+          {tab === "cameras"
+            ? "medians over all frames"
+            : tab === "timing"
             ? `median ${formatMeasure(track.summary.median_ms, "ms")}, 95 % below ${formatMeasure(track.summary.p95_ms, "ms")}`
             : evaluation && evaluation.evaluated > 0
               ? `${formatMeasure(evaluation.joint_error_px.mean, "px")} mean error in ${evaluation.evaluated} annotated${leftOut}`
@@ -74,10 +80,13 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onS
         </Text>
       </Tabs.List>
       <Tabs.Panel value="error" className={classes.plot}>
-        <Plot label="Error by frame" frames={frames.frame} curves={fitCurves} lost={lost} frame={frame} onSeek={onSeek} />
+        {(hasDepth || annotatedCurves.length === 0) && <Plot label="Error by frame" frames={frames.frame} curves={fitCurves} lost={lost} frame={frame} onSeek={onSeek} />}
         {annotatedCurves.length > 0 && (
-          <Plot label="Error against the annotations by frame" frames={frames.frame} curves={annotatedCurves} lost={lost} frame={frame} onSeek={onSeek} isBelowTwoAxes />
+          <Plot label="Error against the annotations by frame" frames={frames.frame} curves={annotatedCurves} lost={lost} frame={frame} onSeek={onSeek} isBelowTwoAxes={hasDepth} />
         )}
+      </Tabs.Panel>
+      <Tabs.Panel value="cameras" className={classes.plot}>
+        <CameraPlots track={track} frames={frames} lost={lost} frame={frame} camera={camera} onCamera={onCamera} onSeek={onSeek} />
       </Tabs.Panel>
       <Tabs.Panel value="energy" className={classes.plot}>
         <EnergyPlots track={track} frames={frames} lost={lost} frame={frame} isLog={isLog} onSeek={onSeek} />

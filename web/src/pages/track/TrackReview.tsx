@@ -6,6 +6,7 @@ import { LAYERS, useViewer, type Layer, type Shown } from "../../api/tracks";
 import type { Recording, Track, TrackFrames } from "../../api/types";
 import { FrameStrip } from "../../canvas/FrameStrip";
 import { badFrames, nextIn } from "../../model/badFrames";
+import { frameError } from "../../model/frameError";
 import { formatMeasure } from "../../model/format";
 import { trackRows } from "../../model/trackRows";
 import { usePlayback } from "../annotate/usePlayback";
@@ -13,10 +14,13 @@ import { useLateAddress } from "../parts/useLateAddress";
 import { useIsCompact } from "../parts/useScreen";
 import { ErrorLegend } from "./ErrorLegend";
 import { TrackBar } from "./TrackBar";
-import { TrackImage } from "./TrackImage";
+import { TrackPictures, type Overlays } from "./TrackPictures";
 import { TrackPlots } from "./TrackPlots";
 import classes from "./TrackReview.module.css";
 import { ViewerFrame } from "./ViewerFrame";
+
+/** In the address in place of a camera's id. */
+const ALL = "*";
 
 type ShownLayers = Record<Layer, boolean>;
 
@@ -41,13 +45,13 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const clamp = useCallback((frame: number) => Math.min(last, Math.max(first, frame)), [first, last]);
   const [frame, setFrame] = useState(() => clamp(Number(address.get("frame") ?? first) || first));
   const [cameraId, setCameraId] = useState(() => address.get("camera") ?? recording.cameras[0]?.id ?? "");
-  const [tab, setTab] = useState(() => ["energy", "timing"].find((name) => name === address.get("tab")) ?? "error");
+  const [tab, setTab] = useState(() => ["cameras", "energy", "timing"].find((name) => name === address.get("tab")) ?? (frames.views.length > 0 ? "cameras" : "error"));
+  const isAll = cameraId === ALL && recording.cameras.length > 1;
   const camera = recording.cameras.find((one) => one.id === cameraId) ?? recording.cameras[0];
+  const cameras = isAll ? recording.cameras : recording.cameras.filter((one) => one === camera);
   const [layers, setLayers] = useState<ShownLayers>(() => readLayers(address.get("layers")));
   const [terms, setTerms] = useState<Record<string, boolean>>({});
-  const [isMeshShown, setMeshShown] = useState(true);
-  const [isSkeletonShown, setSkeletonShown] = useState(true);
-  const [isUnknownShown, setUnknownShown] = useState(() => readLayers(address.get("layers")).unknown);
+  const [overlays, setOverlays] = useState<Overlays>(() => ({ mesh: true, skeleton: true, unknown: readLayers(address.get("layers")).unknown }));
   // A small screen shows one at a time; the 3D view is opened when somebody wants it, and stays.
   const isCompact = useIsCompact();
   const [shown, setShown] = useState<"image" | "space">("image");
@@ -58,17 +62,18 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const viewer = useViewer(track.id, frame, show);
   const seek = useCallback((to: number) => setFrame(clamp(to)), [clamp]);
 
-  const isPictureReady = useRef(true);
+  const readyPictures = useRef<Record<string, boolean>>({});
   const [isPlaying, setPlaying] = usePlayback(recording.fps, {
-    isReady: () => isPictureReady.current,
+    isReady: () => cameras.every(({ id }) => readyPictures.current[id] !== false),
     step: () => {
       setFrame((now) => clamp(now + 1));
       return frame + 1 < last;
     },
   });
 
-  useLateAddress({ frame: String(frame), camera: camera?.id ?? "", tab, layers: LAYERS.filter((layer) => layers[layer]).join(",") }, 150);
+  useLateAddress({ frame: String(frame), camera: isAll ? ALL : (camera?.id ?? ""), tab, layers: LAYERS.filter((layer) => layers[layer]).join(",") }, 150);
 
+  const error = useMemo(() => frameError(frames), [frames]);
   const bad = useMemo(() => badFrames(frames), [frames]);
   const lost = useMemo(() => frames.frame.filter((_, index) => frames.status[index] === "lost"), [frames]);
   const rows = useMemo(() => trackRows(frames, recording.frame_count), [frames, recording.frame_count]);
@@ -90,14 +95,14 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
     "track.first": () => seek(first),
     "track.last": () => seek(last),
     "track.annotate": annotate,
-    "track.mesh": () => setMeshShown((now) => !now),
-    "track.skeleton": () => setSkeletonShown((now) => !now),
+    "track.mesh": () => setOverlays((now) => ({ ...now, mesh: !now.mesh })),
+    "track.skeleton": () => setOverlays((now) => ({ ...now, skeleton: !now.skeleton })),
   });
 
   const describe = (at: number): string => {
     const index = frames.frame.indexOf(at);
     if (index < 0) return `frame ${at}: not in this track`;
-    return `frame ${at}: ${frames.status[index] ?? "?"}, ${formatMeasure(frames.depth_residual_mm[index], "mm")}`;
+    return `frame ${at}: ${frames.status[index] ?? "?"}, ${formatMeasure(error.values[index], error.unit)}`;
   };
 
   return (
@@ -109,7 +114,8 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
         status={frames.status[frames.frame.indexOf(frame)] ?? null}
         isPlaying={isPlaying}
         hasLost={lost.length > 0}
-        camera={camera?.id ?? ""}
+        camera={isAll ? ALL : (camera?.id ?? "")}
+        all={ALL}
         onCamera={setCameraId}
         onPlay={play}
         onStep={(by) => seek(frame + by)}
@@ -134,27 +140,24 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
       <div className={classes.middle} data-shown={shown}>
         {(!isCompact || hasSpace.current) && <ViewerFrame viewer={viewer} frame={frame} layers={layers} terms={terms} onLayers={setLayers} onTerms={setTerms} />}
         <div className={classes.side}>
-          {camera && (
-            <TrackImage
+          {cameras.length > 0 && (
+            <TrackPictures
               track={track}
               recording={recording}
-              camera={camera}
+              cameras={cameras}
               frame={frame}
-              isMeshShown={isMeshShown}
-              isSkeletonShown={isSkeletonShown}
-              isUnknownShown={isUnknownShown}
+              overlays={overlays}
+              onOverlays={setOverlays}
               onStep={(by) => seek(frame + by)}
-              onMesh={setMeshShown}
-              onSkeleton={setSkeletonShown}
-              onUnknown={setUnknownShown}
-              ready={isPictureReady}
+              onChoose={setCameraId}
+              ready={readyPictures}
             />
           )}
-          <TrackPlots track={track} frames={frames} lost={lost} frame={frame} camera={camera?.id ?? ""} tab={tab} onTab={setTab} onSeek={seek} />
+          <TrackPlots onCamera={setCameraId} track={track} frames={frames} lost={lost} frame={frame} camera={camera?.id ?? ""} tab={tab} onTab={setTab} onSeek={seek} />
         </div>
       </div>
       <div className={classes.timeline}>
-        <ErrorLegend hasLost={lost.length > 0} />
+        <ErrorLegend error={error} hasLost={lost.length > 0} />
         <FrameStrip rows={rows} frameCount={recording.frame_count} frame={frame} height={lost.length > 0 ? 34 : 24} label="Timeline" onSeek={seek} describe={describe} />
       </div>
     </div>

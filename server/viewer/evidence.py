@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from server.viewer.layers import FINGER_COLORS, TERM_COLORS, WRIST_COLOR, Layers
+from server.viewer.layers import FINGER_COLORS, TERM_COLORS, WRIST_COLOR, Layers, repeat
 from server.viewer.nodes import SceneNodes
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def draw_evidence(nodes: SceneNodes, view: FrameView, layers: Layers) -> None:
     if layers.contacts:
         _draw_contacts(nodes, view)
     if layers.unknown and len(view.unknown.points):
-        color = _repeat(_unknown_color(), len(view.unknown.points))
+        color = repeat(_unknown_color(), len(view.unknown.points))
         away = view.T_world_camera[:3, 3] - view.unknown.points
         lifted = view.unknown.points + LIFT * away / np.linalg.norm(away, axis=1, keepdims=True)
         nodes.points("/unknown", lifted, color, size=0.0012)
@@ -108,16 +108,12 @@ def _draw_contacts(nodes: SceneNodes, view: FrameView) -> None:
             continue
         nodes.triangles(f"/contacts/{kind}", np.concatenate([part.triangles for part in parts]), color)
         gaps = np.stack([part.segment for part in parts])
-        nodes.points(f"/contacts/{kind}-ends", gaps.reshape(-1, 3), _repeat(color, 2 * len(gaps)), size=0.0024)
-        nodes.segments(f"/contacts/{kind}-gaps", gaps, _repeat(color, len(gaps)), thickness=0.0014)
+        nodes.points(f"/contacts/{kind}-ends", gaps.reshape(-1, 3), repeat(color, 2 * len(gaps)), size=0.0024)
+        nodes.segments(f"/contacts/{kind}-gaps", gaps, repeat(color, len(gaps)), thickness=0.0014)
     for place, part in enumerate(view.contacts.contacts):
         words = part.part.replace("_", " ")
         text = f"{words}, chosen" if part.is_chosen else words
         nodes.label(f"/contacts/label-{place}", text, part.segment[0])
-
-
-def _repeat(color: tuple[int, int, int], count: int) -> npt.NDArray[np.uint8]:
-    return np.tile(np.array(color, dtype=np.uint8), (count, 1))
 
 
 def _describe_detections(view: FrameView) -> dict[str, Any]:

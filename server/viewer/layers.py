@@ -45,12 +45,22 @@ def term_color(term: str) -> Color:
 
 def joint_colors(model: ModelView) -> npt.NDArray[np.uint8]:
     """(J, 3) colours of a model's joints: each its finger's and grey for the wrist, or the object's own."""
+    if model.name not in ("right", "left"):
+        return repeat(model.color, len(model.joints))
+    return hand_colors()
+
+
+def hand_colors() -> npt.NDArray[np.uint8]:
+    """(21, 3) colours of a hand's joints: each its finger's and grey for the wrist."""
     from tracker import HAND_JOINTS
 
-    if model.name not in ("right", "left"):
-        return np.tile(np.array(model.color, dtype=np.uint8), (len(model.joints), 1))
     fingers = [FINGER_COLORS.get(joint.partition("_")[0], WRIST_COLOR) for joint in HAND_JOINTS]
     return np.array(fingers, dtype=np.uint8)
+
+
+def repeat(color: Color, count: int) -> npt.NDArray[np.uint8]:
+    """(N, 3) of one colour."""
+    return np.tile(np.array(color, dtype=np.uint8), (count, 1))
 
 
 @dataclass(frozen=True)
@@ -66,6 +76,7 @@ class Layers:
     contacts: bool = False
     unknown: bool = False
     distances: bool = False
+    cameras: bool = False
     hidden_terms: frozenset[str] = field(default_factory=frozenset)
     dark: bool = True
 
@@ -112,6 +123,7 @@ LAYER_NAMES = (
     "contacts",
     "unknown",
     "distances",
+    "cameras",
     "dark",
 )
 
@@ -125,5 +137,6 @@ VIEW_ATTRIBUTES = {
     "contacts": "contacts",
     "unknown": "unknown",
     "distances": "surface_fit",
+    "cameras": "cameras",
 }
 """Layer to what of a `FrameView` it shows."""

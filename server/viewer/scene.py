@@ -12,7 +12,7 @@ import viser
 from viser import _messages
 
 from server.viewer.evidence import draw_evidence
-from server.viewer.layers import Layers, joint_colors, term_color
+from server.viewer.layers import Color, Layers, hand_colors, joint_colors, repeat, term_color
 from server.viewer.nodes import SceneNodes
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ HAND_SPAN = 0.24
 POINT_SIZE = 0.0008
 """m; less than the spacing of a depth sensor's points at arm's length, so that the mesh shows between them."""
 
+
+CAMERA_COLOR: Color = (148, 163, 184)
 
 SOLID, SEE_THROUGH = 0.85, 0.35
 """Opacity of meshes, and where something on or in them is to be seen."""
@@ -66,6 +68,8 @@ class ViewerScene:
                 self._draw_skeletons(view)
             if layers.correspondences:
                 self._draw_correspondences(view, layers)
+            if layers.cameras:
+                self._draw_cameras(view)
             draw_evidence(self._nodes, view, layers)
             self._nodes.end()
         self.server.flush()
@@ -104,8 +108,16 @@ class ViewerScene:
                 bones = model.joints[model.edges]
                 self._nodes.segments(f"{name}/bones", bones, colors[model.edges[:, 1]], thickness=0.0022)
 
+    def _draw_cameras(self, view: FrameView) -> None:
+        for camera in view.cameras:
+            name = f"/cameras/{camera.name}"
+            self._nodes.segments(f"{name}/outline", camera.outline, repeat(CAMERA_COLOR, 8), thickness=0.0015)
+            self._nodes.label(f"{name}/label", camera.name, camera.outline[0, 0])
+            if len(camera.rays):
+                self._nodes.segments(f"{name}/rays", camera.rays, hand_colors()[camera.joints], thickness=0.0005)
+
     def _draw_correspondences(self, view: FrameView, layers: Layers) -> None:
         for term, segments in view.correspondences.items():
             if layers.shows_term(term) and len(segments):
-                colors = np.tile(np.array(term_color(term), dtype=np.uint8), (len(segments), 1))
+                colors = repeat(term_color(term), len(segments))
                 self._nodes.segments(f"/correspondences/{term}", segments, colors, thickness=0.0006)

@@ -23,6 +23,10 @@ class Show(BaseModel):
     contacts: StrictBool | None = Field(None, description="Finger parts that could hold the object.")
     unknown: StrictBool | None = Field(None, description="What is neither hand nor a model, in a colour of its own.")
     distances: StrictBool | None = Field(None, description="The meshes in colours of their distance to the data.")
+    cameras: StrictBool | None = Field(
+        None,
+        description="All cameras, and the rays along which those saw joints that are tracked in together.",
+    )
     dark: StrictBool | None = Field(None, description="Dark ground.")
 
 

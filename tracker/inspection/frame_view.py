@@ -18,7 +18,9 @@ from tracker.fitting.objective import Objective
 from tracker.fitting.region import region_around
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import find_sightings
+from tracker.fitting.view_hands import ViewHands
 from tracker.geometry import se3
+from tracker.inspection.shown_cameras import ShownCamera, show_cameras
 from tracker.inspection.shown_collisions import ShownCollisions, show_collisions
 from tracker.inspection.shown_contacts import ShownContacts, show_contacts
 from tracker.inspection.shown_detections import ShownDetection, show_detections
@@ -81,11 +83,13 @@ class FrameView:
         camera: Camera,
         pose: Array,
         aids: ViewAids,
-        look_in_views: Callable[[PosedScene], Objective] | None = None,
+        cameras: tuple[Camera, ...] = (),
+        look_in_views: Callable[[PosedScene], tuple[Objective, ViewHands]] | None = None,
     ) -> None:
         self.aids = aids
         self.T_world_camera = camera.T_world_camera
-        self._frame, self._camera, self._pose, self._look_in_views = frame, camera, pose, look_in_views
+        self._frame, self._camera, self._pose = frame, camera, pose
+        self._cameras, self._look_in_views = cameras, look_in_views
 
     @property
     def cloud(self) -> npt.NDArray[np.float32]:
@@ -119,8 +123,8 @@ class FrameView:
     def correspondences(self) -> dict[str, npt.NDArray[np.float32]]:
         """Name of each term of the run to its (M, 2, 3) segments from model to data, world, m."""
         tools, setup = self.aids.tools, self.aids.setup
-        if self._look_in_views is not None:
-            found = find_residuals(self._posed, None, self._look_in_views(self._posed))
+        if self._looked is not None:
+            found = find_residuals(self._posed, None, self._looked[0])
             return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}
         if self._seen is None:
             return {}
@@ -132,6 +136,13 @@ class FrameView:
             objective = objective if support.is_stable else with_contacts(objective, support)
         found = find_residuals(self._posed, self._seen, objective)
         return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}
+
+    @cached_property
+    def cameras(self) -> tuple[ShownCamera, ...]:
+        """Every camera of the recording; those that are tracked in together with the rays of what they saw."""
+        posed, names = self._posed, self.aids.setup.names
+        hands = {name: posed.landmarks(place) for place, name in enumerate(names) if self.aids.setup.models[place].hand}
+        return show_cameras(self._cameras, hands, None if self._looked is None else self._looked[1])
 
     @cached_property
     def detections(self) -> tuple[ShownDetection, ...]:
@@ -171,6 +182,10 @@ class FrameView:
         return self.aids.setup.scene.pose_at(np.asarray(self._pose, dtype=np.float64))
 
     @cached_property
+    def _looked(self) -> tuple[Objective, ViewHands] | None:
+        return None if self._look_in_views is None else self._look_in_views(self._posed)
+
+    @cached_property
     def _seen(self) -> Observation | None:
         region, setup = region_around(self._posed.vertices, self._camera), self.aids.setup
         if region is None or self._frame.depth is None:
@@ -207,14 +222,14 @@ def describe_frame(
     frame, camera = setup.read(sequence, index)
     aids = aids or ViewAids(setup, camera.T_world_camera)
     if not setup.view_ids:
-        return FrameView(frame, camera, pose, aids)
+        return FrameView(frame, camera, pose, aids, sequence.cameras)
 
-    def look(posed: PosedScene) -> Objective:
+    def look(posed: PosedScene) -> tuple[Objective, ViewHands]:
         views = setup.read_views(sequence, index)
         seen = see_hands(setup, views, posed, set())
-        return compose_near(aids.tools.objective, setup, seen, views, posed)
+        return compose_near(aids.tools.objective, setup, seen, views, posed), seen
 
-    return FrameView(frame, camera, pose, aids, look)
+    return FrameView(frame, camera, pose, aids, sequence.cameras, look)
 
 
 def render_overlay(

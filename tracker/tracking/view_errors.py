@@ -59,7 +59,9 @@ class ViewErrors:
         }
 
 
-def measure_views(cameras: Sequence[Camera], seen: npt.NDArray[np.float32], joints: Array, lost: Array) -> ViewErrors:
+def measure_views(
+    cameras: Sequence[Camera], seen: npt.NDArray[np.float32], joints: Array, lost: npt.NDArray[np.bool_]
+) -> ViewErrors:
     """Compare what the detector saw with the fit and with the other cameras.
 
     Args:

@@ -127,6 +127,16 @@ def test_evidence_is_worked_out_when_it_is_asked_for_also_where_the_run_did_with
     assert all(again[layer] is None for layer in layers)
 
 
+def test_the_cameras_stand_where_they_are(client: TestClient, view) -> None:
+    with connect(client, view) as socket:
+        assert not any(name.startswith("/cameras") for name in read_scene(socket))
+    show(client, view, show={"cameras": True})
+    with connect(client, view) as socket:
+        nodes = read_scene(socket)
+    assert {"/cameras/cam0/outline", "/cameras/cam0/label"} <= nodes.keys()
+    assert "/cameras/cam0/rays" not in nodes, "a depth camera saw no joints along rays"
+
+
 def test_a_connected_browser_is_told_of_another_frame(client: TestClient, view) -> None:
     with connect(client, view) as socket:
         read_scene(socket)

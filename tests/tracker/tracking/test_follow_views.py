@@ -15,6 +15,7 @@ from tracker.cli.__main__ import main
 from tracker.errors import FrameError
 from tracker.fitting.options import TrackOptions
 from tracker.fitting.setup import TrackSetup, choose_cameras
+from tracker.inspection.frame_view import describe_frame
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
 from tracker.search.tools import make_tools
@@ -95,6 +96,24 @@ def test_every_camera_is_compared_with_the_fit_and_with_the_others(run, tmp_path
         "left_out_px",
         "weight",
     }
+
+
+def test_rays_go_from_each_camera_to_beside_the_joints_that_it_saw(run, views):
+    track, frame = run[2], 2
+    shown = describe_frame(views[0], track.setup, track.pose[frame], frame).cameras
+    assert [camera.name for camera in shown] == ["cam0", "cam1", "cam2"]
+    joints = track.joints_3d[frame]
+    for camera, known in zip(shown, views[0].cameras, strict=True):
+        np.testing.assert_allclose(camera.outline[:4, 0], np.tile(known.T_world_camera[:3, 3], (4, 1)), atol=1e-6)
+        corners = known.project(camera.outline[:4, 1].astype(float))
+        expected = [[0, 0], [known.width, 0], [known.width, known.height], [0, known.height]]
+        np.testing.assert_allclose(corners, expected, atol=0.01)
+        assert camera.joints.tolist() == list(range(21))
+        np.testing.assert_allclose(camera.rays[:, 0], np.tile(known.T_world_camera[:3, 3], (21, 1)), atol=1e-6)
+        ends = camera.rays[:, 1].astype(float)
+        assert np.median(np.linalg.norm(ends - joints, axis=1)) < 0.01
+        along, away = ends - known.T_world_camera[:3, 3], joints - ends
+        np.testing.assert_allclose(np.einsum("ji,ji->j", along, away), 0.0, atol=1e-6)
 
 
 def test_a_lost_hand_has_no_say_wherever_it_was_last(run, views):

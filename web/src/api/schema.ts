@@ -8144,6 +8144,11 @@ export interface components {
          * @description Layers to show or hide; those not named stay as they are.
          */
         Show: {
+            /**
+             * Cameras
+             * @description All cameras, and the rays along which those saw joints that are tracked in together.
+             */
+            cameras?: boolean | null;
             /** Cloud */
             cloud?: boolean | null;
             /**

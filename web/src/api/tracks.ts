@@ -99,7 +99,7 @@ export function useRestoreTrack() {
 }
 
 /** Layers of the 3D viewer that are on or off. */
-export const LAYERS = ["cloud", "mesh", "skeleton", "correspondences", "detections", "collisions", "contacts", "unknown", "distances"] as const;
+export const LAYERS = ["cloud", "mesh", "skeleton", "correspondences", "detections", "collisions", "contacts", "unknown", "distances", "cameras"] as const;
 export type Layer = (typeof LAYERS)[number];
 
 /** What the 3D viewer is to show, under its own names. */

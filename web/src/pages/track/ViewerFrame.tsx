@@ -27,6 +27,7 @@ const HELP: Partial<Record<Layer, string>> = {
   collisions: "Triangles that cross, and vertices that are inside another part",
   contacts: "Finger parts within 10 mm of the object, and whether it is held",
   unknown: "What the run left out near the hands: held things without a model, sleeves, what hides the hand",
+  cameras: "Every camera of the recording; in a track of several colour cameras the rays along which they saw the joints",
   distances: "The meshes in colours of their distance to the measured points",
 };
 

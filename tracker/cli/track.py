@@ -162,4 +162,5 @@ def show(result: dict[str, Any]) -> str:
         if result["is_distance_guessed"]
         else ""
     )
+    guessed += "".join(f"\n{doubt}" for doubt in result["doubts"])
     return f"{counts}, median {result['median_ms']:.1f} ms a frame: {result['out']}{guessed}"

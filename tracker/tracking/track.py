@@ -104,6 +104,7 @@ class Track:
             "threads": self.setup.options.threads,
             "colour_cameras": list(self.setup.view_ids),
             "is_distance_guessed": self.setup.is_distance_guessed,
+            "doubts": [] if self.views is None else list(self.views.doubts()),
             "views": {} if self.views is None else self.views.summary(),
             "detector": None if self.setup.own_detector is None else self.setup.own_detector.to_json(),
             "objects": {
@@ -177,14 +178,15 @@ def load_track(folder: Path) -> Track:
 
 
 def _compare_views(sequence: Sequence, setup: TrackSetup, chunk: TrackChunk, joints_3d: Array) -> ViewErrors | None:
-    """None unless the chunk tells what two cameras or more saw."""
-    seen = np.isfinite(chunk.seen).any(axis=(0, 2, 3, 4)) if chunk.seen.shape[1] else np.zeros(0, dtype=np.bool_)
-    if np.count_nonzero(seen) < 2:
+    """None unless the chunk tells what two colour cameras or more saw."""
+    cameras = [sequence.camera(camera_id) for camera_id in setup.view_ids]
+    numbers = [number for number, camera in enumerate(cameras) if camera.has_color]
+    if len(numbers) < 2 or not chunk.seen.shape[1]:
         return None
-    cameras = [sequence.camera(setup.view_ids[number]) for number in np.flatnonzero(seen)]
     places = [setup.joint_names.index(f"{name}/{joint}") for name in setup.hand_names for joint in HAND_JOINTS]
     joints = joints_3d[:, places].reshape(len(joints_3d), len(setup.hand_names), len(HAND_JOINTS), 3)
-    return measure_views(cameras, chunk.seen[:, seen], joints, chunk.hand_status == STATUSES.index("lost"))
+    lost = chunk.hand_status == STATUSES.index("lost")
+    return measure_views([cameras[number] for number in numbers], chunk.seen[:, numbers], joints, lost)
 
 
 def _median(values: Array) -> float | None:

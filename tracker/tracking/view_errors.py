@@ -19,6 +19,12 @@ from tracker.tracking.arrays_file import load_arrays, save_arrays
 
 Array = npt.NDArray[np.float64]
 
+MOSTLY = 0.5
+"""A camera that the others outvote in a larger share of the joints is doubted."""
+
+RARELY = 0.1
+"""A camera that sees a hand in a smaller share of the frames in which the others see it hardly sees it."""
+
 
 @dataclass(frozen=True)
 class ViewErrors:
@@ -29,6 +35,9 @@ class ViewErrors:
         fit_px: (T, C, H) median distance of the fitted joints to where the detector saw them; NaN of lost hands.
         left_out_px: (T, C, H) median distance of where the detector saw the joints to the points that the other
             cameras' detections make: large in one camera alone where it saw wrongly, moved, or lags behind.
+        outvoted: (T, C, H) share of the joints seen in three cameras or more in which all others agree on a point that
+            this one does not see there; NaN where there are none. Of three cameras side by side none is outvoted that
+            is wrong along the line they stand on: each two of them agree somewhere.
         weight: (T, C, H) mean weight of the camera's viewing rays at the fit, 0 to 1 (`MarkedJoints`); 0 where it did
             not see the hand, NaN of lost hands.
     """
@@ -36,6 +45,7 @@ class ViewErrors:
     camera_ids: npt.NDArray[np.str_]
     fit_px: Array
     left_out_px: Array
+    outvoted: Array
     weight: Array
 
     def save(self, path: Path) -> None:
@@ -51,10 +61,34 @@ class ViewErrors:
         """
         return cls(**load_arrays(path, tuple(field.name for field in fields(cls))))
 
+    def doubts(self) -> tuple[str, ...]:
+        """A sentence for each camera whose calibration, clock or picture may be wrong."""
+        said = []
+        sees = (self.weight > 0.0).any(axis=2)
+        for number, camera in enumerate(self.camera_ids):
+            by_others = np.delete(sees, number, axis=1).any(axis=1)
+            own = sees[by_others, number]
+            outvoted = self.outvoted[:, number][np.isfinite(self.outvoted[:, number])]
+            if own.size and own.mean() < RARELY:
+                said.append(
+                    f"{camera} saw a hand in {np.count_nonzero(own)} of {own.size} frames in which another camera saw "
+                    "one: its picture may be mirrored, dark or turned away."
+                )
+            elif outvoted.size and outvoted.mean() > MOSTLY:
+                said.append(
+                    f"{camera} sees {100.0 * outvoted.mean():.0f} % of the joints elsewhere than all other cameras, by "
+                    f"{_median(self.left_out_px[:, number]):.0f} px (median): it may have moved since it was "
+                    "calibrated, be out of step, or mirrored."
+                )
+        return tuple(said)
+
     def summary(self) -> dict[str, dict[str, float | None]]:
         """Medians over frames and hands by camera."""
         return {
-            str(camera): {name: _median(getattr(self, name)[:, number]) for name in ("fit_px", "left_out_px", "weight")}
+            str(camera): {
+                name: _median(getattr(self, name)[:, number])
+                for name in ("fit_px", "left_out_px", "outvoted", "weight")
+            }
             for number, camera in enumerate(self.camera_ids)
         }
 
@@ -71,11 +105,16 @@ def measure_views(
         lost: (T, H) whether a hand was lost.
     """
     T, C, H = seen.shape[:3]
-    fit, left_out, weight = (np.full((T, C, H), np.nan) for _ in range(3))
+    fit, left_out, outvoted, weight = (np.full((T, C, H), np.nan) for _ in range(4))
     for hand in range(H):
         marks = seen[:, :, hand].astype(np.float64)  # (T, C, 21, 2)
         found = triangulate(cameras, marks.transpose(0, 2, 1, 3).reshape(-1, C, 2))
         left_out[:, :, hand] = _nanmedian(found.left_out_residuals.reshape(T, 21, C), axis=1)
+        has_mark = np.isfinite(marks).all(axis=3).transpose(0, 2, 1)  # (T, 21, C)
+        can_tell = (has_mark.sum(axis=2) >= 3) & np.isfinite(found.points).all(axis=1).reshape(T, 21)
+        is_out = has_mark & ~found.is_used.reshape(T, 21, C) & can_tell[:, :, None]
+        told = np.count_nonzero(has_mark & can_tell[:, :, None], axis=1)
+        outvoted[:, :, hand] = np.where(told > 0, np.count_nonzero(is_out, axis=1) / np.maximum(told, 1), np.nan)
         for number, camera in enumerate(cameras):
             points = joints[:, hand].reshape(-1, 3)
             own = marks[:, number].reshape(-1, 2)
@@ -87,7 +126,7 @@ def measure_views(
             weights = 1.0 / (1.0 + (MILLIMETRES * away / REACH) ** 2) ** 2
             weight[:, number, hand] = np.nan_to_num(weights).reshape(T, 21).mean(axis=1)
         fit[lost[:, hand], :, hand] = weight[lost[:, hand], :, hand] = np.nan
-    return ViewErrors(np.array([camera.id for camera in cameras], dtype=np.str_), fit, left_out, weight)
+    return ViewErrors(np.array([camera.id for camera in cameras], dtype=np.str_), fit, left_out, outvoted, weight)
 
 
 def _nanmedian(values: Array, axis: int) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import cv2
@@ -61,6 +62,10 @@ def test_a_hand_is_found_followed_lost_where_no_view_shows_it_and_found_again(ru
     assert track.hand_status[:, 0].tolist() == track.status.tolist()
 
 
+def test_right_cameras_raise_no_doubt(run):
+    assert run[2].summary()["doubts"] == []
+
+
 def test_joints_lie_where_the_hand_is(run, views):
     """The detector is made for photographs; on this drawing its joints, triangulated, are about 1 cm off."""
     track, truth = run[2], views[1]
@@ -94,6 +99,7 @@ def test_every_camera_is_compared_with_the_fit_and_with_the_others(run, tmp_path
     assert set(json.loads((tmp_path / "summary.json").read_text())["views"]["cam1"]) == {
         "fit_px",
         "left_out_px",
+        "outvoted",
         "weight",
     }
 
@@ -184,3 +190,16 @@ def test_a_single_camera_with_depth_is_tracked_as_a_depth_camera(tmp_path):
     assert choose_cameras(sequence, TrackOptions(cameras="cam1")) == ("cam1", ())
     assert choose_cameras(sequence, TrackOptions(cameras="cam1", use_depth=False)) == ("cam1", ("cam1",))
     assert choose_cameras(sequence, TrackOptions(cameras="cam1,cam0")) == ("cam1", ("cam1", "cam0"))
+
+
+def test_a_camera_that_moved_since_it_was_calibrated_is_named(views, tmp_path):
+    folder = tmp_path / "moved"
+    shutil.copytree(views[0].folder, folder)
+    description = json.loads((folder / "sequence.json").read_text())
+    description["cameras"][2]["T_world_camera"][1][3] += 0.1
+    (folder / "sequence.json").write_text(json.dumps(description))
+    sequence = load_sequence(folder)
+    setup, start = start_tracking(sequence, TrackOptions(calibrate=False))
+    _, chunk = track_frames(sequence, setup, start, range(4))
+    (doubt,) = join_chunks(sequence, setup, [chunk]).summary()["doubts"]
+    assert doubt.startswith("cam2 sees ")

@@ -40,6 +40,9 @@ def test_a_camera_that_moved_is_far_from_what_the_others_see_and_its_rays_weigh_
     assert np.all(errors.left_out_px[:, MOVED, 0] > 11.0)
     assert np.all(errors.left_out_px[:, others, 0] < errors.left_out_px[:, [MOVED], 0])
     assert np.all(errors.weight[:, MOVED, 0] < 0.6)
+    assert np.all(errors.outvoted[:, MOVED, 0] == 1.0)
+    assert np.all(errors.outvoted[:, others, 0] == 0.0)
+    assert len(errors.doubts()) == 1 and errors.doubts()[0].startswith(CAMERAS[MOVED].id)
     assert errors.summary()[CAMERAS[MOVED].id]["fit_px"] == pytest.approx(12.0, abs=1e-3)
 
 
@@ -55,12 +58,18 @@ def test_a_lost_hand_has_no_error_of_the_fit_and_a_camera_that_saw_nothing_no_we
     assert np.isnan(errors.left_out_px[3]).all()
 
 
+def test_a_camera_that_hardly_ever_sees_the_hand_is_named(marks, joints):
+    marks[:, 0] = np.nan
+    (doubt,) = measure(marks, joints).doubts()
+    assert doubt.startswith(f"{CAMERAS[0].id} saw a hand in 0 of {FRAMES} frames")
+
+
 def test_errors_come_back_from_their_file(marks, joints, tmp_path):
     errors = measure(marks, joints)
     errors.save(tmp_path / "views.npz")
     back = ViewErrors.load(tmp_path / "views.npz")
     assert back.camera_ids.tolist() == [camera.id for camera in CAMERAS]
-    for name in ("fit_px", "left_out_px", "weight"):
+    for name in ("fit_px", "left_out_px", "outvoted", "weight"):
         np.testing.assert_array_equal(getattr(back, name), getattr(errors, name))
     (tmp_path / "views.npz").write_bytes(b"no archive")
     with pytest.raises(TrackingError):

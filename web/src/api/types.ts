@@ -72,6 +72,8 @@ export interface TrackSummary {
   threads: number | null;
   /** The lab's own fingertip detector; null or missing for the one that comes with Handloom. */
   detector?: { name: string; sha256: string } | null;
+  /** What may be wrong with single cameras, in sentences. */
+  doubts?: string[];
   /** By camera, medians over frames and hands; empty unless several colour cameras were tracked in. */
   views?: Record<string, { fit_px: number | null; left_out_px: number | null; weight: number | null }>;
 }

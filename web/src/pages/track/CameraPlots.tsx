@@ -1,4 +1,4 @@
-import { Table, UnstyledButton } from "@mantine/core";
+import { Table, Text, UnstyledButton } from "@mantine/core";
 import { useMemo } from "react";
 import type { Track, TrackFrames } from "../../api/types";
 import { Plot } from "../../canvas/Plot";
@@ -35,6 +35,11 @@ export function CameraPlots({ track, frames, lost, frame, camera, onCamera, onSe
   return (
     <>
       <div className={classes.cameras}>
+        {(track.summary.doubts ?? []).map((doubt) => (
+          <Text key={doubt} size="xs" c="var(--warn-text)" role="note">
+            {doubt}
+          </Text>
+        ))}
         <Table verticalSpacing={2} fz="xs" aria-label="Cameras">
           <Table.Thead>
             <Table.Tr>

@@ -159,19 +159,16 @@ def queue(made: Made, rows: list[Row]) -> list[Queued]:
 
 def find_off(made: Made, folder: Path, motion: str) -> set[tuple[int, str]]:
     """Frames and hands where the track is by itself far from the truth."""
+    off = set()
     with np.load(folder / motion / "truth.npz") as truth:
         names = [str(name) for name in truth["joint_names"]]
-        return {
-            (int(frame), hand)
-            for frame, joints in zip(truth["frame"], truth["joints_3d"], strict=True)
-            for hand in ("right", "left")
-            if (frame, hand) in made.points
-            and OFF_M
-            < np.linalg.norm(
-                made.points[int(frame), hand] - joints[[at for at, name in enumerate(names) if name.startswith(hand)]],
-                axis=1,
-            ).mean()
-        }
+        for hand in ("right", "left"):
+            columns = [at for at, name in enumerate(names) if name.startswith(hand)]
+            for frame, joints in zip(truth["frame"].tolist(), truth["joints_3d"][:, columns], strict=True):
+                found = made.points.get((frame, hand))
+                if found is not None and np.linalg.norm(found - joints, axis=1).mean() > OFF_M:
+                    off.add((frame, hand))
+    return off
 
 
 @dataclass

@@ -98,7 +98,7 @@ def check_labels_seen(labels: Sequence[Label], tracked: Marks, detected: Marks) 
 
 
 def _compare(what: str, marks: Marks, witness: Witness) -> Iterator[tuple[Place, float, tuple[int, ...], str]]:
-    """Place, score, joints and reason of every hand that both have: of the whole hand, or of a joint that is worse.
+    """Place, score, joints and reason of every hand that both have: of all its joints, or of one that alone is off.
 
     A single joint is compared with what is usual for it, so that a finger's width is enough.
     """
@@ -115,13 +115,17 @@ def _compare(what: str, marks: Marks, witness: Witness) -> Iterator[tuple[Place,
             if np.isfinite(distances[row]).sum() < LEAST_JOINTS:
                 continue
             joint = int(np.nanargmax(single[row]))
-            if single[row, joint] > max(1.0, whole[row]):
+            score = min(10.0, float(max(whole[row], single[row, joint])))
+            if whole[row] < 1.0 < single[row, joint]:
                 reason = (
                     f"The {joint_name(joint)} of the {what} is {distances[row, joint]:.0f} px from {witness.name} in "
                     f"{place[0]}; usually it is {usual[joint]:.0f} px."
                 )
-                yield place, min(10.0, float(single[row, joint])), (joint,), reason
+                yield place, score, (joint,), reason
             else:
-                apart = whole[row] * least[row]
-                reason = f"The {what} is {apart:.0f} px from {witness.name} in {place[0]}."
-                yield place, min(10.0, float(max(whole[row], single[row, joint]))), (), reason
+                yield (
+                    place,
+                    score,
+                    (),
+                    f"The {what} is {whole[row] * least[row]:.0f} px from {witness.name} in {place[0]}.",
+                )

@@ -44,7 +44,7 @@ def list_frames_to_look_at(
         put_away = service.find_dismissed(session, sequence_id)
         track = service.find_compared(session, sequence_id)
         session.expunge_all()
-    found = finder.find(database, sequence_id, sequence.content_key, sequence.hands, track)
+    found = finder.find(database, sequence_id, sequence.content_key, sequence.hands, track, with_doubts=True)
     flags = [
         doubt_label(flag) for flag in found.findings if (flag.label.id, flag.label.revision, flag.kind) not in put_away
     ]

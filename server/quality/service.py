@@ -58,7 +58,7 @@ class Flagged:
 
     Attributes:
         findings: What looked wrong, the worst first, of labels that are still as they were.
-        doubts: What else speaks for looking at a hand, labelled or not.
+        doubts: What else speaks for looking at a hand, labelled or not; none where they were not asked for.
         setting: What the labels were compared with.
         is_behind: Labels have changed since.
     """
@@ -72,33 +72,40 @@ class Flagged:
 
 
 @dataclass(frozen=True)
-class Doubts:
-    """What `Flagged.doubts` is put together of: track and detector stay as they are while labels change."""
-
-    of_machines: Many[Doubt]
-    of_labels: Many[Doubt]
-
-
-@dataclass(frozen=True)
 class _Known:
+    """An outcome. Doubts are found once somebody asks for them; those of machines stay while labels change."""
+
     labels: list[Label]
     check: LabelCheck
     setting: Setting
-    doubts: Doubts
     revisions: Mapping[uuid.UUID, int]
     done_at: float
     spent: float
+    of_machines: Many[Doubt] | None = None
+    of_labels: Many[Doubt] | None = None
+
+    @property
+    def still_spent(self) -> float:
+        """Seconds of a processor that are not made up for by rest yet."""
+        return max(0.0, self.spent - SHARE * (time.monotonic() - self.done_at))
+
+    def with_doubts(self) -> _Known:
+        """The same, with all doubts."""
+        if self.of_labels is not None:
+            return self
+        began, spent = time.monotonic(), self.still_spent
+        of_machines = find_doubts(self.setting) if self.of_machines is None else self.of_machines
+        of_labels = list(find_label_doubts(self.labels, self.setting))
+        now = time.monotonic()
+        return replace(self, of_machines=of_machines, of_labels=of_labels, done_at=now, spent=spent + now - began)
 
     def see(self, revisions: Mapping[uuid.UUID, int]) -> Flagged:
         """What of it still holds."""
         found = [one for one in self.check.findings if revisions.get(one.label.id) == one.label.revision]
         doubts = [
-            *self.doubts.of_machines,
-            *(
-                one
-                for one in self.doubts.of_labels
-                if one.label is None or revisions.get(one.label.id) == one.label.revision
-            ),
+            one
+            for one in (*(self.of_machines or ()), *(self.of_labels or ()))
+            if one.label is None or revisions.get(one.label.id) == one.label.revision
         ]
         return Flagged(self.labels, found, self.check.coverage, doubts, self.setting, revisions != self.revisions)
 
@@ -124,8 +131,12 @@ class FlagFinder:
         content_key: str,
         hands: Many[str],
         track: Compared | None,
+        with_doubts: bool = False,
     ) -> Flagged:
-        """What the checks of the labels found and looked at; `track` is the one they are compared with, if any."""
+        """What the checks of the labels found and looked at; `track` is the one they are compared with, if any.
+
+        Doubts are given only where they are asked for: they take as long again.
+        """
         with database.reading() as session:
             job_id = find_detections(session, sequence_id)
         key = (sequence_id, content_key, tuple(hands), track, job_id)
@@ -133,12 +144,12 @@ class FlagFinder:
             with database.reading() as session:
                 revisions = find_revisions(session, sequence_id)
             known = self._known.get(key)
-            spent = 0.0 if known is None else max(0.0, known.spent - SHARE * (time.monotonic() - known.done_at))
-            if known is None or (known.revisions != revisions and spent < CREDIT_SECONDS):
-                known = self._known[key] = self._check(database, key, spent, known)
+            if known is None or (known.revisions != revisions and known.still_spent < CREDIT_SECONDS):
+                known = self._check(database, key, known)
                 revisions = known.revisions
-                while len(self._known) > KEPT:
-                    self._known.popitem(last=False)
+            self._known[key] = known = known.with_doubts() if with_doubts else known
+            while len(self._known) > KEPT:
+                self._known.popitem(last=False)
             self._known.move_to_end(key)
         return known.see(revisions)
 
@@ -146,7 +157,6 @@ class FlagFinder:
         self,
         database: Database,
         about: tuple[uuid.UUID, str, Many[str], Compared | None, uuid.UUID | None],
-        spent: float,
         before: _Known | None,
     ) -> _Known:
         from tracker import load_sequence
@@ -158,22 +168,21 @@ class FlagFinder:
             session.expunge_all()
         recording = load_sequence(self._storage.folder("sequences", sequence_id))
         labels = self._read(recording, rows)
-        if before is None:
-            setting = self._describe(recording, hands, track)
-            if job_id is not None:
-                setting = replace(setting, detected=read_detections(self._storage.document(AREA, job_id)))
-            of_machines = find_doubts(setting)
-        else:
-            setting, of_machines = before.setting, before.doubts.of_machines
+        setting = self._describe(recording, hands, track, job_id) if before is None else before.setting
         check = check_labels(labels, setting)
-        doubts = Doubts(of_machines, list(find_label_doubts(labels, setting)))
+        spent = 0.0 if before is None else before.still_spent
         now = time.monotonic()
         revisions = {row.id: row.revision for row in rows}
-        return _Known(labels, check, setting, doubts, revisions, now, spent + now - began)
+        of_machines = None if before is None else before.of_machines
+        return _Known(labels, check, setting, revisions, now, spent + now - began, of_machines)
 
-    def _describe(self, recording: Sequence, hands: Many[str], track: Compared | None) -> Setting:
+    def _describe(
+        self, recording: Sequence, hands: Many[str], track: Compared | None, job_id: uuid.UUID | None
+    ) -> Setting:
         cameras = {camera.id: camera for camera in recording.cameras}
         setting = Setting(tuple(hands), dict(cameras), any(camera.has_depth for camera in cameras.values()))
+        if job_id is not None:
+            setting = replace(setting, detected=read_detections(self._storage.document(AREA, job_id)))
         if track is None:
             return setting
         missing = (

@@ -157,7 +157,8 @@ def test_without_anything_to_go_by_the_queue_says_what_to_do(recording, open_pag
 
     page = open_page()
     page.goto(f"/recordings/{recording['id']}/check?show=frames")
-    expect(page.get_by_role("heading", name="Nothing is known of this recording's hands yet")).to_be_visible()
+    expect(page.get_by_role("heading", name="No frame stands in the queue")).to_be_visible()
+    expect(page.get_by_text("The hand detector has not looked through this recording.")).to_be_visible()
     page.get_by_role("link", name="Track it, or find its hands").click()
     expect(page).to_have_url(re.compile(f"/recordings/{recording['id']}$"))
 

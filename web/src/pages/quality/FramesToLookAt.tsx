@@ -30,14 +30,14 @@ export function FramesToLookAt({ recording }: { recording: Recording }) {
     return (
       <EmptyState
         icon={<IconEyeCheck size={48} stroke={1.25} />}
-        title="Nothing is known of this recording's hands yet"
+        title="No frame stands in the queue"
         action={
           <Button variant="default" component={Link} to={`/recordings/${recording.id}`}>
             Track it, or find its hands
           </Button>
         }
       >
-        Frames are put in order by how well a track, the hand detector and labels agree; here is none of these that could be asked.
+        Frames are put in order by how well a track, the hand detector and labels agree. A hand that a person placed leaves the queue unless the label check finds something. {first.missing.join(" ")}
       </EmptyState>
     );
   }

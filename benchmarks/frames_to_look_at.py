@@ -84,6 +84,7 @@ def make(folder: Path, motion: str) -> Made:
             (int(frame), hand): joints[[at for at, name in enumerate(names) if name.startswith(hand)]]
             for frame, joints in zip(arrays["frame"], arrays["joints_3d"], strict=True)
             for hand in ("right", "left")
+            if f"{hand}/wrist" in names
         }
     return Made(load_sequence(recording), read_track(track), points, read_detections(found))
 
@@ -158,8 +159,10 @@ def queue(made: Made, rows: list[Row]) -> list[Queued]:
 
 
 def find_off(made: Made, folder: Path, motion: str) -> set[tuple[int, str]]:
-    """Frames and hands where the track is by itself far from the truth."""
-    off = set()
+    """Frames and hands where the track is by itself far from the truth; none where that is not known."""
+    off: set[tuple[int, str]] = set()
+    if not (folder / motion / "truth.npz").is_file():
+        return off
     with np.load(folder / motion / "truth.npz") as truth:
         names = [str(name) for name in truth["joint_names"]]
         for hand in ("right", "left"):
@@ -228,7 +231,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--write", action="store_true", help="renew the table in docs/quality.md")
     parser.add_argument("--folder", type=Path, help="keep what was made here, or take it from here")
+    parser.add_argument(
+        "--only", metavar="NAME", help="measure NAME, NAME-track and NAME-det.json of --folder, all made before"
+    )
     args = parser.parse_args()
+    if args.only:
+        print(*describe(measure(args.folder, (args.only,))), sep="\n")
+        return
     with tempfile.TemporaryDirectory() as temporary:
         folder = args.folder or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)

@@ -32,6 +32,7 @@ from server.imports.lifespan import clean_imports
 from server.jobs import routes as jobs
 from server.lineage import routes as lineage
 from server.live import routes as live
+from server.quality import queue_routes as quality_queue
 from server.quality import routes as quality
 from server.registrations import model_routes
 from server.registrations import routes as registrations
@@ -79,6 +80,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     triangulation_routes.router,
     suggestions.router,
     quality.router,
+    quality_queue.router,
     *teams.ROUTERS,
     live.router,
     exchange.router,

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from server.quality.finding import Finding, Looked
 from server.quality.hand import EDGES, find_bone_lengths, joint_name
 from server.quality.labels import Label, find_median
+from server.quality.usual import SPREADS
 
 if TYPE_CHECKING:
     from tracker import Camera
@@ -26,11 +27,7 @@ def check_bone_lengths(labels: Sequence[Label], cameras: dict[str, Camera], look
     for label in labels:
         in_space[label.hand].append((label, _possible_lengths(label, cameras[label.camera].K)))
     for items in in_space.values():
-        table = np.stack([possible[MIDDLE] for _, possible in items])
-        enough = np.isfinite(table).sum(axis=0) >= 5
-        usual = np.where(enough, np.clip(find_median(table, axis=0), SMALLEST * lengths, LARGEST * lengths), lengths)
-        spread = np.where(enough, 1.4826 * find_median(np.abs(table - usual), axis=0), 0.006)
-        limit = np.maximum(0.015 + 0.15 * usual, 6 * spread)
+        usual, limit = limit_bones(np.stack([possible[MIDDLE] for _, possible in items]))
         for label, possible in items:
             found = possible[MIDDLE]
             if np.isfinite(found).any() or _count_flat(label) >= LEAST_FLAT:
@@ -56,6 +53,15 @@ LEAST_FLAT = 8
 """Bones that must be seen in an image to know how long bones look in it."""
 MIDDLE = 4
 """The row of `_possible_lengths` with the median depth at both ends."""
+
+
+def limit_bones(table: Array) -> tuple[Array, Array]:
+    """How long bones are in this recording, and how far from that a length may be: (20,) m each, of (N, 20) m."""
+    lengths = find_bone_lengths()
+    enough = np.isfinite(table).sum(axis=0) >= 5
+    usual = np.where(enough, np.clip(find_median(table, axis=0), SMALLEST * lengths, LARGEST * lengths), lengths)
+    spread = np.where(enough, 1.4826 * find_median(np.abs(table - usual), axis=0), 0.006)
+    return usual, np.maximum(0.015 + 0.15 * usual, SPREADS * spread)
 
 
 def _possible_lengths(label: Label, K: Array) -> Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import uuid
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,8 @@ import numpy.typing as npt
 from server.quality.finding import Finding, Kind, Looked
 from server.quality.hand import joint_name
 from server.quality.labels import Label, find_median
+from server.quality.usual import compare_with_usual
+from server.quality.views import Marks, triangulate_views
 
 if TYPE_CHECKING:
     from tracker import Camera
@@ -22,26 +23,20 @@ Array = npt.NDArray[np.float64]
 
 def check_reprojection(labels: Sequence[Label], cameras: dict[str, Camera], looked: Looked) -> Iterator[Finding]:
     """Joints that lie beside where the other cameras' labels put them."""
-    from tracker import triangulate
-
-    together: dict[tuple[int, str], list[Label]] = defaultdict(list)
-    for label in labels:
-        together[label.frame, label.hand].append(label)
-    for views in together.values():
-        if len(views) < 2:
-            continue
-        marks = np.ascontiguousarray(np.stack([view.pixels for view in views], axis=1))
-        found = triangulate([cameras[view.camera] for view in views], marks)
-        for column, view in enumerate(views):
-            residual = found.residuals[:, column]
-            if np.isfinite(residual).any():
-                looked.at("reprojection", view)
-            limit = max(6.0, 0.03 * view.size_px)
-            if np.isfinite(residual).any() and np.nanmax(residual) > limit:
+    by_place = {(label.camera, label.frame, label.hand): label for label in labels}
+    for views in triangulate_views({place: label.pixels for place, label in by_place.items()}, cameras):
+        for column, camera in enumerate(views.cameras):
+            label = by_place[camera, views.frame, views.hand]
+            residual = views.residuals[:, column]
+            if not np.isfinite(residual).any():
+                continue
+            looked.at("reprojection", label)
+            limit = max(6.0, 0.03 * label.size_px)
+            if np.nanmax(residual) > limit:
                 joint = int(np.nanargmax(residual))
                 joints = tuple(int(j) for j in np.flatnonzero(residual > limit))
                 reason = f"The {joint_name(joint)} is {residual[joint]:.0f} px from where the other cameras put it."
-                yield Finding(view, "reprojection", min(10.0, float(residual[joint] / limit)), joints, reason)
+                yield Finding(label, "reprojection", min(10.0, float(residual[joint] / limit)), joints, reason)
 
 
 LEAST_JOINTS = 4
@@ -51,9 +46,7 @@ APART_PX, APART_SHARE = 8.0, 0.08
 of the same pose: 8 % of a hand is a finger's width."""
 
 
-def check_residuals(
-    labels: Sequence[Label], tracked: dict[tuple[str, int, str], Array], looked: Looked
-) -> Iterator[Finding]:
+def check_residuals(labels: Sequence[Label], tracked: Marks, looked: Looked) -> Iterator[Finding]:
     """Labels that are not where the track has the hand, and joints farther from it than that joint usually is.
 
     `tracked` holds (21, 2) px by place. Joints that a track had a part in say nothing here and are left out.
@@ -70,8 +63,8 @@ def check_residuals(
         ]
     )
     compared = np.asarray(np.isfinite(distances).any(axis=1))
-    usual = find_median(distances, axis=0)
-    spread = 1.4826 * find_median(np.abs(distances - usual), axis=0)
+    least = np.array([max(10.0, 0.08 * label.size_px) for label, _ in known])
+    beyond, usual = compare_with_usual(distances, least)
     whole = np.where(np.isfinite(distances).sum(axis=1) >= LEAST_JOINTS, find_median(distances, axis=1), np.nan)
     limits = np.array([max(APART_PX, APART_SHARE * label.size_px) for label, _ in known])
     apart = whole > limits
@@ -80,8 +73,7 @@ def check_residuals(
             continue
         looked.at("residual", label)
         distance = distances[row]
-        limit = np.maximum(usual + 6 * spread, np.maximum(10.0, 0.08 * label.size_px))
-        off = distance / limit
+        off = beyond[row]
         if apart[row]:
             hands = f"as in {apart.sum()} of {compared.sum()} hands that were compared"
             reason = f"The label and the track are {whole[row]:.0f} px apart, {hands}: one of the two is wrong."
@@ -102,9 +94,7 @@ OTHERS: tuple[Kind, ...] = ("residual", "handedness", "jump")
 """Checks that know more of where a hand is than the detector does."""
 
 
-def check_detected(
-    labels: Sequence[Label], detected: dict[tuple[str, int, str], Array], looked: Looked
-) -> Iterator[Finding]:
+def check_detected(labels: Sequence[Label], detected: Marks, looked: Looked) -> Iterator[Finding]:
     """Labels that are not where the hand detector sees the hand, where neither a track nor neighbours speak.
 
     `detected` holds (21, 2) px by place, NaN where a joint is outside the image.

@@ -7,9 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
-
 from server.quality.background import check_background
 from server.quality.bones import check_bone_lengths
 from server.quality.evidence import check_detected, check_reprojection, check_residuals
@@ -17,6 +14,7 @@ from server.quality.finding import KINDS, Finding, Kind, Looked
 from server.quality.labels import Label
 from server.quality.neighbours import check_handedness, check_jumps
 from server.quality.one_label import check_depth, check_finger_order, check_outside
+from server.quality.witnesses import Detections, TrackedHands
 
 if TYPE_CHECKING:
     from tracker import Camera
@@ -30,16 +28,16 @@ class Setting:
         hands: Those that are said to be seen.
         cameras: By id.
         has_depth: Any camera has depth images.
-        tracked: (21, 2) px of a track by camera, frame and hand.
-        detected: (21, 2) px of what the hand detector found in the whole recording, likewise.
+        tracked: The hands of the track that labels are compared with.
+        detected: What the hand detector found in the whole recording.
         track_missing: Why a label may have no track to be compared with.
     """
 
     hands: tuple[str, ...]
     cameras: dict[str, Camera]
     has_depth: bool = True
-    tracked: dict[tuple[str, int, str], npt.NDArray[np.float64]] = field(default_factory=dict)
-    detected: dict[tuple[str, int, str], npt.NDArray[np.float64]] = field(default_factory=dict)
+    tracked: TrackedHands = field(default_factory=TrackedHands)
+    detected: Detections = field(default_factory=Detections)
     track_missing: str = "there is no track"
 
 
@@ -85,8 +83,8 @@ def check_labels(labels: Sequence[Label], setting: Setting) -> LabelCheck:
         *check_handedness(labels, setting.hands, looked),
         *check_jumps(labels, looked),
         *check_reprojection(labels, setting.cameras, looked),
-        *check_residuals(labels, setting.tracked, looked),
-        *check_detected(labels, setting.detected, looked),
+        *check_residuals(labels, setting.tracked.joints, looked),
+        *check_detected(labels, setting.detected.joints, looked),
     ):
         key = finding.label.id, finding.kind
         if key not in worst or finding.score > worst[key].score:

@@ -18,10 +18,8 @@ from server.errors import error_responses
 from server.quality import service
 from server.quality.finding import Finding, Kind
 from server.quality.schemas import Checked, CheckOut, FlagLook, FlagOut, FlagPage
-from server.quality.service import Compared, FlagFinderDep
+from server.quality.service import FlagFinderDep
 from server.sequences.service import get_sequence
-from server.tracks.facts import find_best_tracks
-from server.tracks.service import get_track
 
 router = APIRouter(prefix="/sequences/{sequence_id}", tags=["quality"], responses=error_responses(404))
 
@@ -39,15 +37,11 @@ def list_flags(
     limit: Limit = 100,
 ) -> FlagPage:
     """Labels that look wrong as they are now, the worst first, and what the checks could look at."""
-    track = None
     with database.reading() as session:
         sequence = get_sequence(session, sequence_id)
         hidden = find_hidden(guards, session, account, sequence_id)
         put_away = service.find_dismissed(session, sequence_id)
-        best = find_best_tracks(session, [sequence_id]).get(sequence_id)
-        if best is not None:
-            row = get_track(session, best["best_track"]["id"])
-            track = Compared(row.id, row.name)
+        track = service.find_compared(session, sequence_id)
         session.expunge_all()
     found = finder.find(database, sequence_id, sequence.content_key, sequence.hands, track)
     shown = [

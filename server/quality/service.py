@@ -9,11 +9,8 @@ from collections import OrderedDict
 from collections.abc import AsyncIterator, Mapping
 from collections.abc import Sequence as Many
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
-import numpy.typing as npt
 from anyio import CapacityLimiter
 from fastapi import Depends
 from sqlalchemy import delete, select
@@ -26,11 +23,16 @@ from server.annotations.service import Place, find_revisions, get_annotation, li
 from server.database import Database
 from server.errors import ConflictError
 from server.jobs.detections import AREA, find_detections
+from server.quality.doubt import Doubt
 from server.quality.find import Coverage, LabelCheck, Setting, check_labels
 from server.quality.finding import Finding
 from server.quality.labels import Label, LabelReader
 from server.quality.models import DismissalRow
+from server.quality.queue import find_doubts, find_label_doubts
+from server.quality.witnesses import read_detections, read_track
 from server.storage import Storage
+from server.tracks.facts import find_best_tracks
+from server.tracks.service import get_track
 
 if TYPE_CHECKING:
     from tracker import Sequence
@@ -56,27 +58,56 @@ class Flagged:
 
     Attributes:
         findings: What looked wrong, the worst first, of labels that are still as they were.
+        doubts: What else speaks for looking at a hand, labelled or not; none where they were not asked for.
+        setting: What the labels were compared with.
         is_behind: Labels have changed since.
     """
 
     labels: Many[Label]
     findings: Many[Finding]
     coverage: Many[Coverage]
+    doubts: Many[Doubt]
+    setting: Setting
     is_behind: bool
 
 
 @dataclass(frozen=True)
 class _Known:
+    """An outcome. Doubts are found once somebody asks for them; those of machines stay while labels change."""
+
     labels: list[Label]
     check: LabelCheck
+    setting: Setting
     revisions: Mapping[uuid.UUID, int]
     done_at: float
     spent: float
+    of_machines: Many[Doubt] | None = None
+    of_labels: Many[Doubt] | None = None
+
+    @property
+    def still_spent(self) -> float:
+        """Seconds of a processor that are not made up for by rest yet."""
+        return max(0.0, self.spent - SHARE * (time.monotonic() - self.done_at))
+
+    def with_doubts(self) -> _Known:
+        """The same, with all doubts."""
+        if self.of_labels is not None:
+            return self
+        began, spent = time.monotonic(), self.still_spent
+        of_machines = find_doubts(self.setting) if self.of_machines is None else self.of_machines
+        of_labels = list(find_label_doubts(self.labels, self.setting))
+        now = time.monotonic()
+        return replace(self, of_machines=of_machines, of_labels=of_labels, done_at=now, spent=spent + now - began)
 
     def see(self, revisions: Mapping[uuid.UUID, int]) -> Flagged:
         """What of it still holds."""
         found = [one for one in self.check.findings if revisions.get(one.label.id) == one.label.revision]
-        return Flagged(self.labels, found, self.check.coverage, revisions != self.revisions)
+        doubts = [
+            one
+            for one in (*(self.of_machines or ()), *(self.of_labels or ()))
+            if one.label is None or revisions.get(one.label.id) == one.label.revision
+        ]
+        return Flagged(self.labels, found, self.check.coverage, doubts, self.setting, revisions != self.revisions)
 
 
 class FlagFinder:
@@ -100,8 +131,12 @@ class FlagFinder:
         content_key: str,
         hands: Many[str],
         track: Compared | None,
+        with_doubts: bool = False,
     ) -> Flagged:
-        """What the checks of the labels found and looked at; `track` is the one they are compared with, if any."""
+        """What the checks of the labels found and looked at; `track` is the one they are compared with, if any.
+
+        Doubts are given only where they are asked for: they take as long again.
+        """
         with database.reading() as session:
             job_id = find_detections(session, sequence_id)
         key = (sequence_id, content_key, tuple(hands), track, job_id)
@@ -109,12 +144,12 @@ class FlagFinder:
             with database.reading() as session:
                 revisions = find_revisions(session, sequence_id)
             known = self._known.get(key)
-            spent = 0.0 if known is None else max(0.0, known.spent - SHARE * (time.monotonic() - known.done_at))
-            if known is None or (known.revisions != revisions and spent < CREDIT_SECONDS):
-                known = self._known[key] = self._check(database, key, spent)
+            if known is None or (known.revisions != revisions and known.still_spent < CREDIT_SECONDS):
+                known = self._check(database, key, known)
                 revisions = known.revisions
-                while len(self._known) > KEPT:
-                    self._known.popitem(last=False)
+            self._known[key] = known = known.with_doubts() if with_doubts else known
+            while len(self._known) > KEPT:
+                self._known.popitem(last=False)
             self._known.move_to_end(key)
         return known.see(revisions)
 
@@ -122,7 +157,7 @@ class FlagFinder:
         self,
         database: Database,
         about: tuple[uuid.UUID, str, Many[str], Compared | None, uuid.UUID | None],
-        spent: float,
+        before: _Known | None,
     ) -> _Known:
         from tracker import load_sequence
 
@@ -133,22 +168,27 @@ class FlagFinder:
             session.expunge_all()
         recording = load_sequence(self._storage.folder("sequences", sequence_id))
         labels = self._read(recording, rows)
-        setting = self._describe(recording, hands, track)
-        if job_id is not None:
-            setting = replace(setting, detected=_read_detections(self._storage.document(AREA, job_id)))
+        setting = self._describe(recording, hands, track, job_id) if before is None else before.setting
         check = check_labels(labels, setting)
+        spent = 0.0 if before is None else before.still_spent
         now = time.monotonic()
-        return _Known(labels, check, {row.id: row.revision for row in rows}, now, spent + now - began)
+        revisions = {row.id: row.revision for row in rows}
+        of_machines = None if before is None else before.of_machines
+        return _Known(labels, check, setting, revisions, now, spent + now - began, of_machines)
 
-    def _describe(self, recording: Sequence, hands: Many[str], track: Compared | None) -> Setting:
+    def _describe(
+        self, recording: Sequence, hands: Many[str], track: Compared | None, job_id: uuid.UUID | None
+    ) -> Setting:
         cameras = {camera.id: camera for camera in recording.cameras}
         setting = Setting(tuple(hands), dict(cameras), any(camera.has_depth for camera in cameras.values()))
+        if job_id is not None:
+            setting = replace(setting, detected=read_detections(self._storage.document(AREA, job_id)))
         if track is None:
             return setting
         missing = (
             f"{track.name} does not have this hand or frame, lost it, or the joints of the label came from a track"
         )
-        tracked = _read_track(self._storage.folder("tracks", track.id))
+        tracked = read_track(self._storage.folder("tracks", track.id))
         return replace(setting, tracked=tracked, track_missing=missing)
 
     def _read(self, recording: Sequence, rows: Many[AnnotationRow]) -> list[Any]:
@@ -156,37 +196,13 @@ class FlagFinder:
         return self._reader.read(recording, [row for row in rows if row.camera in cameras])
 
 
-def _read_track(folder: Path) -> dict[tuple[str, int, str], npt.NDArray[np.float64]]:
-    """(21, 2) px of a track's hands by camera, frame and hand; hands that it lost are left out."""
-    with np.load(folder / "track.npz", allow_pickle=False) as arrays:
-        frames, status = arrays["frame"].tolist(), arrays["status"].tolist()
-        of_hands = {
-            str(hand): arrays["hand_status"][:, column].tolist()
-            for column, hand in enumerate(arrays["hand_names"].tolist() if "hand_status" in arrays else [])
-        }
-        cameras = [str(name) for name in arrays["camera_ids"]]
-        names = [str(name) for name in arrays["joint_names"]]
-        joints = arrays["joints_2d"].astype(np.float64)
-    found = {}
-    for hand in ("right", "left"):
-        columns = [place for place, name in enumerate(names) if name.startswith(f"{hand}/")]
-        if len(columns) != 21:
-            continue
-        for row, frame in enumerate(frames):
-            if "lost" not in (status[row], of_hands.get(hand, status)[row]):
-                for index, camera in enumerate(cameras):
-                    found[camera, frame, hand] = joints[row, index, columns]
-    return found
-
-
-def _read_detections(path: Path) -> dict[tuple[str, int, str], npt.NDArray[np.float64]]:
-    """(21, 2) px of detected hands by camera, frame and hand; NaN where a joint is outside the image."""
-    from tracker import load_recorded_hands
-
-    return {
-        (item.camera, item.frame, item.hand): np.where(item.points[:, 2:] > 0, item.points[:, :2], np.nan)
-        for item in load_recorded_hands(path).hands.items
-    }
+def find_compared(session: Session, sequence_id: uuid.UUID) -> Compared | None:
+    """The recording's best track; None where it has none."""
+    best = find_best_tracks(session, [sequence_id]).get(sequence_id)
+    if best is None:
+        return None
+    row = get_track(session, best["best_track"]["id"])
+    return Compared(row.id, row.name)
 
 
 def find_dismissed(session: Session, sequence_id: uuid.UUID) -> set[tuple[uuid.UUID, int, str]]:

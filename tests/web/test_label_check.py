@@ -128,3 +128,49 @@ def test_a_label_is_found_right_only_once_its_picture_is_there(labelled, open_pa
     expect(button).to_be_disabled()
     slow.release()
     expect(button).to_be_enabled()
+
+
+def test_the_frames_that_need_a_person_stand_in_a_queue_that_leads_to_the_annotator(
+    labelled, open_page, picture_of, screenshots
+):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{labelled['id']}/check")
+    page.get_by_text("Frames to look at", exact=True).click()
+    expect(page).to_have_url(re.compile("show=frames"))
+    items = page.get_by_role("list", name="Frames to look at").locator(":scope > li")
+    expect(items).to_have_count(1)
+    expect(items.first).to_contain_text("frame 2")
+    expect(items.first.get_by_role("list", name="Reasons")).to_contain_text("index tip")
+    expect(items.first).to_contain_text("The label is shown.")
+    expect(page.get_by_text("The hand detector has not looked through this recording.")).to_be_visible()
+    page.wait_for_load_state("networkidle")
+    screenshots.take(page, "46-frames-to-look-at")
+    items.first.get_by_role("link", name="Look at frame 2, right hand").click()
+    picture_of(page).wait()
+    expect(page.get_by_label("Frame", exact=True)).to_have_value("2")
+
+
+def test_without_anything_to_go_by_the_queue_says_what_to_do(recording, open_page):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.goto(f"/recordings/{recording['id']}/check?show=frames")
+    expect(page.get_by_role("heading", name="No frame stands in the queue")).to_be_visible()
+    expect(page.get_by_text("The hand detector has not looked through this recording.")).to_be_visible()
+    page.get_by_role("link", name="Track it, or find its hands").click()
+    expect(page).to_have_url(re.compile(f"/recordings/{recording['id']}$"))
+
+
+def test_a_queue_that_does_not_come_can_be_asked_for_again(labelled, open_page):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    page.route("**/frames-to-look-at*", lambda route: route.abort())
+    page.goto(f"/recordings/{labelled['id']}/check?show=frames")
+    heading = page.get_by_role("heading", name="The frames to look at could not be loaded")
+    expect(heading).to_be_visible(timeout=30_000)
+    page.unroute("**/frames-to-look-at*")
+    page.get_by_role("button", name="Try again").click()
+    expect(page.get_by_role("list", name="Frames to look at").locator(":scope > li")).to_have_count(1)

@@ -74,6 +74,22 @@ def test_machines_do_not_suggest_to_who_marks_blindly(lead, ann, bob, tracked) -
     assert ann.send("POST", f"/sequences/{sequence}/suggestions/cam0/2/right/fit", fit).status_code == 403
 
 
+def test_the_queue_of_frames_to_look_at_leaves_out_what_one_marks_blindly(lead, ann, bob, tracked) -> None:
+    project = lead.make("/projects", name="Tracked")
+    sequence = str(tracked.sequence_id)
+    lead.send("PUT", f"/projects/{project['id']}/sequences/{sequence}")
+    place = f"/sequences/{sequence}/annotations/cam0/2/right"
+    points = [[x + 300, y, v] for x, y, v in lead.get(place)["points"]]
+    body = {"points": points, "operation_id": str(uuid.uuid4())}
+    assert lead.send("PUT", place, body, revision=1).status_code == 200
+    body = {"name": "Blind", "sequence_id": sequence, "frames": [2], "cameras": ["cam0"], "hands": ["right"]}
+    lead.make(f"/projects/{project['id']}/replica-sets", **body, account_ids=[ann.id, bob.id])
+    everything, seen = (person.get(f"/sequences/{sequence}/frames-to-look-at") for person in (lead, ann))
+    assert everything["items"][0]["frame"] == 2
+    assert 2 not in {item["frame"] for item in seen["items"]}
+    assert (seen["hands"], seen["doubtful"]) == (everything["hands"] - 1, everything["doubtful"] - 1)
+
+
 def test_two_who_accepted_the_same_suggestion_do_not_agree(project, ann, bob, lead) -> None:
     made = project.replicate([ann, bob], [2, 5])
     accepted = {"kind": "interpolation", "label": "key frames 1 and 9"}

@@ -9,7 +9,7 @@ const PAGE = 24;
 const WALK = 1000;
 
 /** A check that labels have overtaken is asked for again after a while. */
-const AGAIN_MS = 5000;
+export const AGAIN_MS = 5000;
 const askAgain = (page: FlagPage | undefined): number | false => (page?.checked.is_behind ? AGAIN_MS : false);
 
 const fetchFlags = (recording: string, query: Record<string, string | number | null | undefined>, signal: AbortSignal): Promise<FlagPage> =>

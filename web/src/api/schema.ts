@@ -2827,6 +2827,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sequences/{sequence_id}/frames-to-look-at": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Frames To Look At
+         * @description Every hand that a track, the hand detector or a label speaks of, the one that most needs a person first.
+         */
+        get: operations["list_frames_to_look_at"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sequences/{sequence_id}/key-frames": {
         parameters: {
             query?: never;
@@ -5197,6 +5217,42 @@ export interface components {
             models: components["schemas"]["ModelDistance"][];
         };
         /**
+         * Doubt
+         * @description One reason to look at a hand.
+         */
+        DoubtOut: {
+            /**
+             * Camera
+             * @description The one that it is about; null: all.
+             */
+            camera: string | null;
+            /**
+             * Flag
+             * @description The label check's kind, of what it found; null of other doubts.
+             */
+            flag: ("outside" | "finger_order" | "handedness" | "jump" | "bone_length" | "depth" | "background" | "reprojection" | "residual" | "detector") | null;
+            /**
+             * Joints
+             * @description Those meant, in the order of `/hand-skeleton`; empty: the whole hand.
+             */
+            joints: number[];
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "lost" | "unseen" | "depth" | "fit" | "label" | "left_out" | "bones" | "flag";
+            /**
+             * Reason
+             * @description For people: what was seen.
+             */
+            reason: string;
+            /**
+             * Score
+             * @description 1 is where it begins to look wrong; more is worse.
+             */
+            score: number;
+        };
+        /**
          * ErrorBody
          * @description The body of every answer that is not a success.
          */
@@ -5629,6 +5685,45 @@ export interface components {
              * @description Names, in the order of every list of points.
              */
             joints: string[];
+        };
+        /**
+         * HandToLookAt
+         * @description A hand in a frame, labelled or not.
+         */
+        HandToLookAt: {
+            /**
+             * Camera
+             * @description Where to look: the camera of the worst doubt that is about one.
+             */
+            camera: string;
+            /**
+             * Doubts
+             * @description Why, the worst first; one below 1 where nothing looks wrong.
+             */
+            doubts: components["schemas"]["DoubtOut"][];
+            /** Frame */
+            frame: number;
+            /**
+             * Hand
+             * @enum {string}
+             */
+            hand: "right" | "left";
+            /**
+             * Points
+             * @description The hand in that camera; v is 2, or 0 where a joint is not known.
+             */
+            points: number[][];
+            /**
+             * Score
+             * @description 1 is where something begins to look wrong; several doubts count more than one.
+             */
+            score: number;
+            /**
+             * Shows
+             * @description Whose joints `points` are.
+             * @enum {string}
+             */
+            shows: "label" | "track" | "detector" | "nothing";
         };
         /**
          * Health
@@ -7228,6 +7323,44 @@ export interface components {
             id: string;
             /** Name */
             name: string;
+        };
+        /**
+         * QueuePage
+         * @description Part of the queue, the worst first.
+         */
+        QueuePage: {
+            /**
+             * Doubtful
+             * @description Of those that look wrong: with a score of 1 or more.
+             */
+            doubtful: number;
+            /**
+             * Hands
+             * @description In the whole queue.
+             */
+            hands: number;
+            /**
+             * Is Behind
+             * @description Labels have changed since; ask again in a few seconds.
+             */
+            is_behind: boolean;
+            /** Items */
+            items: components["schemas"]["HandToLookAt"][];
+            /**
+             * Missing
+             * @description What could not be asked, and so may have hidden a mistake. Sentences.
+             */
+            missing: string[];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+            /**
+             * Track
+             * @description Name of the track that was looked at; null where there is none.
+             */
+            track: string | null;
         };
         /**
          * ReasonOut
@@ -24018,6 +24151,96 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_frames_to_look_at: {
+        parameters: {
+            query?: {
+                /** @description `next_cursor` of the page before. */
+                cursor?: string;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
+            header?: never;
+            path: {
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["QueuePage"];
+                };
             };
             /** @description Unauthorized */
             401: {

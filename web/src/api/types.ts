@@ -35,6 +35,8 @@ export type TrackJoints = Schemas["TrackJoints"];
 export type WireSuggestion = Omit<Schemas["Suggestion"], "joints"> & { joints: (Omit<Schemas["SuggestedJoint"], "px"> & { px: [number, number] } | null)[] };
 export type Flag = WithPoints<Schemas["FlagOut"]>;
 export type FlagPage = Omit<Schemas["FlagPage"], "items"> & { items: Flag[] };
+export type HandToLookAt = WithPoints<Schemas["HandToLookAt"]>;
+export type QueuePage = Omit<Schemas["QueuePage"], "items"> & { items: HandToLookAt[] };
 export type ViewerSession = Schemas["ViewerSessionOut"];
 
 export type Me = Schemas["MyAccount"];

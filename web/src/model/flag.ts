@@ -1,6 +1,6 @@
 /** What the label check says, for people. */
 
-import type { Flag } from "../api/types";
+import type { Flag, FlagPage } from "../api/types";
 
 export const KIND_NAMES: Record<Flag["kind"], string> = {
   outside: "Outside the image",
@@ -16,6 +16,9 @@ export const KIND_NAMES: Record<Flag["kind"], string> = {
 };
 
 export const KINDS = Object.keys(KIND_NAMES) as Flag["kind"][];
+
+/** Open flags of the whole recording. */
+export const countOpen = (page: FlagPage): number => Object.values(page.counts).reduce((sum, count) => sum + (count ?? 0), 0);
 
 const compare = (a: Flag, b: Flag): number => a.frame - b.frame || a.camera.localeCompare(b.camera) || a.hand.localeCompare(b.hand);
 

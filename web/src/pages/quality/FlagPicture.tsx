@@ -8,24 +8,24 @@ export type PictureState = "waiting" | "here" | "missing";
 
 interface FlagPictureProps {
   recording: Recording;
-  flag: Flag;
+  flag: Pick<Flag, "camera" | "frame" | "hand" | "points" | "joints">;
   /** Told once the image under the label has come, or does not come. */
   onState: (state: PictureState) => void;
 }
 
-/** The label over its image, cut out around the hand; the joints that are meant are ringed. */
+/** The hand over its image, cut out around it, or the whole image without one; the joints that are meant are ringed. */
 export function FlagPicture({ recording, flag, onState }: FlagPictureProps) {
   const camera = recording.cameras.find((one) => one.id === flag.camera);
   const placed = flag.points.filter(([, , v]) => v > 0);
-  const isEmpty = !camera || placed.length === 0;
+  const isEmpty = !camera;
   useEffect(() => {
-    // Without a placed joint there is nothing to cut out and to wait for.
+    // Without a camera there is no image to wait for.
     if (isEmpty) onState("here");
   }, [isEmpty, onState]);
-  if (!camera || placed.length === 0) return <div className={classes.picture} />;
-  const [xs, ys] = [placed.map(([x]) => x), placed.map(([, y]) => y)];
+  if (!camera) return <div className={classes.picture} />;
+  const [xs, ys] = placed.length > 0 ? [placed.map(([x]) => x), placed.map(([, y]) => y)] : [[0, camera.width - 1], [0, camera.height - 1]];
   const [left, top, right, bottom] = [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
-  const width = Math.max(right - left, (bottom - top) * (4 / 3), 60) * 1.35;
+  const width = Math.max(right - left, (bottom - top) * (4 / 3), 60) * (placed.length > 0 ? 1.35 : 1);
   const height = width * 0.75;
   const unit = width / 240;
   const box = [(left + right - width) / 2 + 0.5, (top + bottom - height) / 2 + 0.5, width, height].join(" ");

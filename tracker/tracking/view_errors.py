@@ -64,7 +64,7 @@ class ViewErrors:
     def doubts(self) -> tuple[str, ...]:
         """A sentence for each camera whose calibration, clock or picture may be wrong."""
         said = []
-        sees = (self.weight > 0.0).any(axis=2)
+        sees = np.asarray((self.weight > 0.0).any(axis=2))
         for number, camera in enumerate(self.camera_ids):
             by_others = np.delete(sees, number, axis=1).any(axis=1)
             own = sees[by_others, number]
@@ -110,7 +110,7 @@ def measure_views(
         marks = seen[:, :, hand].astype(np.float64)  # (T, C, 21, 2)
         found = triangulate(cameras, marks.transpose(0, 2, 1, 3).reshape(-1, C, 2))
         left_out[:, :, hand] = _nanmedian(found.left_out_residuals.reshape(T, 21, C), axis=1)
-        has_mark = np.isfinite(marks).all(axis=3).transpose(0, 2, 1)  # (T, 21, C)
+        has_mark = np.asarray(np.isfinite(marks).all(axis=3)).transpose(0, 2, 1)  # (T, 21, C)
         can_tell = (has_mark.sum(axis=2) >= 3) & np.isfinite(found.points).all(axis=1).reshape(T, 21)
         is_out = has_mark & ~found.is_used.reshape(T, 21, C) & can_tell[:, :, None]
         told = np.count_nonzero(has_mark & can_tell[:, :, None], axis=1)

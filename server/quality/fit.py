@@ -50,7 +50,7 @@ def _check_depth(tracked: TrackedHands) -> Iterator[Doubt]:
     for frame, hand in sorted({(frame, hand) for _, frame, hand in tracked.joints}):
         if frame in tracked.depth_mm:
             row = frames.index(frame)
-            reason = f"The fit is {apart[row, 0]:.0f} mm from the depth; usually it is {usual[0]:.0f} mm."
+            reason = f"The fit is {apart[row, 0]:.1f} mm from the depth; usually it is {usual[0]:.1f} mm."
             yield Doubt(frame, hand, "depth", min(10.0, float(off[row, 0])), "", (), reason)
 
 

@@ -55,7 +55,7 @@ def read_track(folder: Path) -> TrackedHands:
         if len(columns) != 21:
             continue
         for row, frame in enumerate(frames):
-            if "lost" in (status[row], of_hands.get(hand, status)[row]):
+            if of_hands.get(hand, status)[row] == "lost":
                 lost.add((frame, hand))
                 continue
             for index, camera in enumerate(cameras):

@@ -76,9 +76,8 @@ class ViewErrors:
                 )
             elif outvoted.size and outvoted.mean() > MOSTLY:
                 said.append(
-                    f"{camera} sees {100.0 * outvoted.mean():.0f} % of the joints elsewhere than all other cameras, by "
-                    f"{_median(self.left_out_px[:, number]):.0f} px (median): it may have moved since it was "
-                    "calibrated, be out of step, or mirrored."
+                    f"{camera} sees {100.0 * outvoted.mean():.0f} % of the joints elsewhere than all other cameras: it "
+                    "may have moved since it was calibrated, be out of step, or mirrored."
                 )
         return tuple(said)
 

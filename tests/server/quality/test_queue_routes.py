@@ -144,6 +144,15 @@ def test_a_hand_that_the_track_lost_and_the_detector_sees_comes_first(
     assert (first["shows"], second["shows"]) == ("detector", "nothing")
 
 
+def test_a_hand_that_was_held_in_a_frame_that_lost_another_one_was_not_lost(studio, client, unlabelled, tracked):
+    path = studio.app.state.storage.folder("tracks", tracked.track_id) / "track.npz"
+    with np.load(path) as arrays:
+        changed = dict(arrays)
+    changed["status"] = np.full(len(changed["frame"]), "lost")
+    np.savez(path, **changed)
+    assert not any("lost" in reason for one in find(client, unlabelled)["items"] for reason in reasons(one))
+
+
 def test_who_placed_the_hand_settles_it_and_who_accepted_a_suggestion_does_not(
     client, unlabelled, tracked, fits, keep_detections
 ):

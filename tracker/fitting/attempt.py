@@ -89,13 +89,15 @@ class Attempt:
         return tuple(hand for hand, quality in self.qualities.items() if quality.is_lost)
 
     @property
+    def agreement(self) -> float:
+        """How well all hands agree with the depth image: their score, less for misfit."""
+        return sum(quality.score - MISFIT_LOSS * quality.misfit for quality in self.qualities.values())
+
+    @property
     def worth(self) -> float:
-        """To compare attempts by: the score of all hands, less for misfit, joints seen elsewhere and what is lost."""
-        return sum(
-            quality.score
-            - MISFIT_LOSS * quality.misfit
-            - 0.5 * DISTANCE_LOSS * ((quality.apart or 0.0) + (quality.worst_finger or 0.0))
-            - LOST_LOSS * quality.is_lost
+        """To compare attempts by: their agreement, less for joints seen elsewhere and for what is lost."""
+        return self.agreement - sum(
+            0.5 * DISTANCE_LOSS * ((quality.apart or 0.0) + (quality.worst_finger or 0.0)) + LOST_LOSS * quality.is_lost
             for quality in self.qualities.values()
         )
 

@@ -87,6 +87,11 @@ def measure_curl(model: ArticulatedModel, angles: Array) -> float:
     return float(np.mean(np.clip(angles[wide] / _farther_limit(model)[wide], 0.0, 1.0)))
 
 
+def list_finger_angles(model: ArticulatedModel, finger: int) -> npt.NDArray[np.intp]:
+    """Indices into K of all joint angles of a finger, 0 the thumb."""
+    return _finger_dofs(model, finger)[0]
+
+
 def _finger_dofs(model: ArticulatedModel, finger: int) -> tuple[npt.NDArray, npt.NDArray, npt.NDArray, npt.NDArray]:
     """Joints (indices into K) of a finger: all, those that bend its base, its outer part, and those that spread it."""
     assert model.hand is not None

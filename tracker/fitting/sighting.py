@@ -10,10 +10,12 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
+from tracker.capture.grey import is_grey
 from tracker.detection.image_hands import name_hands
 from tracker.fitting.objective import Objective
 from tracker.landmarks import DetectedHand, HandDetector
 from tracker.model.scene import Scene
+from tracker.observation.islands import Island, find_islands
 from tracker.observation.own_color import find_own_color
 from tracker.terms.marked_joints import mark_joints
 
@@ -29,6 +31,9 @@ SEEN, NO_DEPTH, COVERED = 1.0, 0.3, 0.05
 
 FEW = 3
 """So many joints before which something else is seen mean that a thing hides part of the hand."""
+
+TIP_ROOM = 0.015
+"""A fingertip that shows is of the joint that is expected so near to it, m."""
 
 REACH = 15.0
 """mm; a joint that far from the detector's place has a quarter of its pull."""
@@ -77,12 +82,14 @@ class Sightings:
         camera: Its camera, undistorted.
         hands: By the name of the hand; those that were not seen are missing.
         is_looked_at: Whether a detector looked at the frame; without colour or without a detector none does.
+        tells_color: Whether the pixels of the hands are told by their colour, and not by where their bones are.
     """
 
     frame: Frame
     camera: Camera
     hands: Mapping[str, Sighting]
     is_looked_at: bool = True
+    tells_color: bool = False
 
     @property
     def is_covered(self) -> bool:
@@ -110,6 +117,7 @@ def find_sightings(
     camera: Camera,
     names: tuple[str, ...],
     before: Mapping[str, DetectedHand],
+    expected: Mapping[str, Array] | None = None,
 ) -> Sightings:
     """Look for the hands of a recording in the colour image of a frame; without colour or detector nothing is seen.
 
@@ -119,34 +127,63 @@ def find_sightings(
         camera: Its camera.
         names: Of the hands, `right` or `left`.
         before: The hands that were seen in the frame before.
+        expected: Joints (21, 2) px of hands that are followed, where they should be now. A hand that the detector does
+            not see is looked for there, and its pixels are told by them.
     """
+    expected = expected or {}
     depth = frame.depth
     if detector is None or frame.color is None or depth is None or not names:
         return Sightings(frame, camera, {}, is_looked_at=False)
-    known = [name for name in names if name in before]
-    turns = (0, 1 + frame.index % 3) if before else (0, 1, 2, 3)
-    followed = [before[name] for name in known]
+    turns = (0, 1 + frame.index % 3) if before or expected else (0, 1, 2, 3)
+    known = [name for name in names if name in before or name in expected]
+    followed = [before.get(name) or DetectedHand.expected(expected[name], name) for name in known]
 
     def has_size(hand: DetectedHand) -> bool:
         return _has_size_of(hand, depth, camera)
 
     hands = name_hands(detector.find(frame.color, len(names), followed, turns, has_size), names)
-    if not hands:
+    joints = {**expected, **{name: hand.points for name, hand in hands.items()}}
+    if not joints:
         return Sightings(frame, camera, {})
-    is_hand = find_hand_pixels(frame, camera, hands)
-    if len(hands) == len(names):  # of a hand that was not seen nobody knows the pixels
+    is_hand = find_hand_pixels(frame, camera, joints)
+    if len(joints) == len(names):  # of a hand that nobody knows where to look for nobody knows the pixels
         frame = replace(frame, is_hand=is_hand)
-    sightings = {name: Sighting(hand, _believe(hand, depth, is_hand)) for name, hand in hands.items()}
-    return Sightings(frame, camera, sightings)
+    assert frame.color is not None
+    tells_color = not is_grey(frame.color)
+    islands = find_islands(is_hand, depth, camera.K) if tells_color else []
+    focal = float(camera.K[0, 0])
+    sightings = {
+        name: _give_tips(Sighting(hand, _believe(hand, depth, is_hand)), islands, expected.get(name), focal)
+        for name, hand in hands.items()
+    }
+    return Sightings(frame, camera, sightings, tells_color=tells_color)
 
 
-def find_hand_pixels(frame: Frame, camera: Camera, hands: Mapping[str, DetectedHand]) -> npt.NDArray[np.bool_]:
-    """(H, W) pixels with depth that have the own colour of some detected hand; at least one was detected."""
+def find_hand_pixels(frame: Frame, camera: Camera, hands: Mapping[str, Array]) -> npt.NDArray[np.bool_]:
+    """(H, W) pixels with depth that have the own colour of some of the hands whose joints (21, 2) px these are."""
     assert frame.color is not None and frame.depth is not None
     focal = float(camera.K[0, 0])
-    return np.logical_or.reduce(
-        [find_own_color(frame.color, frame.depth, hand.points, focal) for hand in hands.values()]
-    )
+    return np.logical_or.reduce([find_own_color(frame.color, frame.depth, joints, focal) for joints in hands.values()])
+
+
+def _give_tips(sighting: Sighting, islands: list[Island], expected: Array | None, focal: float) -> Sighting:
+    """The sighting with fingertips that the detector overlooks where they show beyond a thing and were expected.
+
+    Where a thing hides a finger but for its tip, the network bends that finger to what shows of its root.
+    """
+    if expected is None:
+        return sighting
+    points, beliefs = sighting.hand.points.copy(), sighting.beliefs.copy()
+    for island in islands:
+        room = TIP_ROOM * focal / island.depth
+        if np.min(np.linalg.norm(points - island.middle, axis=1)) < room:
+            continue
+        apart = np.linalg.norm(expected[4::4] - island.middle, axis=1)
+        tip = 4 + 4 * int(np.argmin(apart))
+        if apart.min() < room:
+            points[tip], beliefs[tip] = island.middle, SEEN
+            beliefs[tip - 2 : tip] = COVERED
+    return Sighting(replace(sighting.hand, points=points), beliefs)
 
 
 def _has_size_of(hand: DetectedHand, depth: npt.NDArray[np.float32], camera: Camera) -> bool:

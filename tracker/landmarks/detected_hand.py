@@ -43,6 +43,11 @@ class DetectedHand:
     presence: float
     right: float
 
+    @classmethod
+    def expected(cls, points: Array, side: str) -> DetectedHand:
+        """A hand that was not seen, to be looked for where its joints (21, 2) px should be."""
+        return cls(points, np.zeros((21, 3)), 0.0, float(side == "right"))
+
     @property
     def side(self) -> str:
         return "right" if self.right >= 0.5 else "left"

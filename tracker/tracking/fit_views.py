@@ -159,7 +159,9 @@ def compose_near(
             continue
         hands = seen.of_camera(camera.id)
         if len(hands) == len(setup.hand_names):
-            frame = replace(frame, is_hand=find_hand_pixels(frame, camera, hands))
+            frame = replace(
+                frame, is_hand=find_hand_pixels(frame, camera, {name: hand.points for name, hand in hands.items()})
+            )
         observation = observe(frame, camera, region, setup.preprocessing, choose_stride(region, camera))
         depths[f"depth_{camera.id}"] = DepthView.of(observation, BESIDE_JOINTS)
     near = seen.add_to(objective, setup.scene, setup.names)

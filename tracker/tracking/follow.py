@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from tracker.capture.camera import Camera
 from tracker.capture.sequence import Sequence
 from tracker.fitting.attempt import Attempt
 from tracker.fitting.setup import TrackSetup
@@ -69,7 +70,8 @@ def follow_frame(
     read_at = perf_counter()
     frame, camera = setup.read(sequence, state.next_frame)
     started = perf_counter()
-    sightings = find_sightings(setup.hand_detector, frame, camera, setup.hand_names, state.detected)
+    expected = _expect(setup, state, camera)
+    sightings = find_sightings(setup.hand_detector, frame, camera, setup.hand_names, state.detected, expected)
     detected_at = perf_counter()
     followed = follow_part(sightings, Part.without(setup, state.gone_hands(setup)), tools, state)
     searched_at = perf_counter()
@@ -84,15 +86,16 @@ def follow_frame(
     known = None if attempt is None or gone else attempt.objects
     pose, objects = watch_objects(sightings.frame, camera, setup, pose, known, recover and not gone)
     next_state = TrackState(
-        state.next_frame + 1,
-        pose,
-        stop_unseen(setup, pose, _earlier(setup, state, pose, recovery), objects),
-        _running_score(state, attempt, status),
-        bool(gone),
-        followed.second_try,
-        recovery.image,
-        gone,
-        {name: sighting.hand for name, sighting in sightings.hands.items()},
+        next_frame=state.next_frame + 1,
+        pose=pose,
+        earlier_pose=stop_unseen(setup, pose, _earlier(setup, state, pose, recovery), objects),
+        score=_running_score(state, attempt, status),
+        is_lost=bool(gone),
+        second_try=followed.second_try,
+        image=recovery.image,
+        tips=followed.tips,
+        lost_hands=gone,
+        detected={name: sighting.hand for name, sighting in sightings.hands.items()},
     )
     return next_state, FrameResult(
         state.next_frame,
@@ -105,6 +108,20 @@ def follow_frame(
         tuple(objects),
         hand_status,
     )
+
+
+def _expect(setup: TrackSetup, state: TrackState, camera: Camera) -> dict[str, Array]:
+    """Joints (21, 2) px of the hands that are followed, where they should be in the next frame; none before the first.
+
+    A detector that overlooks a hand for some frames leaves its pixels to be told by these.
+    """
+    if state.next_frame == setup.options.first_frame:
+        return {}
+    gone, posed = state.gone_hands(setup), setup.scene.pose_at(state.predict(setup.scene))
+    joints = {
+        setup.names[hand]: camera.project(posed.landmarks(hand)) for hand in list_hands(setup) if hand not in gone
+    }
+    return {name: points for name, points in joints.items() if np.all(np.isfinite(points))}
 
 
 def _judge(setup: TrackSetup, recovery: Recovery) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from tracker.fitting.sighting import Sightings
 from tracker.observation import Observation
 from tracker.search.part import Part
 from tracker.search.seen_hands import find_doubtful, try_where_seen
+from tracker.search.shown_tips import reach_shown_tips
 from tracker.search.start_annotated import with_marks
 from tracker.search.tools import Tools
 from tracker.tracking.hold import hold_object
@@ -33,10 +34,10 @@ UNEXPLAINED = 0.15
 SCORE_GAIN = 0.02
 """A search was worth it if it raised the score by this."""
 
-FINGER_REST, SEEN_REST = (4, 64), (2, 8)
+FINGER_REST, TIP_REST, SEEN_REST = (4, 64), (2, 16), (2, 8)
 """Frames to wait after a second try in vain, the first time and at most: after a search of fingers in the depth image,
-and after fits from detected joints, which a lost hand does not wait for. Meanwhile these are in the first fit: on
-`d405_take001` a frame takes half the time."""
+after a finger was taken to a tip that shows, and after fits from detected joints, which a lost hand does not wait for.
+Meanwhile these joints are in the first fit: on `d405_take001` a frame takes half the time."""
 
 SEEN_ITERATIONS = 1.5
 """Fits from the detector's joints take so many times the iterations of others: they start farther off."""
@@ -55,27 +56,29 @@ class Followed:
     Attributes:
         attempt: At the whole scene, what is not of the part where it was; None where nothing of it is in sight.
         second_try: When there may be another.
+        tips: When a finger may be taken to a tip again.
         stages: Seconds by stage.
     """
 
     attempt: Attempt | None
     second_try: Patience
+    tips: Patience
     stages: dict[str, float]
 
 
 def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackState) -> Followed:
     """Fit a part of the scene from the predicted pose, and try again if that left something unexplained."""
     stages: dict[str, float] = {}
-    second_try = state.second_try.pass_frame()
+    second_try, tips = state.second_try.pass_frame(), state.tips.pass_frame()
     if not part.kept:
-        return Followed(None, second_try, stages)
+        return Followed(None, second_try, tips, stages)
     setup, previous = part.setup, part.take(state.pose)
     predicted = replace(state, pose=previous, earlier_pose=part.take(state.earlier_pose)).predict(setup.scene)
     started = perf_counter()
     seen = look(sightings.frame, sightings.camera, setup, predicted, MIN_PIXELS if part.has_hand else 0)
     stages["observing"] = perf_counter() - started
     if seen is None:
-        return Followed(None, second_try, stages)
+        return Followed(None, second_try, tips, stages)
     is_first = state.next_frame == setup.options.first_frame
     options = FitOptions(
         iterations=setup.options.first_iterations if is_first else setup.options.iterations,
@@ -100,6 +103,10 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
         if sightings.is_looked_at and (is_first or second_try.is_over or best.lost):
             best = try_where_seen(setup, sightings, best, objective if is_first else every_frame, again)
             second_try = second_try.after_search(not find_doubtful(best), *SEEN_REST)
+        if sightings.tells_color and tips.is_over:
+            reached = reach_shown_tips(setup, seen, best, every_frame, options, sightings)
+            tips = tips.after_search(reached is None or reached is not best, *TIP_REST)
+            best = reached or best
         starts = _find_finger_starts(sightings, part, state, second_try, best)
         if starts:
             again = replace(options, iterations=setup.options.iterations)
@@ -117,7 +124,7 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
             started = perf_counter()
             best = hold_object(setup, tools, seen, objective, state, best, options)
             stages["physics"] = perf_counter() - started
-    return Followed(part.widen(best, state.pose), second_try, stages)
+    return Followed(part.widen(best, state.pose), second_try, tips, stages)
 
 
 def _find_finger_starts(

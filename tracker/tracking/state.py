@@ -19,6 +19,9 @@ from tracker.tracking.patience import Patience
 
 Array = npt.NDArray[np.float64]
 
+PATIENCE = ("second_try", "image", "tips")
+"""When what was tried in vain may be tried again; a state that was stored before one of them was kept tries at once."""
+
 
 @dataclass(frozen=True)
 class TrackState:
@@ -33,6 +36,7 @@ class TrackState:
         lost_hands: Which, indices of the scene's models; none though one is lost means all.
         second_try: When there is another second try after one in vain.
         image: When the whole image is.
+        tips: When a finger may be taken to a tip that shows again.
         detected: Hands that the detector saw in the last frame, by name.
     """
 
@@ -43,6 +47,7 @@ class TrackState:
     is_lost: bool = False
     second_try: Patience = field(default_factory=Patience)
     image: Patience = field(default_factory=Patience)
+    tips: Patience = field(default_factory=Patience)
     lost_hands: tuple[int, ...] = ()
     detected: Mapping[str, DetectedHand] = field(default_factory=dict)
 
@@ -68,6 +73,10 @@ class TrackState:
             predicted[root] = se3.log(T_now @ se3.inverse(T_before) @ T_now)
         return predicted
 
+    @property
+    def _patience(self) -> dict[str, Patience]:
+        return {name: getattr(self, name) for name in PATIENCE}
+
     def save(self, path: Path) -> None:
         """Write to an npz file, whole or not at all."""
         save_arrays(
@@ -78,7 +87,7 @@ class TrackState:
                 "earlier_pose": self.earlier_pose,
                 "score": np.array(self.score),
                 "is_lost": np.array(self.is_lost),
-                "rest": np.array([self.second_try.wait, self.image.wait, self.image.last, self.second_try.last]),
+                **{name: np.array([patience.wait, patience.last]) for name, patience in self._patience.items()},
                 "lost_hands": np.array(self.lost_hands, dtype=np.int64),
                 "detected_names": np.array(list(self.detected), dtype=np.str_),
                 "detected": np.array([hand.to_row() for hand in self.detected.values()]).reshape(-1, ROW),
@@ -88,20 +97,18 @@ class TrackState:
     @classmethod
     def load(cls, path: Path) -> TrackState:
         """Read what `save` wrote."""
-        names = ("next_frame", "pose", "earlier_pose", "score", "is_lost", "rest")
-        arrays = load_arrays(path, names, optional=("lost_hands", "detected_names", "detected"))
-        rest = [int(frames) for frames in arrays["rest"]]
+        names = ("next_frame", "pose", "earlier_pose", "score", "is_lost")
+        arrays = load_arrays(path, names, optional=(*PATIENCE, "lost_hands", "detected_names", "detected"))
         return cls(
             int(arrays["next_frame"]),
             arrays["pose"],
             arrays["earlier_pose"],
             float(arrays["score"]),
             bool(arrays["is_lost"]),
-            Patience(rest[0], rest[3] if len(rest) > 3 else 0),
-            Patience(rest[1], rest[2]),
-            tuple(int(hand) for hand in arrays.get("lost_hands", ())),
-            {
+            lost_hands=tuple(int(hand) for hand in arrays.get("lost_hands", ())),
+            detected={
                 str(name): DetectedHand.from_row(row)
                 for name, row in zip(arrays.get("detected_names", ()), arrays.get("detected", ()), strict=True)
             },
+            **{name: Patience(*(int(frames) for frames in arrays[name])) for name in PATIENCE if name in arrays},
         )

@@ -66,6 +66,35 @@ def test_of_two_hands_the_one_that_looks_more_like_a_right_one_is_it(rights):
     assert seen.frame.is_hand is not None
 
 
+def test_a_followed_hand_that_the_detector_overlooks_is_looked_for_where_it_should_be_and_its_pixels_are_told():
+    hand, detector = hand_at(160), Told()
+    seen = find_sightings(detector, frame([hand]), CAMERA, ("right",), {}, {"right": hand.points})
+    assert seen.hands == {}
+    assert np.array_equal(detector.asked[0][0].points, hand.points)
+    assert detector.asked[0][0].side == "right"
+    assert seen.frame.is_hand is not None
+    assert all(seen.frame.is_hand[row, column] for column, row in np.rint(hand.points).astype(int))
+
+
+def test_a_fingertip_that_shows_where_it_is_expected_is_believed_in_place_of_a_detected_one_on_the_fingers_root():
+    hand = hand_at(160)
+    color, depth = np.full((240, 320, 3), 20, dtype=np.uint8), np.full((240, 320), 1.5, dtype=np.float32)
+    for column, row in np.rint(np.delete(hand.points, (10, 11), axis=0)).astype(int):
+        where = slice(row - 3, row + 4), slice(column - 3, column + 4)
+        color[where], depth[where] = (196, 140, 120), DISTANCE
+    points = hand.points.copy()
+    points[10:13] = points[9]  # the network bends the middle finger to its root, which shows
+    told = replace(hand, points=points)
+    image = Frame(0, "cam0", color, depth)
+    without = find_sightings(Told(told), image, CAMERA, ("right",), {}).hands["right"]
+    assert np.array_equal(without.hand.points, points)
+    expected = {"right": hand.points + 2.0}
+    seen = find_sightings(Told(told), image, CAMERA, ("right",), {}, expected).hands["right"]
+    assert np.linalg.norm(seen.hand.points[12] - hand.points[12]) < 1.5
+    assert seen.beliefs[12] == SEEN and seen.beliefs[10] == seen.beliefs[11] == COVERED
+    assert np.array_equal(np.delete(seen.hand.points, 12, axis=0), np.delete(points, 12, axis=0))
+
+
 @pytest.mark.parametrize("size", [0.4, 2.5])
 def test_what_is_too_small_or_large_for_its_distance_is_no_hand_and_is_not_followed(size):
     hand = hand_at(160, size)

@@ -6,6 +6,7 @@ from tests.tracker.toys import tube
 from tracker.geometry import se3
 from tracker.model.default_hand import default_hand
 from tracker.model.scene import Scene
+from tracker.tracking.patience import Patience
 from tracker.tracking.state import TrackState
 
 
@@ -18,3 +19,12 @@ def test_hands_go_on_as_they_moved_and_chains_start_where_they_are(rng):
     np.testing.assert_allclose(se3.exp(predicted[hand][:6]), moved @ se3.exp(now[hand][:6]), atol=1e-12)
     np.testing.assert_array_equal(predicted[hand][6:], now[hand][6:])
     np.testing.assert_array_equal(predicted[chain], now[chain])
+
+
+def test_what_was_tried_in_vain_rests_as_long_after_a_state_was_stored(tmp_path):
+    state = TrackState(
+        2, np.zeros(26), np.zeros(26), second_try=Patience(1, 2), image=Patience(3, 15), tips=Patience(0, 4)
+    )
+    state.save(tmp_path / "state.npz")
+    kept = TrackState.load(tmp_path / "state.npz")
+    assert (kept.second_try, kept.image, kept.tips) == (Patience(1, 2), Patience(3, 15), Patience(0, 4))

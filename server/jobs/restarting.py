@@ -71,7 +71,7 @@ def _list_kept_of_tracking(storage: Storage, job: JobRow) -> list[str]:
     files = JobFiles(storage.folder("jobs", job.id), storage.remote_folder("jobs", job.id))
     if not files.is_done("start"):
         return []
-    start = "the shape of the hands, fitted" if job.params.get("calibrate", True) else "the first pose"
+    start = "the fitted shape of the hands" if job.params.get("calibrate", True) else "the first pose"
     return [start, *_list_kept_frames(files)]
 
 

@@ -273,7 +273,7 @@ def test_progress_never_goes_back_and_a_fitted_shape_is_not_lost_with_a_cancelle
     assert 0.5 < begun < 0.98, "the beginning takes longer than these few frames, and the bar knows it"
     with bench.database.writing() as session:
         service.cancel_job(session, first)
-        assert list_kept(bench.storage, service.get_job(session, first)) == ["the shape of the hands, fitted"]
+        assert list_kept(bench.storage, service.get_job(session, first)) == ["the fitted shape of the hands"]
     second = bench.queue(**wanted)
     bench.wait(second, lambda job: job.frames_done >= 3)
     log = bench.log(second)

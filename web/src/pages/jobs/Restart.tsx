@@ -14,7 +14,7 @@ export function Restart({ job, check }: { job: Job; check: RestartCheck | undefi
       <Text size="sm">
         {kept.length > 0
           ? `Kept: ${joinWords(kept)}. Resume goes on from there.${again}`
-          : "Nothing was finished yet that could be kept. What the job worked on is untouched."}
+          : "Nothing was finished yet that could be kept. What the job worked on is untouched; Try again begins anew with the same parameters."}
       </Text>
       <Obstacles check={retry} />
     </Stack>

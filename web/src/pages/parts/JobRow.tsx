@@ -44,6 +44,9 @@ const tookOf = (job: Job): string =>
 
 const sayWhy = (failure: Error): void => void notifications.show({ color: "red", title: "Not done", message: failure.message });
 
+/** Resume is offered where there is something to go on from; a list, which does not ask what is kept, goes by what was counted. */
+const hasKept = (job: Job, restart: RestartCheck | undefined): boolean => (restart ? restart.kept.length > 0 : job.frames_done > 0);
+
 /** What can be done with a job; `restart` says of one that ended whether it can go on or be tried again. `isHere`: on the page of what it makes. */
 export function JobActions({ job, restart, isHere = false }: { job: Job; restart?: RestartCheck | undefined; isHere?: boolean }) {
   const cancel = useJobAction("cancel");
@@ -82,7 +85,7 @@ export function JobActions({ job, restart, isHere = false }: { job: Job; restart
             Cancel
           </Button>
         )}
-        {(job.state === "failed" || job.state === "cancelled") && job.started_at && (
+        {(job.state === "failed" || job.state === "cancelled") && hasKept(job, restart) && (
           <Button size="xs" variant="default" loading={resume.isPending} disabled={restart?.resume.can_start === false} onClick={() => resume.mutate(job.id, { onError: sayWhy })}>
             Resume
           </Button>

@@ -100,6 +100,7 @@ def test_a_board_is_chosen_films_are_sent_checked_and_calibrated_and_a_recording
     page.get_by_role("option", name=re.compile("Rig of the test: 2 cameras")).click()
     store = page.get_by_role("button", name="Store the recording")
     expect(store).to_be_enabled()
+    expect(page.get_by_label(re.compile("Unit of the calibration"))).to_have_count(0)
     screenshots.take(page, "73-import-with-calibration")
     store.click()
     page.wait_for_url(re.compile(r"/recordings/[0-9a-f-]{36}$"))

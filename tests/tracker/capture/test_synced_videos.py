@@ -143,13 +143,18 @@ def test_a_calibration_of_our_own_says_its_unit_and_colmaps_text_is_asked_for_on
     cameras = [Camera("cam0", *SIZE, K0, LENS), Camera("cam1", *SIZE, K1, LENS, T)]
     (folder / "cameras.toml").write_bytes(anipose_file.write_anipose(cameras))
     told = ImportOptions(hands=("right",))
-    assert check_import(folder, options=told).problems == ()
+    report = check_import(folder, options=told)
+    assert report.problems == () and "world_unit_m" not in report.takes, "what the file says is not asked for"
+    other = check_import(folder, options=ImportOptions(hands=("right",), world_unit_m=0.04))
+    assert other.baselines_m == report.baselines_m
+    assert "The calibration says its unit itself, 1 m; the 0.04 m given were not used." in other.warnings
     run_import(folder, tmp_path / "out", options=told)
     assert np.allclose(load_sequence(tmp_path / "out").cameras[1].T_world_camera, T)
     (folder / "cameras.toml").unlink()
     for name, data in write_colmap(cameras).items():
         (folder / name).write_bytes(data)
-    assert any("unit of the calibration" in problem for problem in check_import(folder, options=told).problems)
+    asked = check_import(folder, options=told)
+    assert any("unit of the calibration" in problem for problem in asked.problems) and "world_unit_m" in asked.takes
     run_import(folder, tmp_path / "colmap", options=ImportOptions(hands=("right",), world_unit_m=1.0))
     found = load_sequence(tmp_path / "colmap").cameras
     assert np.allclose(found[1].T_world_camera, T) and np.allclose(found[1].K, K1)

@@ -59,8 +59,9 @@ class SyncedVideos:
                 "COLMAP's cameras.txt and images.txt, or c0.dat and rot_trans_c0.dat for each camera."
             )
         else:
-            takes = ("world_unit_m", *takes)
-            unit = _choose_unit(calibration, options, problems, questions)
+            if find_unit(calibration) is None:
+                takes = ("world_unit_m", *takes)
+            unit = _choose_unit(calibration, options, problems, warnings, questions)
             cameras = tuple(
                 PlannedCamera(
                     id=_make_id(video),
@@ -179,14 +180,20 @@ def find_unit(cameras: list[VideoCamera]) -> float | None:
 
 
 def _choose_unit(
-    cameras: list[VideoCamera], options: ImportOptions, problems: list[str], questions: list[ImportQuestion]
+    cameras: list[VideoCamera],
+    options: ImportOptions,
+    problems: list[str],
+    warnings: list[str],
+    questions: list[ImportQuestion],
 ) -> float:
-    """Metres per unit of the calibration; must be told when there is a distance between cameras."""
-    if options.world_unit_m is not None:
-        return options.world_unit_m
-    told = find_unit(cameras)
+    """Metres per unit of the calibration; must be told when there is a distance between cameras and it says none."""
+    given, told = options.world_unit_m, find_unit(cameras)
     if told is not None:
+        if given not in (None, told):
+            warnings.append(f"The calibration says its unit itself, {told:g} m; the {given:g} m given were not used.")
         return told
+    if given is not None:
+        return given
     centres = np.array([camera.find_pose(1.0)[:3, 3] for camera in cameras])
     if len(cameras) > 1:
         length = float(np.linalg.norm(centres - centres[0], axis=1).max())

@@ -305,6 +305,13 @@ def test_blind_replicas_are_marked_apart_and_compared(join, open_as, recording, 
     people = [ann, *others]
     body |= {"hands": ["right"], "account_ids": [person.id for person in people]}
     replicas = lead.send("POST", f"/projects/{made['id']}/replica-sets", json=body)
+    early = open_as(lead)
+    early.goto(f"/projects/{made['id']}/agreement/{replicas['id']}")
+    expect(early.get_by_role("heading", name="Nothing to compare yet")).to_be_visible()
+    expect(early.get_by_text("At least two people must submit their work; nobody has so far.")).to_be_visible()
+    expect(early.get_by_role("table")).to_have_count(0)
+    expect(early.get_by_role("link", name="CSV")).to_have_count(0)
+    screenshots.take(early, "team-agreement-early")
     given = {person.id: person.send("GET", "/assignments", params={"mine": "true"})["items"][0] for person in people}
     rng = np.random.default_rng(1)
     for person in others:

@@ -1,10 +1,11 @@
 import { Button, Group, SimpleGrid, Text, Title } from "@mantine/core";
-import { IconDownload } from "@tabler/icons-react";
+import { IconDownload, IconUsers } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import { Link, useParams, useSearchParams } from "react-router";
 import { agreementFile, useAgreement, type AgreementReport, type Spread } from "../../api/teams";
 import { formatMeasure, formatNumber } from "../../model/format";
-import { INDEPENDENT } from "../../model/source";
+import { describeLeftOut, INDEPENDENT } from "../../model/source";
+import { EmptyState } from "../parts/EmptyState";
 import { Fact } from "../parts/Fact";
 import { Failure } from "../parts/Failure";
 import { LeftOut } from "../parts/LeftOut";
@@ -35,7 +36,7 @@ export default function AgreementPage() {
     );
   }
   if (!report || !setId) return <PageSkeleton />;
-  const scale = Math.max(0.01, ...[...report.joints, ...report.annotators].map((one) => one.spread.std_px ?? 0));
+  const hasMeasures = report.overall.samples > 0;
   return (
     <div className="page">
       <Group justify="space-between" align="flex-start" mb="lg" wrap="nowrap">
@@ -52,39 +53,69 @@ export default function AgreementPage() {
         </div>
         <Group gap="sm" wrap="nowrap">
           <SourceFilter chosen={sources} onChange={choose} />
-          {(["html", "csv", ""] as const).map((kind) => (
+          {hasMeasures && (["html", "csv", ""] as const).map((kind) => (
             <Button key={kind} size="xs" variant="default" component="a" href={agreementFile(setId, kind, sources)} download={`agreement.${kind || "json"}`} leftSection={<IconDownload size={14} aria-hidden />}>
               {kind ? kind.toUpperCase() : "JSON"}
             </Button>
           ))}
         </Group>
       </Group>
-      <SimpleGrid cols={{ base: 2, md: 4 }}>
-        <Fact label="Standard deviation along an axis">{formatMeasure(report.overall.std_px, "px", 2)}</Fact>
-        <Fact label="As a distance">{formatMeasure(report.radial_px, "px", 2)}</Fact>
-        <Fact label="Object keypoint similarity">{formatNumber(report.oks, 3)}</Fact>
-        <Fact label="Four annotators of [T16]">{report.t16_std_px} px</Fact>
-      </SimpleGrid>
+      {!hasMeasures && <NothingYet report={report} projectId={projectId} />}
+      {hasMeasures && <Measures report={report} />}
       <LeftOut sources={report.sources} onSources={choose} />
-      {report.annotators.length < 2 && (
-        <Text mt="lg" className="quiet">
-          At least two annotators must submit before there is anything to compare.
-        </Text>
-      )}
-      <div className={classes.columns} style={{ marginTop: 24 }}>
-        <Box title="Annotators" note={report.are_separable ? "The noise of each one, and where they mark against the mean of the others." : "Two cannot be told apart: each has the noise that they share."}>
-          <Bars label="Annotator" last="Bias x, y, px" scale={scale} rows={report.annotators.map((one) => [one.name, one.spread, `${signed(one.bias_x_px)}, ${signed(one.bias_y_px)}`])} />
-        </Box>
-        <Box title="States" note="Joints that everybody calls visible, or occluded, and those about which they differ.">
-          <Bars label="State" last="" scale={scale} rows={Object.entries(report.states).map(([name, spread]) => [name, spread, ""])} />
-        </Box>
-        <Box title="Joints">
-          <Bars label="Joint" last="State differs" scale={scale} rows={report.joints.map((one) => [one.joint.replace("_", " "), one.spread, share(one.state_disagreement)])} />
-        </Box>
-        <div>
-          <Pairs report={report} />
-          <Worst report={report} />
-        </div>
+      {hasMeasures && <Tables report={report} />}
+    </div>
+  );
+}
+
+/** Before two people have marked the same joint there is nothing to compare, and no table of dashes says so better. */
+function NothingYet({ report, projectId }: { report: AgreementReport; projectId: string | undefined }) {
+  const submitted = report.annotators.map((one) => one.name);
+  const areMissing = submitted.length < 2;
+  return (
+    <EmptyState
+      icon={<IconUsers size={48} stroke={1.25} />}
+      title="Nothing to compare yet"
+      action={
+        <Button variant="default" component={Link} to={`/projects/${projectId}`}>
+          To the project
+        </Button>
+      }
+    >
+      {areMissing
+        ? `At least two people must submit their work; ${submitted.length === 0 ? "nobody has" : `only ${submitted[0]} has`} so far.`
+        : `No joint counts that two people have placed. ${describeLeftOut(report.sources) ? "Those below were left out." : "They may have called them outside the image."}`}
+    </EmptyState>
+  );
+}
+
+function Measures({ report }: { report: AgreementReport }) {
+  return (
+    <SimpleGrid cols={{ base: 2, md: 4 }}>
+      <Fact label="Standard deviation along an axis">{formatMeasure(report.overall.std_px, "px", 2)}</Fact>
+      <Fact label="As a distance">{formatMeasure(report.radial_px, "px", 2)}</Fact>
+      <Fact label="Object keypoint similarity">{formatNumber(report.oks, 3)}</Fact>
+      <Fact label="Four annotators of [T16]">{report.t16_std_px} px</Fact>
+    </SimpleGrid>
+  );
+}
+
+function Tables({ report }: { report: AgreementReport }) {
+  const scale = Math.max(0.01, ...[...report.joints, ...report.annotators].map((one) => one.spread.std_px ?? 0));
+  return (
+    <div className={classes.columns} style={{ marginTop: 24 }}>
+      <Box title="Annotators" note={report.are_separable ? "The noise of each one, and where they mark against the mean of the others." : "Two cannot be told apart: each has the noise that they share."}>
+        <Bars label="Annotator" last="Bias x, y, px" scale={scale} rows={report.annotators.map((one) => [one.name, one.spread, `${signed(one.bias_x_px)}, ${signed(one.bias_y_px)}`])} />
+      </Box>
+      <Box title="States" note="Joints that everybody calls visible, or occluded, and those about which they differ.">
+        <Bars label="State" last="" scale={scale} rows={Object.entries(report.states).map(([name, spread]) => [name, spread, ""])} />
+      </Box>
+      <Box title="Joints">
+        <Bars label="Joint" last="State differs" scale={scale} rows={report.joints.map((one) => [one.joint.replace("_", " "), one.spread, share(one.state_disagreement)])} />
+      </Box>
+      <div>
+        <Pairs report={report} />
+        <Worst report={report} />
       </div>
     </div>
   );

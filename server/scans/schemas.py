@@ -77,6 +77,7 @@ class CollectionOut(BaseModel):
     name: str
     scans: int
     subjects: int
+    subject_names: list[str] = Field(description="Whose hands they are, in the order of the alphabet.")
     registered: int
     failed: int
 

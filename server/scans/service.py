@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import threading
 import uuid
-from collections import OrderedDict
+from collections import OrderedDict, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -72,11 +72,14 @@ def list_scans(
 
 def list_collections(session: Session) -> list[CollectionOut]:
     """Collections by name."""
+    names: dict[str, list[str]] = defaultdict(list)
+    pairs = select(ScanRow.collection, ScanRow.subject).where(ScanRow.deleted_at.is_(None), ScanRow.subject != "")
+    for collection, subject in session.execute(pairs.distinct().order_by(ScanRow.subject)):
+        names[collection].append(subject)
     query = (
         select(
             ScanRow.collection,
             func.count(),
-            func.count(func.distinct(func.nullif(ScanRow.subject, ""))),
             func.count().filter(ScanRow.state == "registered"),
             func.count().filter(ScanRow.state == "failed"),
         )
@@ -85,8 +88,15 @@ def list_collections(session: Session) -> list[CollectionOut]:
         .order_by(ScanRow.collection)
     )
     return [
-        CollectionOut(name=name, scans=scans, subjects=subjects, registered=registered, failed=failed)
-        for name, scans, subjects, registered, failed in session.execute(query)
+        CollectionOut(
+            name=name,
+            scans=scans,
+            subjects=len(names[name]),
+            subject_names=names[name],
+            registered=registered,
+            failed=failed,
+        )
+        for name, scans, registered, failed in session.execute(query)
     ]
 
 

@@ -102,6 +102,8 @@ def test_a_recording_that_cannot_be_tracked_is_not_offered_to_be(
     page.goto(f"/jobs/{job['id']}")
     expect(page.get_by_role("region", name="What is kept").get_by_text(re.compile("was deleted"))).to_be_visible()
     expect(page.get_by_role("button", name="Try again")).to_be_disabled()
+    expect(page.get_by_text("Nothing was finished yet that could be kept.", exact=False)).to_be_visible()
+    expect(page.get_by_role("button", name="Resume")).to_have_count(0)
     take_both(open_page, screenshots, page, f"job-{scheme}")
     studio.send("POST", f"/sequences/{recording['id']}/restore").raise_for_status()
 
@@ -129,6 +131,13 @@ def test_forms_about_scans_say_what_is_missing(
     page.get_by_role("option", name=COLLECTION, exact=True).click()
     expect_refused(dialog, "Train", re.compile("There are 0 registrations of 0 people; a model needs 20 of at least 2"))
     expect_refused(dialog, "Train", re.compile("registrations wait for a decision on the page Curate"))
+    people = sorted({studio.get(f"/scans/{scan['id']}")["subject"] for scan in hands.scans})
+    dialog.get_by_label("Subjects to leave out").click()
+    for person in people:
+        expect(page.get_by_role("option", name=person, exact=True)).to_be_visible()
+    page.get_by_role("option", name=people[0], exact=True).click()
+    expect(dialog.get_by_label("Quick", exact=False)).to_be_enabled()
+    dialog.get_by_label("Name of the model").click()  # the list of people is shut
     expect(dialog.get_by_role("link", name="Accept registrations")).to_have_attribute("href", re.compile("/curate"))
     take_both(open_page, screenshots, page, f"train-{scheme}")
     page.keyboard.press("Escape")

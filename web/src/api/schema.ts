@@ -4762,6 +4762,11 @@ export interface components {
             registered: number;
             /** Scans */
             scans: number;
+            /**
+             * Subject Names
+             * @description Whose hands they are, in the order of the alphabet.
+             */
+            subject_names: string[];
             /** Subjects */
             subjects: number;
         };

@@ -1,4 +1,4 @@
-import { Button, Group, Modal, NumberInput, Radio, Select, Stack, TagsInput, Text, TextInput, Title } from "@mantine/core";
+import { Button, Group, Modal, NumberInput, Radio, Select, Stack, Text, TextInput, Title } from "@mantine/core";
 import { useState } from "react";
 import { useNavigate } from "react-router";
 import { useStartLoop, type Evaluate, type HandModel, type LoopWish } from "../../api/handModels";
@@ -6,6 +6,7 @@ import { mayStart, useJobCheck } from "../../api/jobChecks";
 import { useScanCollections } from "../../api/scans";
 import { FormFooter } from "../parts/Obstacles";
 import { EvaluateChoice } from "./EvaluateChoice";
+import { LeaveOut } from "./LeaveOut";
 import { LOCAL_SHAPES, LocalShapesChoice } from "./LocalShapesChoice";
 import { ToCurate } from "./ToCurate";
 
@@ -58,7 +59,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
             <NumberInput label="Rounds" min={1} max={10} allowDecimal={false} value={by === "decisions" ? 1 : rounds} disabled={by === "decisions"} onChange={(value) => setRounds(Number(value) || 1)} />
             <Select label="Collection" allowDeselect={false} value={collection} data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]} onChange={(value) => setCollection(value ?? EVERY)} />
           </Group>
-          <TagsInput label="Subjects to leave out" description="Kept for testing" placeholder={leaveOut.length === 0 ? "None" : ""} value={leaveOut} onChange={setLeaveOut} />
+          <LeaveOut collections={collections} collection={collection} value={leaveOut} onChange={setLeaveOut} />
           <LocalShapesChoice value={hasLocalShapes} onChange={setHasLocalShapes} />
           <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
           <FormFooter check={check.data} failure={start.error} help={by === "decisions" ? <ToCurate collection={collection} /> : undefined}>

@@ -1,4 +1,4 @@
-import { Button, Checkbox, Group, Modal, Radio, Select, Stack, TagsInput, Text, TextInput, Title } from "@mantine/core";
+import { Button, Checkbox, Group, Modal, Radio, Select, Stack, Text, TextInput, Title } from "@mantine/core";
 import { useDebouncedValue } from "@mantine/hooks";
 import { useState } from "react";
 import { useNavigate } from "react-router";
@@ -8,6 +8,7 @@ import { useScanCollections } from "../../api/scans";
 import { formatCount } from "../../model/format";
 import { FormFooter } from "../parts/Obstacles";
 import { EvaluateChoice } from "./EvaluateChoice";
+import { LeaveOut } from "./LeaveOut";
 import { LOCAL_SHAPES, LocalShapesChoice } from "./LocalShapesChoice";
 import { ToCurate } from "./ToCurate";
 
@@ -78,7 +79,7 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
               data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]}
               onChange={(value) => setCollection(value ?? EVERY)}
             />
-            <TagsInput label="Subjects to leave out" description="Kept for testing" placeholder={leaveOut.length === 0 ? "None" : ""} value={leaveOut} onChange={setLeaveOut} />
+            <LeaveOut collections={collections} collection={collection} value={leaveOut} onChange={setLeaveOut} />
           </Group>
           <LocalShapesChoice value={hasLocalShapes} onChange={setHasLocalShapes} />
           <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />

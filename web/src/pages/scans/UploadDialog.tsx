@@ -1,4 +1,4 @@
-import { Button, Group, Loader, Modal, Progress, ScrollArea, Select, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Autocomplete, Button, Group, Loader, Modal, Progress, ScrollArea, Select, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
 import { useQueryClient } from "@tanstack/react-query";
 import { useEffect, useState } from "react";
 import { scanKeys, useScanCollections, type ScansAdded, type ScansMeasured } from "../../api/scans";
@@ -132,12 +132,7 @@ export function UploadDialog() {
             <Text size="sm" className="quiet">
               {formatCount(upload.files.length, "file")}, {formatBytes(upload.bytes)}. A scans.json among them says for each scan whose hand it is; the fields below hold for all others.
             </Text>
-            <TextInput label="Collection" description="Scans that belong together" placeholder="scans" list="scan-collections" maxLength={200} value={collection} onChange={(event) => setCollection(event.currentTarget.value)} data-autofocus />
-            <datalist id="scan-collections">
-              {collections.map(({ name }) => (
-                <option key={name} value={name} />
-              ))}
-            </datalist>
+            <Autocomplete label="Collection" description="Scans that belong together" placeholder="scans" data={collections.map(({ name }) => name)} maxLength={200} value={collection} onChange={setCollection} data-autofocus />
             <Group grow gap="md">
               <Select label="Hand" description="When it is known" data={[{ value: ASK, label: "Find out" }, { value: "right", label: "Right" }, { value: "left", label: "Left" }]} value={side} onChange={(value) => setSide(value ?? ASK)} allowDeselect={false} />
               <TextInput label="Subject" description="Whose hand" maxLength={100} value={subject} onChange={(event) => setSubject(event.currentTarget.value)} />

@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { formatAgo, formatBytes, formatDuration, formatLeft, formatMeasure, formatName, formatNumber, formatRough } from "./format";
+import { formatAgo, formatBytes, formatDuration, formatFileFormat, formatLeft, formatMeasure, formatName, formatNumber, formatPicture, formatRough } from "./format";
 
 test("durations are short for seconds and plain for hours", () => {
   expect([0.27, 9.99, 65, 3725].map(formatDuration)).toEqual(["0.3 s", "0:10", "1:05", "1 h 02 min"]);
@@ -33,4 +33,9 @@ test("names of fields become words", () => {
 
 test("a number of any size is written out", () => {
   expect([0.034217, 20.06, 2486.3, 12345678].map(formatRough)).toEqual(["0.0342", "20.1", "2,490", "12,300,000"]);
+});
+
+test("what files were read as, and a film's pictures, are told in words", () => {
+  expect([formatFileFormat("synced_videos"), formatFileFormat("rgbd_folder"), formatFileFormat("what_comes_next")]).toEqual(["synchronised videos", "RGB-D images in a folder", "what comes next"]);
+  expect([formatPicture("a/film.mp4#189"), formatPicture("depth/depth_100.png"), formatPicture("odd#name.png")]).toEqual(["Frame 189 of film.mp4", "depth_100.png", "odd#name.png"]);
 });

@@ -54,6 +54,23 @@ export function formatBytes(bytes: number): string {
 /** "depth_residual_mm" or "depth-residual" as words. */
 export const formatName = (name: string): string => name.replaceAll(/[_-]+/g, " ").replace(/^./, (letter) => letter.toUpperCase());
 
+const FORMATS: Record<string, string> = {
+  recording_folder: "Handloom's own folder",
+  rgbd_folder: "RGB-D images in a folder",
+  synced_videos: "synchronised videos",
+  tum_rgbd: "TUM RGB-D",
+};
+
+/** What files were read as, in people's words. */
+export const formatFileFormat = (name: string): string => FORMATS[name] ?? formatName(name).toLowerCase();
+
+/** A picture's file without its folders; of a film, which frame of it. */
+export function formatPicture(name: string): string {
+  const file = name.split("/").at(-1) ?? name;
+  const [, film, frame] = /^(.+)#([0-9]+)$/.exec(file) ?? [];
+  return film === undefined ? file : `Frame ${frame} of ${film}`;
+}
+
 const JOB_WORDS: Record<string, string> = { detect: "Find hands in", calibrate: "Calibrate" };
 
 /** What a job does, before the name of what it does it to: "Track", "Find hands in". */

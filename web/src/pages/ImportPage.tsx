@@ -5,7 +5,7 @@ import { useState } from "react";
 import { Link, useNavigate, useParams } from "react-router";
 import { discardImport, useConfirmImport, useImport, type ImportOptions } from "../api/imports";
 import type { Import, ImportQuestion } from "../api/types";
-import { formatBytes, formatCount, formatName } from "../model/format";
+import { formatBytes, formatCount, formatFileFormat } from "../model/format";
 import { stillNeeded, withoutField } from "../model/importForm";
 import { EmptyState } from "./parts/EmptyState";
 import { Failure } from "./parts/Failure";
@@ -141,9 +141,9 @@ export default function ImportPage() {
           <Text className="quiet" mt={4}>
             {formatCount(checked.file_count, "file")}, {formatBytes(checked.byte_count)}.{" "}
             {report.ok
-              ? `Read as: ${formatName(report.format).toLowerCase()}. Nothing is stored until you say so.`
+              ? `Read as: ${formatFileFormat(report.format)}. Nothing is stored until you say so.`
               : stillNeeded(report.questions ?? []).length > 0
-                ? `Read as: ${formatName(report.format).toLowerCase()}. Something has to be told first. Nothing is stored until you say so.`
+                ? `Read as: ${formatFileFormat(report.format)}. Something has to be told first. Nothing is stored until you say so.`
                 : "This cannot be imported as it is. Nothing was stored."}
           </Text>
         </div>

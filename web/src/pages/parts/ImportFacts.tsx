@@ -21,7 +21,7 @@ const ROWS: readonly (readonly [string, (camera: CameraReport) => ReactNode])[] 
     "Kinds of files",
     (camera) =>
       Object.entries(camera.image_types)
-        .map(([kind, count]) => `${count} ${kind}`)
+        .map(([kind, count]) => `${count} ${kind.replace(/^color:/, "colour:")}`)
         .join(", ") || null,
   ],
   ["Missing frames", (camera) => (camera.gaps.length > 0 ? camera.gaps.join("; ") : "none")],

@@ -3,7 +3,7 @@ import { useDisclosure } from "@mantine/hooks";
 import { IconChevronDown, IconChevronRight } from "@tabler/icons-react";
 import { useImportFormats } from "../../api/imports";
 import type { ImportQuestion, ImportReport } from "../../api/types";
-import { formatName } from "../../model/format";
+import { formatFileFormat } from "../../model/format";
 import { numberFields, withSensor } from "../../model/importForm";
 import { DepthPreview } from "./DepthPreview";
 import classes from "./ImportOptionsForm.module.css";
@@ -117,7 +117,7 @@ export function ImportOptionsForm({ importId, report, live }: ImportOptionsFormP
           />
         )}
         <Button variant="subtle" size="compact-sm" display={SERIES.some((name) => takes.includes(name)) || takes.includes("hands") ? undefined : "none"} onClick={more.toggle} aria-expanded={isMoreShown} leftSection={<Chevron size={14} aria-hidden />} style={{ alignSelf: "flex-start" }}>
-          Patterns and format
+          {SERIES.some((name) => takes.includes(name)) ? "Patterns and format" : "Format"}
         </Button>
         <Collapse expanded={isMoreShown}>
           <SimpleGrid cols={{ base: 2, sm: 3 }} spacing="md">
@@ -131,7 +131,7 @@ export function ImportOptionsForm({ importId, report, live }: ImportOptionsFormP
                 onChange={(event) => set({ [name]: event.currentTarget.value })}
               />
             ))}
-            <Select label="Format" description="Recognised when empty" data={formats.map((value) => ({ value, label: formatName(value) }))} value={text("format") || null} clearable onChange={(format) => set({ format: format ?? undefined })} />
+            <Select label="Format" description="Recognised when empty" data={formats.map((value) => ({ value, label: formatFileFormat(value).replace(/^./, (letter) => letter.toUpperCase()) }))} value={text("format") || null} clearable onChange={(format) => set({ format: format ?? undefined })} />
           </SimpleGrid>
         </Collapse>
         {live.failure && (

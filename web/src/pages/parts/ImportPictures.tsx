@@ -1,6 +1,7 @@
 import { Group, Text, Title } from "@mantine/core";
 import { importPicture } from "../../api/imports";
 import type { CameraReport } from "../../api/types";
+import { formatPicture } from "../../model/format";
 import classes from "./ImportPictures.module.css";
 
 const PLACES = ["First", "Middle", "Last"];
@@ -20,7 +21,7 @@ export function Thumbnails({ importId, names, what }: ThumbnailsProps) {
         <figure key={name} className={classes.figure}>
           <img src={importPicture(importId, name)} alt={`${names.length === 3 ? PLACES[index] : "An"} image of ${what}: ${name}`} loading="lazy" className={classes.image} />
           <figcaption className={classes.caption} title={name}>
-            {name.split("/").at(-1)}
+            {formatPicture(name)}
           </figcaption>
         </figure>
       ))}

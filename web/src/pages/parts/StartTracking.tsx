@@ -12,6 +12,10 @@ interface StartTrackingProps {
   onClose: () => void;
 }
 
+/** What the tracker begins with, to follow "It starts". */
+export const whereItStarts = (recording: Recording): string =>
+  `from the annotation of the first frame when there is one, otherwise from ${recording.cameras.some((camera) => camera.has_depth) ? "the depth alone" : "the hand that is found in the pictures"}.`;
+
 /** Start a tracking job: the fields, defaults and help come from the server. */
 export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps) {
   const options = useTrackingOptions(isOpen);
@@ -40,8 +44,7 @@ export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps
       >
         <Stack gap="md">
           <Text size="sm" className="quiet">
-            A hand is fitted to every frame. It starts from the annotation of the first frame when there is one, otherwise from the depth alone. You can go on
-            working meanwhile, and close the browser.
+            A hand is fitted to every frame. It starts {whereItStarts(recording)} You can go on working meanwhile, and close the browser.
           </Text>
           <TrackingForm options={options} recording={recording} />
           <FormFooter check={check.data} failure={start.error}>

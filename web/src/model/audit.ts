@@ -9,13 +9,16 @@ function describeValue(value: unknown, names: ReadonlyMap<string, string>): stri
   return typeof value === "number" ? String(value) : JSON.stringify(value);
 }
 
+/** "project · add recording". */
+export const describeAct = (act: string): string => act.replace(".", " · ").replaceAll("_", " ");
+
 /** "given to Anna, frames 0 to 9": people by their names, ids and hashes by their beginnings; what is not known is left out. */
 export function describeDetail(detail: Readonly<Record<string, unknown>>, names: ReadonlyMap<string, string>): string {
   return Object.entries(detail)
     .filter(([, value]) => value !== null)
     .map(([name, value]) => {
       const isRange = name === "frames" && Array.isArray(value) && value.length === 2;
-      return `${name.replaceAll("_", " ").replace(/ id$/, "")} ${isRange ? value.join(" to ") : describeValue(value, names)}`;
+      return `${name.replaceAll("_", " ").replace(/ id$/, "").replace(/^sequence$/, "recording")} ${isRange ? value.join(" to ") : describeValue(value, names)}`;
     })
     .join(", ");
 }

@@ -3,7 +3,7 @@ import { useInfiniteQuery } from "@tanstack/react-query";
 import { IconHistory } from "@tabler/icons-react";
 import { useSearchParams } from "react-router";
 import { fetchAudit, usePeople } from "../../api/account";
-import { describeDetail } from "../../model/audit";
+import { describeAct, describeDetail } from "../../model/audit";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { useTitle } from "../parts/useTitle";
@@ -75,7 +75,7 @@ export default function AuditPage() {
                   <Table.Tr key={line.id}>
                     <Table.Td className="one-line">{formatMoment(line.time)}</Table.Td>
                     <Table.Td>{line.account ?? "command line"}</Table.Td>
-                    <Table.Td>{line.act.replace(".", " · ")}</Table.Td>
+                    <Table.Td>{describeAct(line.act)}</Table.Td>
                     <Table.Td style={{ overflowWrap: "anywhere" }}>
                       <Text size="sm" component="span">
                         {describeDetail(line.detail, names)}

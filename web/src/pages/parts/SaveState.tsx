@@ -3,33 +3,12 @@ import { IconAlertTriangle, IconCheck, IconCloudOff, IconGitMerge, IconLoader2, 
 import { useIsMutating } from "@tanstack/react-query";
 import { Link } from "react-router";
 import { formatCount } from "../../model/format";
-import { useElsewhere, type Elsewhere, type Own } from "../../state/elsewhere";
+import { describeSaving, type SaveFacts, type SaveSign } from "../../model/saveWords";
+import { useElsewhere, type Own } from "../../state/elsewhere";
 import { useHint } from "../../state/keys";
 import classes from "./SaveState.module.css";
 
-export interface SaveFacts {
-  readonly waiting: number;
-  readonly isSending: boolean;
-  readonly isOffline: boolean;
-  readonly trouble: string;
-  readonly isHeld: boolean;
-  readonly isKept: boolean;
-  readonly conflicts?: number;
-  readonly refusals: number;
-}
-
-/** `isBusy`: some other change, such as a comment, is on its way to the server. */
-function describe(status: SaveFacts, { mine, crops }: Elsewhere, isBusy: boolean): { text: string; tone: "good" | "busy" | "bad"; icon: typeof IconCheck } {
-  if (status.conflicts) return { text: `${formatCount(status.conflicts, "change")} to settle`, tone: "bad", icon: IconGitMerge };
-  if (status.refusals > 0) return { text: `not taken by the server, ${status.refusals} kept here`, tone: "bad", icon: IconAlertTriangle };
-  if (status.isHeld) return { text: `log in to save, ${status.waiting} waiting`, tone: "bad", icon: IconLock };
-  if (status.trouble) return { text: `held back, ${status.waiting} waiting`, tone: "bad", icon: IconAlertTriangle };
-  if (status.isOffline) return { text: `offline, ${status.waiting} waiting`, tone: "bad", icon: IconCloudOff };
-  if (status.waiting > 0 || status.isSending || isBusy) return { text: "saving …", tone: "busy", icon: IconLoader2 };
-  if (mine > 0) return { text: `saved here, ${mine} waiting elsewhere`, tone: "busy", icon: IconLoader2 };
-  if (crops > 0) return { text: `saved here, ${formatCount(crops, "crop")} not saved`, tone: "busy", icon: IconAlertTriangle };
-  return { text: "saved", tone: "good", icon: IconCheck };
-}
+const ICONS: Record<SaveSign, typeof IconCheck> = { settle: IconGitMerge, warning: IconAlertTriangle, lock: IconLock, offline: IconCloudOff, busy: IconLoader2, saved: IconCheck };
 
 interface SaveStateProps {
   status: SaveFacts;
@@ -47,7 +26,8 @@ export function SaveState({ status, own, what, action, onFlush }: SaveStateProps
   const hint = useHint();
   const elsewhere = useElsewhere(own);
   const isBusy = useIsMutating() > 0;
-  const { text, tone, icon: Icon } = describe(status, elsewhere, isBusy);
+  const { text, tone, sign } = describeSaving(status, elsewhere, isBusy);
+  const Icon = ICONS[sign];
   return (
     <>
       <Tooltip label={status.isOffline ? hint("Kept in this browser; try now", action) : what}>

@@ -152,6 +152,17 @@ def test_the_frames_that_need_a_person_stand_in_a_queue_that_leads_to_the_annota
     expect(page.get_by_label("Frame", exact=True)).to_have_value("2")
 
 
+def test_the_queue_shows_that_it_is_looked_for_while_the_recording_is_on_its_way(labelled, open_page):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    slow = HeldBack(page, re.compile(f"/sequences/{labelled['id']}$"))
+    page.goto(f"/recordings/{labelled['id']}/check?show=frames")
+    expect(page.get_by_role("status", name="Looking for frames that need a person")).to_be_visible()
+    slow.release()
+    expect(page.get_by_role("list", name="Frames to look at")).to_be_visible()
+
+
 def test_without_anything_to_go_by_the_queue_says_what_to_do(recording, open_page):
     from playwright.sync_api import expect
 

@@ -290,6 +290,31 @@ def test_what_is_still_loading_is_not_said_to_be_nothing(studio, track, open_pag
     late.release()
 
 
+def test_a_part_of_a_page_that_does_not_come_says_so_and_can_be_asked_for_again(studio, track, open_page, screenshots):
+    """The page itself is there, one of its lists is not."""
+    from playwright.sync_api import expect
+
+    project = studio.send("POST", "/projects", json={"name": "Everything_in_one_word_" * 4}).raise_for_status().json()
+    page = open_page()
+    parts = re.compile(
+        r"/api/v1/(assignments|projects/[^/?]+/(sequences|replica-sets)|sequences/[^/?]+/annotations)([?]|$)"
+    )
+    page.route(parts, lambda route: route.fulfill(status=500, json={"detail": "Not now."}))
+    missing = page.get_by_role("alert").filter(has_text="could not be loaded: Not now.")
+    places = {f"/recordings/{track['sequence_id']}": 1, f"/projects/{project['id']}": 3, "/projects": 1}
+    for address, count in places.items():
+        page.goto(address)
+        expect(missing).to_have_count(count)
+        # A name that has no end takes no room from what can be pressed.
+        labels = page.locator("main .mantine-Button-label")
+        assert all(labels.evaluate_all("(all) => all.map((one) => one.scrollWidth <= one.clientWidth + 1)")), address
+    screenshots.take(page, "missing-work")
+    page.unroute_all()
+    missing.get_by_role("button", name="Try again").click()
+    expect(missing).to_have_count(0)
+    expect(page.get_by_text("Nothing waits for your review", exact=False)).to_be_visible()
+
+
 def test_files_that_cannot_be_imported_get_a_report_that_says_what_to_do(studio, open_page, screenshots, tmp_path):
     from playwright.sync_api import expect
 

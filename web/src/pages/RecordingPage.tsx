@@ -23,7 +23,8 @@ import { ImportFacts } from "./parts/ImportFacts";
 import { JobRow } from "./parts/JobRow";
 import { PageSkeleton } from "./parts/PageSkeleton";
 import { Sentences } from "./parts/Sentences";
-import { StartTracking } from "./parts/StartTracking";
+import { Awaited } from "./parts/Awaited";
+import { StartTracking, whereItStarts } from "./parts/StartTracking";
 import { TrackButton, useTrackObstacles } from "./parts/TrackButton";
 import { TrackTable } from "./parts/TrackTable";
 import { useTitle } from "./parts/useTitle";
@@ -167,7 +168,11 @@ export function RecordingPage() {
             </Group>
           </Group>
           <div className="card" style={{ padding: 16 }}>
-            <FrameStrip rows={rows} frameCount={recording.frame_count} frame={null} height={32} label="Annotated frames" onSeek={openFrame} />
+            {annotations.data ? (
+              <FrameStrip rows={rows} frameCount={recording.frame_count} frame={null} height={32} label="Annotated frames" onSeek={openFrame} />
+            ) : (
+              <Awaited what="What is annotated" query={annotations} height={32} />
+            )}
             <Group gap="md" mt="sm">
               <HandBadge hand="right" />
               <HandBadge hand="left" />
@@ -194,7 +199,7 @@ export function RecordingPage() {
               <Text className="quiet" style={{ flex: 1 }}>
                 {obstacles.length > 0
                   ? `It cannot be tracked. ${obstacles.join(" ")}`
-                  : "Not tracked yet. The tracker starts from the annotation of its first frame, or from the depth alone."}
+                  : `Not tracked yet. The tracker starts ${whereItStarts(recording)}`}
               </Text>
               <TrackButton recording={recording} variant="default" onClick={tracking.open} />
             </Group>

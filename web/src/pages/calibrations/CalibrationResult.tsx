@@ -1,7 +1,8 @@
-import { Button, Group, Menu, SimpleGrid, Skeleton, Stack, Text, Title } from "@mantine/core";
+import { Button, Group, Menu, SimpleGrid, Stack, Text, Title } from "@mantine/core";
 import { IconChevronDown, IconCircleCheck, IconDownload } from "@tabler/icons-react";
 import { calibrationFileUrl, usePlacedBoards, type BoardOptions, type Calibration, type CalibrationResult as Result } from "../../api/calibrations";
 import { formatCount } from "../../model/format";
+import { Awaited } from "../parts/Awaited";
 import { Fact } from "../parts/Fact";
 import { Sentences } from "../parts/Sentences";
 import { BoardPlot } from "./BoardPlot";
@@ -47,7 +48,8 @@ function measureBoard({ kind, columns, rows, square_mm: square, marker_mm: marke
 
 /** What was found: how good it is first, then each camera, then where everything stands and was seen. */
 export function CalibrationResult({ calibration, result }: { calibration: Calibration; result: Result }) {
-  const { data: boards, error } = usePlacedBoards(calibration.id);
+  const placed = usePlacedBoards(calibration.id);
+  const boards = placed.data;
   const { fitted, left_out: leftOut, by_other_cameras: others } = result.residual_px;
   return (
     <Stack gap="lg">
@@ -71,23 +73,18 @@ export function CalibrationResult({ calibration, result }: { calibration: Calibr
       <section aria-label="Cameras">
         <CameraTable result={result} />
       </section>
-      {error && !boards && (
-        <Text size="sm" c="var(--bad-text)" role="alert">
-          The places of the board could not be loaded: {error.message}
-        </Text>
-      )}
       <div className={classes.result}>
         <section aria-label="In space">
           <Title order={2} mb="sm">
             In space
           </Title>
-          {boards ? <Cameras3d result={result} boards={boards} boardSize={measureBoard(calibration.options.board)} /> : <Skeleton height={360} radius="lg" />}
+          {boards ? <Cameras3d result={result} boards={boards} boardSize={measureBoard(calibration.options.board)} /> : <Awaited what="The places of the board" query={placed} height={360} />}
         </section>
         <section aria-label="By moment">
           <Title order={2} mb="sm">
             By moment, px by second
           </Title>
-          {boards ? <BoardPlot result={result} boards={boards} /> : <Skeleton height={360} radius="lg" />}
+          {boards ? <BoardPlot result={result} boards={boards} /> : <Awaited what="The places of the board" query={placed} height={360} />}
         </section>
       </div>
       <Coverage id={calibration.id} result={result} />

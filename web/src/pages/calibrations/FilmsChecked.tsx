@@ -1,9 +1,10 @@
-import { Button, Group, Skeleton, Stack, Table, Text, Title } from "@mantine/core";
+import { Button, Group, Stack, Table, Text, Title } from "@mantine/core";
 import { useState } from "react";
 import { useCalibrationForm, useCheckFilms, useStartCalibrating, type Calibration, type FilmReport } from "../../api/calibrations";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
 import { formatNumber } from "../../model/format";
 import { hasRole, useMe } from "../../state/me";
+import { Awaited } from "../parts/Awaited";
 import { For } from "../parts/For";
 import { Obstacles } from "../parts/Obstacles";
 import { Refusal } from "../parts/Refusal";
@@ -49,7 +50,8 @@ function Films({ cameras }: { cameras: FilmReport["cameras"] }) {
 
 /** What was found in the films before the board is looked for, the options to mend it, and the start. */
 export function FilmsChecked({ calibration }: { calibration: Calibration }) {
-  const form = useCalibrationForm().data;
+  const query = useCalibrationForm();
+  const form = query.data;
   const [draft, setDraft] = useState(calibration.options);
   const check = useCheckFilms(calibration.id);
   const start = useStartCalibrating(calibration.id);
@@ -80,7 +82,7 @@ export function FilmsChecked({ calibration }: { calibration: Calibration }) {
         </fieldset>
       </Stack>
       <fieldset disabled={!isLead} className={classes.fields}>
-        {form ? <BoardForm form={form} board={draft.board} onChange={(board) => setDraft({ ...draft, board })} /> : <Skeleton height={640} radius="lg" />}
+        {form ? <BoardForm form={form} board={draft.board} onChange={(board) => setDraft({ ...draft, board })} /> : <Awaited what="The form" query={query} height={640} />}
       </fieldset>
       <Stack gap="md">
         {check.error && <Refusal error={check.error} after="Nothing was changed." />}

@@ -1,4 +1,4 @@
-import { Button, Checkbox, Group, Modal, ScrollArea, Select, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Button, Checkbox, Group, Modal, ScrollArea, Select, Stack, Text, TextInput, Title } from "@mantine/core";
 import { IconSearch } from "@tabler/icons-react";
 import { useQuery } from "@tanstack/react-query";
 import { useState } from "react";
@@ -9,6 +9,7 @@ import { fetchAll, useRecordings } from "../../api/recordings";
 import type { components } from "../../api/schema";
 import type { Recording } from "../../api/types";
 import { formatCount } from "../../model/format";
+import { Awaited } from "../parts/Awaited";
 import { FormFooter } from "../parts/Obstacles";
 import { TrackingForm, useTrackingOptions } from "../parts/TrackingForm";
 import classes from "./StartBatch.module.css";
@@ -31,7 +32,8 @@ interface StartBatchProps {
 
 /** One form for many recordings: all of them are started, or none. */
 export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
-  const recordings = useRecordings().data;
+  const query = useRecordings();
+  const recordings = query.data;
   const projects = useQuery({ queryKey: ["jobs", "projects"], queryFn: () => fetchAll<Project>("/projects"), enabled: isOpen }).data ?? [];
   const options = useTrackingOptions(isOpen);
   const start = useStartBatch();
@@ -110,7 +112,7 @@ export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
               </Group>
             </Group>
             <ScrollArea.Autosize mah={152} className={classes.list} tabIndex={0} aria-label="Recordings">
-              {!recordings && <Skeleton height={120} />}
+              {!recordings && <Awaited what="The recordings" query={query} />}
               {recordings && shown.length === 0 && <Text className="quiet">Nothing is called “{search}”.</Text>}
               {shown.map((recording) => (
                 <Checkbox

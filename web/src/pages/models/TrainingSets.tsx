@@ -3,6 +3,7 @@ import { notifications } from "@mantine/notifications";
 import { IconDownload, IconShieldCheck } from "@tabler/icons-react";
 import { trainingSetUrl, useTrainingSets, verifyTrainingSet, type TrainingSet } from "../../api/handModels";
 import { formatCount } from "../../model/format";
+import { Awaited } from "../parts/Awaited";
 import { KeptTable, type Column } from "./KeptTable";
 
 const COLUMNS: readonly Column<TrainingSet>[] = [
@@ -26,7 +27,9 @@ async function verify(set: TrainingSet): Promise<void> {
 
 /** What models learnt from: registrations as a rule chose them at one moment, under a hash. */
 export function TrainingSets() {
-  const sets = useTrainingSets().data;
+  const query = useTrainingSets();
+  const sets = query.data;
+  if (query.error && !sets) return <Awaited what="The training sets" query={query} />;
   if (!sets || sets.length === 0) return null;
   return (
     <section aria-label="Training sets">

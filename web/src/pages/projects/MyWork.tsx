@@ -1,8 +1,9 @@
-import { Button, Skeleton, Stack, Text, Title } from "@mantine/core";
+import { Button, Stack, Text, Title } from "@mantine/core";
 import { Link } from "react-router";
 import { assignmentAddress, useAssignments, useComments, useMe, type Assignment, type AssignmentState } from "../../api/teams";
 import { hasRole, toReview } from "../../model/assignment";
 import { formatCount } from "../../model/format";
+import { Awaited } from "../parts/Awaited";
 import classes from "./projects.module.css";
 import { StateBadge } from "./StateBadge";
 import { WorkProgress, workText } from "../parts/WorkProgress";
@@ -19,8 +20,9 @@ interface Item {
 export function MyWork() {
   const me = useMe().data;
   const isReviewer = hasRole(me, "reviewer");
-  const { data: mine } = useAssignments({ mine: "true" });
-  const { data: submitted } = useAssignments({ state: "submitted" }, isReviewer);
+  const given = useAssignments({ mine: "true" });
+  const waiting = useAssignments({ state: "submitted" }, isReviewer);
+  const [mine, submitted] = [given.data, waiting.data];
   const isLoading = !mine || !me || (isReviewer && !submitted);
   const reviews = toReview(submitted ?? [], mine ?? [], me);
   const own = (mine ?? []).filter((one) => one.state !== "accepted" && !reviews.some((review) => review.id === one.id));
@@ -31,7 +33,7 @@ export function MyWork() {
   return (
     <Stack component="section" gap="sm" mb="xl" aria-label="My work">
       <Title order={2}>My work</Title>
-      {isLoading && <Skeleton height={64} radius="lg" />}
+      {isLoading && <Awaited what="Your work" query={{ error: given.error ?? waiting.error, refetch: () => void Promise.all([given.refetch(), waiting.refetch()]) }} height={64} />}
       {!isLoading && items.length === 0 && (
         <Text className="quiet">
           {isReviewer

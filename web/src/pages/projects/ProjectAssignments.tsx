@@ -3,8 +3,8 @@ import { notifications } from "@mantine/notifications";
 import { useState } from "react";
 import { Link } from "react-router";
 import { assignmentAddress, useAssignments, usePeople, useProjectRecordings, useTeamChange, type Assignment, type Project } from "../../api/teams";
+import { Awaited } from "../parts/Awaited";
 import { offerUndo, tellFailure } from "./offerUndo";
-import { Loading } from "./ProjectPage";
 import classes from "./projects.module.css";
 import { EditAssignment } from "./EditAssignment";
 import { StateBadge } from "./StateBadge";
@@ -12,14 +12,15 @@ import { WorkProgress, workText } from "../parts/WorkProgress";
 
 /** Who marks which frames, person by person, and how far they are. */
 export function ProjectAssignments({ project, mayChange }: { project: Project; mayChange: boolean }) {
-  const { data } = useAssignments({ project: project.id });
+  const query = useAssignments({ project: project.id });
+  const { data } = query;
   const people = [...new Set(data?.map((one) => one.account))].sort();
   return (
     <section className={classes.section} aria-label="Assignments">
       <Title order={2} mb="sm">
         Assignments
       </Title>
-      {!data && <Loading />}
+      {!data && <Awaited what="The assignments" query={query} />}
       {data?.length === 0 && (
         <Text className="quiet">
           {project.archived_at

@@ -1,4 +1,4 @@
-import { ActionIcon, Button, Group, Skeleton, Text, TextInput, Title, Tooltip } from "@mantine/core";
+import { ActionIcon, Button, Group, Text, TextInput, Title, Tooltip } from "@mantine/core";
 import { IconPencil } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link, useNavigate, useParams } from "react-router";
@@ -88,7 +88,7 @@ function Head({ project, mayChange, isLead }: { project: Project; mayChange: boo
             </Tooltip>
           )}
         </Group>
-        <Text className="quiet">{project.archived_at ? "Archived. What was accepted in it stays locked." : project.description}</Text>
+        <Text className="quiet" style={{ overflowWrap: "anywhere" }}>{project.archived_at ? "Archived. What was accepted in it stays locked." : project.description}</Text>
       </div>
       {mayChange && (
         <Button variant="default" loading={change.isPending} onClick={() => void archive().catch(tellFailure)}>
@@ -102,9 +102,4 @@ function Head({ project, mayChange, isLead }: { project: Project; mayChange: boo
       )}
     </Group>
   );
-}
-
-/** Rows of a list that is on its way. */
-export function Loading({ height = 120 }: { height?: number }) {
-  return <Skeleton height={height} radius="lg" />;
 }

@@ -3,13 +3,14 @@ import { useState } from "react";
 import { Link } from "react-router";
 import { useRecordings } from "../../api/recordings";
 import { useProjectRecordings, useTeamChange, type Project, type ProjectRecording } from "../../api/teams";
+import { Awaited } from "../parts/Awaited";
 import { offerUndo, tellFailure } from "./offerUndo";
-import { Loading } from "./ProjectPage";
 import classes from "./projects.module.css";
 
 /** The recordings of a project and how much of them is finished. */
 export function ProjectRecordings({ project, mayChange }: { project: Project; mayChange: boolean }) {
-  const { data } = useProjectRecordings(project.id);
+  const query = useProjectRecordings(project.id);
+  const { data } = query;
   const change = useTeamChange();
   const path = (id: string): string => `/projects/${project.id}/sequences/${id}`;
   const add = (id: string): Promise<unknown> => change.mutateAsync({ method: "PUT", path: path(id) });
@@ -22,7 +23,7 @@ export function ProjectRecordings({ project, mayChange }: { project: Project; ma
       <Title order={2} mb="sm">
         Recordings
       </Title>
-      {!data && <Loading />}
+      {!data && <Awaited what="The recordings" query={query} />}
       {data?.length === 0 && <Text className="quiet">No recordings yet. {mayChange ? "Add one below, then give its frames to people." : "A lead adds them."}</Text>}
       {data && data.length > 0 && (
         <div className={`card ${classes.frame}`}>

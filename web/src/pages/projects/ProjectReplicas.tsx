@@ -5,13 +5,14 @@ import { Link } from "react-router";
 import { useMe, usePeople, useProjectRecordings, useReplicaSets, useTeamChange, type Project, type ReplicaSet, type ReplicaSetMake } from "../../api/teams";
 import { hasRole } from "../../model/assignment";
 import { formatCount } from "../../model/format";
+import { Awaited } from "../parts/Awaited";
 import { offerUndo, tellFailure } from "./offerUndo";
-import { Loading } from "./ProjectPage";
 import classes from "./projects.module.css";
 
 /** Frames that several people mark without seeing each other, and how well they agree. */
 export function ProjectReplicas({ project, mayChange }: { project: Project; mayChange: boolean }) {
-  const { data } = useReplicaSets(project.id);
+  const query = useReplicaSets(project.id);
+  const { data } = query;
   const isReviewer = hasRole(useMe().data, "reviewer");
   const change = useTeamChange();
   const withdraw = async (one: ReplicaSet): Promise<void> => {
@@ -23,7 +24,7 @@ export function ProjectReplicas({ project, mayChange }: { project: Project; mayC
       <Title order={2} mb="sm">
         Blind replicas
       </Title>
-      {!data && <Loading height={80} />}
+      {!data && <Awaited what="The blind replicas" query={query} height={80} />}
       {data?.length === 0 && (
         <Text className="quiet">
           None yet. Give the same frames to several people, who mark them without seeing each other: how far apart they are says how good the labels are.

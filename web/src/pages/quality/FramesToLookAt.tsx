@@ -10,6 +10,17 @@ import { Failure } from "../parts/Failure";
 import classes from "./LabelCheck.module.css";
 import { LookItem } from "./LookItem";
 
+/** While the recording, and then its queue, are on their way. */
+export function Looking() {
+  return (
+    <div className={classes.grid} role="status" aria-label="Looking for frames that need a person">
+      {Array.from({ length: 8 }, (_, index) => (
+        <Skeleton key={index} height={292} radius="lg" />
+      ))}
+    </div>
+  );
+}
+
 /** The hands of a recording that most need a person, labelled or not, the worst first. */
 export function FramesToLookAt({ recording }: { recording: Recording }) {
   const pages = useFramesToLookAt(recording.id);
@@ -17,15 +28,7 @@ export function FramesToLookAt({ recording }: { recording: Recording }) {
   if (pages.error && !first) {
     return <Failure what="The frames to look at could not be loaded" error={pages.error} safe="Labels are as they were." onRetry={() => void pages.refetch()} />;
   }
-  if (!first) {
-    return (
-      <div className={classes.grid} role="status" aria-label="Looking for frames that need a person">
-        {Array.from({ length: 8 }, (_, index) => (
-          <Skeleton key={index} height={292} radius="lg" />
-        ))}
-      </div>
-    );
-  }
+  if (!first) return <Looking />;
   if (first.hands === 0) {
     return (
       <EmptyState

@@ -6,7 +6,7 @@ import { countOpen, KINDS } from "../../model/flag";
 import { Failure } from "../parts/Failure";
 import { useTitle } from "../parts/useTitle";
 import { FlaggedLabels } from "./FlaggedLabels";
-import { FramesToLookAt } from "./FramesToLookAt";
+import { FramesToLookAt, Looking } from "./FramesToLookAt";
 import classes from "./LabelCheck.module.css";
 
 /** The address says which list: flagged labels, those found right, frames to look at. */
@@ -41,8 +41,8 @@ export default function LabelCheckPage() {
   return (
     <div className="page">
       <Group justify="space-between" mb="sm">
-        <div>
-          <Text size="sm" className="quiet">
+        <div style={{ minWidth: 0 }}>
+          <Text size="sm" className="quiet" style={{ overflowWrap: "anywhere" }}>
             <Link to={`/recordings/${recordingId}`} className={classes.back}>
               {shot?.name ?? "Recording"}
             </Link>
@@ -62,7 +62,7 @@ export default function LabelCheckPage() {
         />
       </Group>
       {shown === "frames" ? (
-        shot && <FramesToLookAt recording={shot} />
+        shot ? <FramesToLookAt recording={shot} /> : <Looking />
       ) : (
         <FlaggedLabels recordingId={recordingId} recording={shot} pages={pages} kind={kind} isDismissed={isDismissed} onKind={(value) => choose({ kind: value })} />
       )}

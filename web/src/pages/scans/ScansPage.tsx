@@ -75,7 +75,8 @@ export default function ScansPage() {
   useTitle("Scans");
   const [filters, setFilters] = useScanAddress();
   const { data, error, refetch, fetchNextPage, hasNextPage, isFetchingNextPage } = useScanList(filters);
-  const collections = useScanCollections().data ?? [];
+  const known = useScanCollections().data;
+  const collections = known ?? [];
   const [search, setSearch] = useState(filters.search ?? "");
   const seek = useDebouncedCallback((text: string) => setFilters({ search: text.trim() || undefined }), 250);
   const [chosen, setChosen] = useState<ReadonlySet<string>>(new Set());
@@ -124,7 +125,7 @@ export default function ScansPage() {
       <Group mb="md" justify="space-between" wrap="nowrap">
         <Group align="baseline" gap="md" wrap="nowrap">
           <Title order={1}>Scans</Title>
-          {data && <span className="quiet">{formatCount(total, "scan")}</span>}
+          {data && known && <span className="quiet">{formatCount(total, "scan")}</span>}
         </Group>
         <Group gap="sm" wrap="nowrap">
           <Button variant="default" component={Link} to={filters.collection ? `/curate?collection=${encodeURIComponent(filters.collection)}` : "/curate"} leftSection={<IconChecks size={16} aria-hidden />}>

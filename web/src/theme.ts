@@ -29,7 +29,9 @@ export const theme = createTheme({
     Tooltip: { defaultProps: { withArrow: true, openDelay: 350, fz: "xs", zIndex: 400 } },
     ActionIcon: { defaultProps: { variant: "subtle", color: "gray" } },
     Modal: { defaultProps: { centered: true, closeButtonProps: { "aria-label": "Close" }, overlayProps: { backgroundOpacity: 0.6 }, transitionProps: { duration: 120 } } },
-    Button: { defaultProps: { size: "sm" } },
+    // Beside a name that is too long it is the name that gives way.
+    Badge: { styles: { root: { flexShrink: 0 } } },
+    Button: { defaultProps: { size: "sm" }, styles: { root: { flexShrink: 0 } } },
     Skeleton: { defaultProps: { radius: "sm" } },
   },
 });

@@ -131,7 +131,7 @@ export function JobPage() {
                 <Text size="sm" className="quiet">
                   {label}
                 </Text>
-                <Code>{value}</Code>
+                <Code className={classes.value}>{value}</Code>
               </Group>
             ))}
           </Stack>

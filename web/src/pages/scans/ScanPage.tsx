@@ -20,6 +20,7 @@ import { HandView } from "../hand3d/HandView";
 import { handHandlers, useLook } from "../hand3d/useLook";
 import viewClasses from "../hand3d/HandView.module.css";
 import { LineageList } from "../models/LineageList";
+import { Awaited } from "../parts/Awaited";
 import { Failure } from "../parts/Failure";
 import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
@@ -100,8 +101,9 @@ function Details({ scan }: { scan: Scan }) {
 }
 
 function Registrations({ scan }: { scan: Scan }) {
-  const registrations = useScanRegistrations(scan.id).data;
-  if (!registrations) return null;
+  const query = useScanRegistrations(scan.id);
+  const registrations = query.data;
+  if (!registrations) return query.error ? <Awaited what="The registrations" query={query} /> : null;
   return (
     <section aria-label="Registrations">
       <Title order={3} mb="sm">
@@ -203,6 +205,7 @@ function OpenScan({ scan }: { scan: Scan }) {
     "scan.previous": () => go(-1),
   });
 
+  const hand = scan.side ?? registration.data?.side;
   const failure = geometry.error ?? registration.error;
   return (
     <div className={frame.page}>
@@ -264,7 +267,7 @@ function OpenScan({ scan }: { scan: Scan }) {
             </Title>
             <dl className={classes.facts}>
               <dt>Hand</dt>
-              <dd>{scan.side ? <HandBadge hand={scan.side} /> : "to be found out"}</dd>
+              <dd>{hand ? <HandBadge hand={hand} /> : "to be found out"}{hand && !scan.side && ", found by registering"}</dd>
               <dt>Points</dt>
               <dd>{scan.point_count.toLocaleString("en")}</dd>
               <dt>Triangles</dt>

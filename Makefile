@@ -50,6 +50,10 @@ $(COMPILED): $(PROJECT) $(TRACKER_SOURCES)
 demo: setup
 	$(BIN)/handloom demo
 
+# Each process of a test run has one thread for linear algebra. OpenBLAS takes one a core otherwise, and those of two
+# processes wait for each other: beside other work such a product took ten times as long.
+test-rooms test-browser proofs-rooms proofs-browser: export OPENBLAS_NUM_THREADS = 1
+
 # All suites run even if one fails; pytest last, so that its closing line closes. Two browsers at once: each has a studio and a worker.
 test: setup
 	@status=0; $(MAKE) --no-print-directory test-web || status=1; $(MAKE) --no-print-directory test-python || status=1; exit $$status

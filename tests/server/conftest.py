@@ -144,6 +144,14 @@ def sqlite_template(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.fixture
+def sqlite_settings(sqlite_template: Path, tmp_path: Path) -> Settings:
+    """Settings of a studio of its own on SQLite, with all tables."""
+    path = tmp_path / "test.sqlite3"
+    shutil.copy(sqlite_template, path)
+    return Settings(data_dir=tmp_path / "data", database_url=f"sqlite:///{path}")
+
+
 @pytest.fixture(scope="session")
 def postgres_template(postgres_url: str) -> str:
     """Name of a database with all tables, to be copied."""

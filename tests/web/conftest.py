@@ -304,6 +304,28 @@ def wait_for_held(page: Any, held: list[Any], count: int) -> None:
     raise AssertionError(f"{len(held)} of {count} requests were held; the browser has a network: {is_online}")
 
 
+LOSE_ANSWERS = """([method, address]) => {
+  const send = window.fetch;
+  window.unheard = 0;
+  window.fetch = (to, init) => init?.method === method && new RegExp(address).test(String(to))
+    ? new Promise((_, fail) => void send(to, init).then(() => { window.unheard += 1; }, fail))
+    : send(to, init);
+}"""
+
+
+def lose_answers(page: Any, method: str, address: str) -> None:
+    """From now on the server gets what the page sends there, and the page never hears of it.
+
+    Done in the page itself: of a request that is held on its way Playwright has told nothing at times.
+    """
+    page.evaluate(LOSE_ANSWERS, [method, address])
+
+
+def wait_until_unheard(page: Any, count: int = 1) -> None:
+    """Until the server has answered so many of them."""
+    page.wait_for_function("(count) => window.unheard === count", arg=count)
+
+
 @dataclass(frozen=True)
 class Fingers:
     """Touches that Playwright has no words for; places are px of the window."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.web.conftest import Fingers, HeldBack
+from tests.web.conftest import Fingers, HeldBack, lose_answers, wait_until_unheard
 from tests.web.hands import Hands, fill_studio
 from tests.web.test_accessibility import find_faults
 
@@ -19,7 +19,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 HANDS = 12
 BAR_MS = 150
 TURN = "Shift+ArrowLeft"
-DECISIONS = re.compile("/registrations/[^/]+/decisions$")
 
 # From the key going down to the hand being on the screen: drawn to the end by whatever draws, and composed.
 WATCH = """() => {
@@ -238,13 +237,9 @@ def test_no_decision_is_lost_or_doubled_when_the_tab_dies(studio, fresh, open_pa
     wait_for_hand(page, fresh.registrations[0])
     wait_until_saved(page)
 
-    def store_and_lose_the_answer(route):
-        route.fetch()  # the server has it; nobody hears
-        # No answer: the tab dies first.
-
-    page.route(DECISIONS, store_and_lose_the_answer)
-    with page.expect_request(DECISIONS):
-        page.keyboard.press("a")
+    lose_answers(page, "POST", "/decisions$")  # the tab dies before any comes
+    page.keyboard.press("a")
+    wait_until_unheard(page)
     for number, key in enumerate("ru1", start=1):  # wait behind the first, in the browser only
         wait_for_hand(page, fresh.registrations[number])
         page.keyboard.press(key)

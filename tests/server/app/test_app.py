@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from fastapi.testclient import TestClient
 from server.app import create_app
 from server.app.openapi import write_document
 from server.settings import Settings
+from tests.server.api_document import read_document
 from tests.server.conftest import BASE_URL, Studio
 
 
@@ -84,8 +84,11 @@ def test_a_database_that_is_busy_for_long_is_no_fault_of_the_request(
 
 
 def operations() -> list[tuple[str, str, dict[str, Any]]]:
-    document = json.loads(write_document())
-    return [(method, path, operation) for path, item in document["paths"].items() for method, operation in item.items()]
+    return [
+        (method, path, operation)
+        for path, item in read_document()["paths"].items()
+        for method, operation in item.items()
+    ]
 
 
 def test_the_document_is_the_same_each_time() -> None:

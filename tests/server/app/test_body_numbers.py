@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,11 +9,11 @@ import pytest
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from server.annotations.schemas import Visibility
-from server.app.openapi import write_document
 from server.database.numbers import FrameNumber, Joint, Whole
 from server.quality.schemas import FlagLook
+from tests.server.api_document import read_document
 
-DOCUMENT = json.loads(write_document())
+DOCUMENT = read_document()
 
 
 def find_models(of: type[BaseModel] = BaseModel) -> Iterator[type[BaseModel]]:

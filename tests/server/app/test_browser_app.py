@@ -26,8 +26,9 @@ def dist(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def browser(dist: Path, tmp_path: Path) -> Iterator[TestClient]:
-    with TestClient(create_app(Settings(data_dir=tmp_path / "data", web_dist=dist)), base_url=BASE_URL) as client:
+def browser(dist: Path, sqlite_settings: Settings) -> Iterator[TestClient]:
+    app = create_app(sqlite_settings.model_copy(update={"web_dist": dist}))
+    with TestClient(app, base_url=BASE_URL) as client:
         yield client
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import json
 from collections.abc import AsyncIterator
-from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
@@ -19,9 +18,9 @@ from server.settings import Settings
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(sqlite_settings: Settings) -> Settings:
     """One database will do: nothing here depends on it."""
-    return Settings(data_dir=tmp_path)
+    return sqlite_settings
 
 
 def test_a_long_answer_is_packed_for_those_who_take_it(client: TestClient) -> None:

@@ -37,9 +37,9 @@ SECURITY = Path(__file__).parents[3] / "docs" / "security.md"
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(sqlite_settings: Settings) -> Settings:
     """One database will do: the queries behind the door are tested on both beside the accounts."""
-    return Settings(data_dir=tmp_path)
+    return sqlite_settings
 
 
 def list_routes(app: FastAPI) -> list[tuple[str, BaseRoute]]:

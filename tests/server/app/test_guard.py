@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from fastapi.testclient import TestClient
 from starlette.types import Receive, Scope, Send
@@ -20,9 +18,9 @@ WRITE = ("POST", "/api/v1/sequences/00000000-0000-4000-8000-000000000009/restore
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(sqlite_settings: Settings) -> Settings:
     """One database will do: nothing here depends on it."""
-    return Settings(data_dir=tmp_path)
+    return sqlite_settings
 
 
 @pytest.mark.parametrize(

@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import pytest
 from fastapi.testclient import TestClient
 
-from server.app.openapi import write_document
 from server.settings import Settings
+from tests.server.api_document import read_document
 
 ID = "00000000-0000-4000-8000-000000000009"
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(sqlite_settings: Settings) -> Settings:
     """One database will do: nothing here depends on it."""
-    return Settings(data_dir=tmp_path)
+    return sqlite_settings
 
 
 def test_every_address_names_all_its_methods_and_refuses_the_others(client: TestClient) -> None:
-    for path, item in json.loads(write_document())["paths"].items():
+    for path, item in read_document()["paths"].items():
         offered = {method.upper() for method in item}
         for method in {"GET", "PUT", "POST", "PATCH", "DELETE", "OPTIONS", "HEAD"} - offered:
             answer = client.request(method, path.replace("{", "").replace("}", ""))

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import sqlite3
 from collections.abc import Iterator
@@ -27,8 +26,8 @@ from schemathesis.python.asgi import get_client, shutdown_lifespans
 
 from server.accounts.tries import FailedTries
 from server.app import create_app
-from server.app.openapi import write_document
 from server.settings import Settings
+from tests.server.api_document import read_document
 from tests.server.app.full_studio import LEFT_OUT, Known, Sender, fill
 from tests.server.conftest import BASE_URL, GeneratedHand
 
@@ -37,7 +36,7 @@ FILE = "handloom.sqlite3"
 EXAMPLES = {GenerationMode.POSITIVE: 4, GenerationMode.NEGATIVE: 2}
 """Requests to each route, right ones and wrong ones; all routes together take less than a minute."""
 
-DOCUMENT = json.loads(write_document())
+DOCUMENT = read_document()
 ROOT = Path(__file__).parents[3]
 EXCEPTIONS = ROOT / "schemathesis.toml"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import shlex
 import shutil
 import signal
@@ -91,15 +92,16 @@ def wait_for_death(pid: int) -> None:
 
 
 def test_help_names_every_command_and_is_quick(tmp_path: Path) -> None:
-    began = time.monotonic()
+    began = resource.getrusage(resource.RUSAGE_CHILDREN)
     shown = handloom(tmp_path, "--help")
-    seconds = time.monotonic() - began
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = ended.ru_utime + ended.ru_stime - began.ru_utime - began.ru_stime
     assert shown.returncode == 0
     for command in ("serve", "worker", "demo", "import", "export", "track", "evaluate", "synthesize", "warm-up"):
         assert command in shown.stdout
     loaded = handloom_modules(tmp_path)
     assert not loaded & {"numpy", "cv2", "numba", "fastapi", "sqlalchemy", "dbos", "pydantic"}, loaded
-    assert seconds < 5.0, "even on a busy machine"
+    assert seconds < 2.0, "of a processor: what others do on the machine is not its fault"
 
 
 def handloom_modules(data: Path) -> set[str]:

@@ -15,7 +15,6 @@ from sqlalchemy import select
 
 from server.accounts.models import LOCAL_ACCOUNT_ID
 from server.database import Database
-from server.database.migrate import upgrade
 from server.hand_models.models import HandModelRow
 from server.jobs import service
 from server.jobs.models import JobRow
@@ -70,11 +69,9 @@ class ScanBench(Bench):
 
 
 @pytest.fixture
-def bench(tmp_path: Path) -> Iterator[ScanBench]:
-    settings = Settings(data_dir=tmp_path / "data", database_url=f"sqlite:///{tmp_path}/test.sqlite3")
-    with closing(Database(settings.sqlalchemy_url)) as database:
-        upgrade(database)
-        opened = ScanBench(settings, database)
+def bench(sqlite_settings: Settings) -> Iterator[ScanBench]:
+    with closing(Database(sqlite_settings.sqlalchemy_url)) as database:
+        opened = ScanBench(sqlite_settings, database)
         yield opened
         for process in opened.processes:
             if process.poll() is None:

@@ -10,7 +10,7 @@ import sys
 import time
 import uuid
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from itertools import pairwise
 from pathlib import Path
 
@@ -21,7 +21,6 @@ from fastapi.testclient import TestClient
 from server.accounts.models import LOCAL_ACCOUNT_ID
 from server.app.app import create_app
 from server.database import Database, utc_now
-from server.database.migrate import upgrade
 from server.imports.service import ImportDesk, import_recording
 from server.jobs import service, workers
 from server.jobs.models import JobRow
@@ -128,13 +127,12 @@ def bench_on_both(settings: Settings, database: Database, rendered: Path) -> Ite
 
 
 @pytest.fixture
-def bench(tmp_path: Path, rendered: Path) -> Iterator[Bench]:
-    settings = Settings(data_dir=tmp_path / "data", database_url=f"sqlite:///{tmp_path}/test.sqlite3")
-    database = Database(settings.sqlalchemy_url)
-    upgrade(database)
-    with open_bench(settings, database, rendered) as opened:
+def bench(sqlite_settings: Settings, rendered: Path) -> Iterator[Bench]:
+    with (
+        closing(Database(sqlite_settings.sqlalchemy_url)) as database,
+        open_bench(sqlite_settings, database, rendered) as opened,
+    ):
         yield opened
-    database.close()
 
 
 def assert_same(first: dict[str, np.ndarray], second: dict[str, np.ndarray]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache, cached_property
 
 import cv2
 import numpy as np
@@ -19,6 +20,8 @@ Array = npt.NDArray[np.float64]
 BOARD = Board("charuco", 7, 5, 0.04, 0.03, "DICT_5X5_100")
 TARGET = np.array([0.0, 0.0, 1.0])
 """Where the board is waved, m; the first camera looks at it along z."""
+
+DRAWN_PER_M, DRAWN_MARGIN_PX = 4000.0, 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,21 +79,39 @@ class Filmed:
     def render(self, number: int, frame: int) -> npt.NDArray[np.uint8]:
         """The picture (H, W), grey, of a frame: the board on a grey wall, smoothed as by a lens."""
         camera = self.cameras[number]
-        per_m = 4000.0
-        flat = draw_board(self.board, per_m, margin_px=40)
         moment = float(self.times(number)[frame] - self.offsets[number])
         T_camera_board = camera.T_camera_world @ place_board(self.board, moment)
-        everywhere = np.indices((camera.height, camera.width))[::-1].reshape(2, -1).T.astype(np.float64)
-        flat_rays = cv2.undistortPoints(everywhere[:, None], camera.K, camera.distortion)[:, 0]
-        rays = np.column_stack([flat_rays, np.ones(len(flat_rays))])
+        rays = self._rays[number]
         normal, origin = T_camera_board[:3, 2], T_camera_board[:3, 3]
         depth = (normal @ origin) / (rays @ normal)
         on_board = (rays * depth[:, None] - origin) @ T_camera_board[:3, :2]
-        where = (on_board * per_m + 40 - 0.5).astype(np.float32).reshape(camera.height, camera.width, 2)
+        where = (
+            (on_board * DRAWN_PER_M + DRAWN_MARGIN_PX - 0.5).astype(np.float32).reshape(camera.height, camera.width, 2)
+        )
         image = cv2.remap(
-            flat, where[..., 0], where[..., 1], cv2.INTER_AREA, borderMode=cv2.BORDER_CONSTANT, borderValue=110.0
+            _draw(self.board),
+            where[..., 0],
+            where[..., 1],
+            cv2.INTER_AREA,
+            borderMode=cv2.BORDER_CONSTANT,
+            borderValue=110.0,
         )
         return cv2.GaussianBlur(image, (0, 0), 0.8).astype(np.uint8)
+
+    @cached_property
+    def _rays(self) -> list[Array]:
+        """(H * W, 3) of each camera, through every pixel, z = 1; found once, for to undo a lens takes long."""
+        rays = []
+        for camera in self.cameras:
+            everywhere = np.indices((camera.height, camera.width))[::-1].reshape(2, -1).T.astype(np.float64)
+            flat_rays = cv2.undistortPoints(everywhere[:, None], camera.K, camera.distortion)[:, 0]
+            rays.append(np.column_stack([flat_rays, np.ones(len(flat_rays))]))
+        return rays
+
+
+@cache
+def _draw(board: Board) -> npt.NDArray[np.uint8]:
+    return draw_board(board, DRAWN_PER_M, margin_px=DRAWN_MARGIN_PX)
 
 
 def place_board(board: Board, moment: float) -> Array:

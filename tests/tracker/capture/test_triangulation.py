@@ -170,7 +170,7 @@ def test_a_hand_in_eight_views_takes_some_milliseconds(rng):
     triangulate(cameras, marks)
     times = []
     for _ in range(5):
-        began = time.perf_counter()
+        began = time.process_time()
         triangulate(cameras, marks)
-        times.append(time.perf_counter() - began)
+        times.append(time.process_time() - began)
     assert min(times) < 0.05

@@ -35,10 +35,19 @@ def filmed() -> Filmed:
 @pytest.fixture(scope="module")
 def videos(filmed: Filmed, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Two rendered videos of a waved board, the second one out of step, each frame with a camera's noise."""
-    folder = tmp_path_factory.mktemp("filmed")
+    return write_videos(tmp_path_factory.mktemp("filmed"), filmed, 80)
+
+
+@pytest.fixture(scope="module")
+def short_videos(filmed: Filmed, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Their first three seconds, which are enough to say what is wrong with them."""
+    return write_videos(tmp_path_factory.mktemp("short"), filmed, 30)
+
+
+def write_videos(folder: Path, filmed: Filmed, frames: int) -> Path:
     rng = np.random.default_rng(0)
     for number in range(2):
-        clean = [filmed.render(number, frame) for frame in range(80)]
+        clean = [filmed.render(number, frame) for frame in range(frames)]
         noisy = [np.clip(image + 2.0 * rng.normal(size=image.shape), 0, 255).astype(np.uint8) for image in clean]
         write_video(folder / f"cam{number}.avi", noisy)
     return folder
@@ -73,12 +82,12 @@ def test_a_board_is_printed(tmp_path: Path, capsys) -> None:
 
 
 def test_a_mirrored_camera_a_wrong_board_and_an_unreadable_video_are_named(
-    videos: Path, tmp_path: Path, capsys
+    short_videos: Path, tmp_path: Path, capsys
 ) -> None:
-    capture = cv2.VideoCapture(str(videos / "cam1.avi"))
+    capture = cv2.VideoCapture(str(short_videos / "cam1.avi"))
     images = [capture.read()[1][:, :, 0] for _ in range(30)]
     write_video(tmp_path / "left.avi", [np.ascontiguousarray(image[:, ::-1]) for image in images])
-    (tmp_path / "broken.avi").write_bytes((videos / "cam0.avi").read_bytes()[:3000])
+    (tmp_path / "broken.avi").write_bytes((short_videos / "cam0.avi").read_bytes()[:3000])
     (tmp_path / "text.mp4").write_text("no video")
     out = tmp_path / "out" / "cameras.toml"
 
@@ -86,27 +95,27 @@ def test_a_mirrored_camera_a_wrong_board_and_an_unreadable_video_are_named(
         assert main(["calibrate-cameras", *map(str, paths), "--board", board, "--out", str(out)]) == 2
         return capsys.readouterr().err
 
-    assert "left: " in (said := refuse(WORD, tmp_path / "left.avi", videos / "cam0.avi")) and "is mirrored" in said
-    assert "Markers of DICT_5X5_100 are there" in refuse(
-        "charuco:7x5:40:30:6X6_250", videos / "cam0.avi", videos / "cam1.avi"
+    assert (
+        "left: " in (said := refuse(WORD, tmp_path / "left.avi", short_videos / "cam0.avi")) and "is mirrored" in said
     )
-    assert "text.mp4: is no MP4" in refuse(WORD, videos / "cam0.avi", tmp_path / "text.mp4")
-    assert "broken" in refuse(WORD, tmp_path / "broken.avi", videos / "cam0.avi")
-    assert "1 camera (cam0.avi); needed 2 to 16" in refuse(WORD, videos / "cam0.avi")
-    assert "17 cameras" in refuse(WORD, *[videos / "cam0.avi"] * 17)
+    assert "Markers of DICT_5X5_100 are there" in refuse(
+        "charuco:7x5:40:30:6X6_250", short_videos / "cam0.avi", short_videos / "cam1.avi"
+    )
+    assert "text.mp4: is no MP4" in refuse(WORD, short_videos / "cam0.avi", tmp_path / "text.mp4")
+    assert "broken" in refuse(WORD, tmp_path / "broken.avi", short_videos / "cam0.avi")
+    assert "1 camera (cam0.avi); needed 2 to 16" in refuse(WORD, short_videos / "cam0.avi")
+    assert "17 cameras" in refuse(WORD, *[short_videos / "cam0.avi"] * 17)
     hostile = tmp_path / "board.toml"
     hostile.write_bytes(b"columns = [" * 9000)
-    assert "board.toml" in refuse(str(hostile), videos / "cam0.avi", videos / "cam1.avi")
+    assert "board.toml" in refuse(str(hostile), short_videos / "cam0.avi", short_videos / "cam1.avi")
     assert not out.parent.exists()
 
 
-def test_folders_of_images_are_one_moment_each_and_a_board_may_come_from_a_file(
-    videos: Path, tmp_path: Path, capsys, filmed
-) -> None:
+def test_folders_of_images_are_one_moment_each_and_a_board_may_come_from_a_file(tmp_path: Path, capsys, filmed) -> None:
+    together = film(2, seconds=8.0, fps=10.0, size=(800, 450), spread=0.6)
     for number in range(2):
         folder = tmp_path / "images" / f"view{number}"
         folder.mkdir(parents=True)
-        together = film(2, seconds=8.0, fps=10.0, size=(800, 450), spread=0.6)
         for frame in range(0, 80, 4):
             cv2.imwrite(str(folder / f"{frame:03d}.png"), together.render(number, frame))
     board = tmp_path / "board.toml"

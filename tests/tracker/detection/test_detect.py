@@ -111,12 +111,12 @@ def test_an_empty_image_has_none(drawn):
 
 
 def test_one_hand_at_stride_two_takes_no_longer_than_a_few_milliseconds(drawn):
-    """The budget is 7 ms on a quiet core; a crowded machine gets more."""
+    """The budget is 7 ms of a quiet core; one that is shared gets more."""
     frame, camera, _ = drawn
     seen = observe(frame, camera, region_of(drawn, 30), Preprocessing())
     forest, times = default_detector(), []
     for _ in range(15):
-        began = time.perf_counter()
+        began = time.process_time()
         find_fingertips(forest, seen, DetectOptions(stride=2))
-        times.append(time.perf_counter() - began)
+        times.append(time.process_time() - began)
     assert min(times) < 0.020

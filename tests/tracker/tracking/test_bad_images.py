@@ -141,8 +141,15 @@ ELBOWS = {
 }
 
 
-@pytest.mark.parametrize("name", ELBOWS)
-@pytest.mark.parametrize("has_color", [True, False], ids=["colour", "depth alone"])
+@pytest.mark.parametrize(
+    ("has_color", "name"),
+    [
+        pytest.param(True, "elbow", id="colour-elbow"),
+        pytest.param(True, "forearm through the image", id="colour-forearm through the image"),
+        pytest.param(False, "elbow", id="depth alone-elbow"),
+        pytest.param(False, "forearm through the image", id="depth alone-forearm", marks=pytest.mark.slow),
+    ],
+)
 def test_an_elbow_is_no_hand(tmp_path, capsys, name, has_color):
     depth = ELBOWS[name]
 

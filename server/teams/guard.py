@@ -117,7 +117,7 @@ def find_hidden(session: Session, account: Account, sequence_id: uuid.UUID, repl
     if replica:
         check_replica_read(session, account, *_get_replica(session, sequence_id, replica))
         return []
-    return _find_blind(session, account, sequence_id)
+    return [_places(replicas) for replicas in _find_blind_sets(session, account, sequence_id)]
 
 
 def check_replica_read(session: Session, account: Account, assignment: AssignmentRow, replicas: ReplicaSetRow) -> None:
@@ -177,25 +177,25 @@ def _get_replica(
     return found
 
 
-def _find_blind(session: Session, account: Account, sequence_id: uuid.UUID) -> list[HiddenPlaces]:
-    return [_places(replicas) for replicas in _find_blind_sets(session, account, sequence_id)]
-
-
-def _find_blind_sets(session: Session, account: Account, sequence_id: uuid.UUID) -> Sequence[ReplicaSetRow]:
-    query = (
-        select(ReplicaSetRow)
-        .join(AssignmentRow, AssignmentRow.replica_set_id == ReplicaSetRow.id)
-        .join(ProjectRow, ProjectRow.id == AssignmentRow.project_id)
-        .where(
-            AssignmentRow.account_id == account.id,
-            AssignmentRow.sequence_id == sequence_id,
-            AssignmentRow.state != "accepted",
-            AssignmentRow.deleted_at.is_(None),
-            ReplicaSetRow.deleted_at.is_(None),
-            ProjectRow.archived_at.is_(None),
-        )
+_BLIND = (
+    select(_SET.name, _SET.frames, _SET.cameras, _SET.hands)
+    .select_from(_SETS)
+    .join(_ASSIGNMENTS, _GIVEN.replica_set_id == _SET.id)
+    .join(_PROJECTS, _PROJECTS.c.id == _GIVEN.project_id)
+    .where(
+        _GIVEN.account_id == bindparam("account"),
+        _GIVEN.sequence_id == bindparam("sequence"),
+        _GIVEN.state != "accepted",
+        _GIVEN.deleted_at.is_(None),
+        _SET.deleted_at.is_(None),
+        _PROJECTS.c.archived_at.is_(None),
     )
-    return session.scalars(query).all()
+)
+"""The replica sets of a recording that somebody marks and is not done with."""
+
+
+def _find_blind_sets(session: Session, account: Account, sequence_id: uuid.UUID) -> Sequence[Any]:
+    return session.execute(_BLIND, {"account": account.id, "sequence": sequence_id}).all()
 
 
 def _places(replicas: Any) -> HiddenPlaces:

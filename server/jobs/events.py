@@ -157,9 +157,8 @@ async def stream(feed: Feed, database: Database, is_stopping: StopFlag) -> Async
         spoken = time.monotonic()
         while not is_stopping():
             events = [] if feed.is_quiet() else await run_in_threadpool(feed.poll, database)
-            for event in events:
-                yield event
             if events:
+                yield "".join(events)
                 spoken = time.monotonic()
             if feed.has_ended:
                 yield "event: end\ndata: {}\n\n"

@@ -18,6 +18,7 @@ from server.annotations.changes import Change, Marked, StaleAnnotationError, cha
 from server.annotations.guards import GuardsDep, PlaceGuard
 from server.annotations.models import AnnotationRevisionRow, AnnotationRow
 from server.annotations.schemas import (
+    SOURCE_DEFAULTS,
     AnnotationConflict,
     AnnotationFile,
     AnnotationOut,
@@ -91,7 +92,7 @@ def get_readable_place(place: PlaceDep, session: SessionDep, account: CurrentAcc
 ReadablePlaceDep = Annotated[Place, Depends(get_readable_place)]
 
 
-@router.get("/annotations")
+@router.get("/annotations", response_model=Page[AnnotationOut])
 def list_annotations(
     sequence: SequenceDep,
     session: SessionDep,
@@ -103,7 +104,7 @@ def list_annotations(
     to: Annotated[FrameQuery, Query(description="Last frame.")] = None,
     cursor: Cursor = None,
     limit: Annotated[int, Query(ge=1, le=10_000, description="Most items of a page.")] = 2_000,
-) -> Page[AnnotationOut]:
+) -> JSONResponse:
     """Annotations of a recording by frame, camera and hand."""
     rows, next_cursor = service.list_annotations(
         session,
@@ -115,7 +116,7 @@ def list_annotations(
         replica=replica,
         hidden=guards.find_hidden(guarding, session, account, sequence.id, replica),
     )
-    return Page(items=_describe(session, rows), next_cursor=next_cursor)
+    return JSONResponse({"items": _write_out(session, rows), "next_cursor": next_cursor})
 
 
 @router.get("/annotations.json", response_model=AnnotationFile)
@@ -286,21 +287,21 @@ def _describe_marked(place: Place, marked: Marked) -> AnnotationOut:
     )
 
 
-def _describe(session: Session, rows: Sequence[AnnotationRow]) -> list[AnnotationOut]:
+def _write_out(session: Session, rows: Sequence[AnnotationRow]) -> list[dict[str, Any]]:
+    """Each as an AnnotationOut in JSON. To check again the joints that were checked when they were stored took longer
+    than all else, and every page that comes back after an outage asks for thousands of hands."""
     names = find_names(session, [row.author_id for row in rows])
     return [
-        AnnotationOut.model_validate(
-            {
-                "frame": row.frame,
-                "camera": row.camera,
-                "hand": row.hand,
-                "points": row.points,
-                "sources": row.sources,
-                "revision": row.revision,
-                "updated_at": row.updated_at,
-                "author": names.get(row.author_id),
-            }
-        )
+        {
+            "frame": row.frame,
+            "camera": row.camera,
+            "hand": row.hand,
+            "points": row.points,
+            "sources": row.sources and [source and SOURCE_DEFAULTS | source for source in row.sources],
+            "revision": row.revision,
+            "updated_at": row.updated_at.isoformat().replace("+00:00", "Z"),
+            "author": names.get(row.author_id),
+        }
         for row in rows
     ]
 

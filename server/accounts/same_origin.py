@@ -7,6 +7,7 @@ must be our own.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
@@ -16,6 +17,7 @@ from server.settings import LOOPBACK_HOSTS, Settings
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 
+@lru_cache(maxsize=100)
 def parse_host(host: str) -> str | None:
     """The name in a `Host` header, without its port and in lower case; None when it is no host."""
     try:

@@ -24,8 +24,9 @@ async def get_visitor(connection: HTTPConnection) -> Visitor:
 VisitorDep = Annotated[Visitor, Depends(get_visitor)]
 
 
-async def get_current_account(visitor: VisitorDep) -> Account:
+async def get_current_account(connection: HTTPConnection) -> Account:
     """The account of a request, to be read: id, name and role. It belongs to no session and costs no query."""
+    visitor = read_visitor(connection.scope)
     return Account(id=visitor.account_id, name=visitor.name, role=visitor.role)
 
 

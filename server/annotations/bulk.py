@@ -12,7 +12,8 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from server.annotations.models import Act, AnnotationRevisionRow, AnnotationRow
-from server.annotations.service import Place, set_points
+from server.annotations.service import Place
+from server.annotations.sources import count_decided, settle_sources
 from server.database import utc_now
 from server.errors import ConflictError
 
@@ -57,7 +58,8 @@ def change_annotations(
         if row is None:
             row = AnnotationRow(id=uuid.uuid4(), **vars(place), revision=0)
             rows.append(row)
-        set_points(row, change.points, change.sources)
+        row.sources = settle_sources(row.sources, row.points, change.points, change.sources)
+        row.points, row.decided = change.points, count_decided(change.points)
         row.revision += 1
         row.updated_at, row.author_id = now, account_id
         revisions.append(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Response
@@ -13,9 +14,11 @@ from sqlalchemy.orm import Session
 from server.accounts.models import Account
 from server.accounts.service import CurrentAccount, find_names
 from server.annotations import guards, key_frames, service
+from server.annotations.changes import Change, Marked, StaleAnnotationError, change_annotation, look_up
 from server.annotations.guards import GuardsDep, PlaceGuard
 from server.annotations.models import AnnotationRevisionRow, AnnotationRow
 from server.annotations.schemas import (
+    SOURCE_DEFAULTS,
     AnnotationConflict,
     AnnotationFile,
     AnnotationOut,
@@ -26,13 +29,13 @@ from server.annotations.schemas import (
     KeyFrame,
     KeyFrames,
 )
-from server.annotations.service import Change, Place, StaleAnnotationError
-from server.database import SessionDep
+from server.annotations.service import Place
+from server.database import AdmissionDep, SessionDep
 from server.database.frames import FramePath
 from server.database.paging import Cursor, Page
 from server.database.revision import IfMatch, IfNoneMatch, read_if_match, write_etag
 from server.download import name_download
-from server.errors import ConflictError, InvalidError, error_responses
+from server.errors import ConflictError, InvalidError, NotFoundError, error_responses
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
 
@@ -62,11 +65,19 @@ async def name_replica(replica: ReplicaQuery = None) -> str:
 ReplicaDep = Annotated[str, Depends(name_replica)]
 
 
-async def get_place(
-    sequence: SequenceDep, camera: CameraPath, frame: FramePath, hand: Hand, replica: ReplicaDep
+async def get_address(
+    camera: CameraPath, frame: FramePath, hand: Hand, sequence_id: uuid.UUID, replica: ReplicaQuery = None
 ) -> Place:
+    """The place of the address, whether there is such a one or not."""
+    return Place(sequence_id, camera, frame, hand, await name_replica(replica))
+
+
+AddressDep = Annotated[Place, Depends(get_address)]
+
+
+async def get_place(address: AddressDep, sequence: SequenceDep) -> Place:
     """The place of the address."""
-    return service.check_place(sequence, camera, frame, hand, replica)
+    return service.check_place(sequence, address.camera, address.frame, address.hand, address.replica)
 
 
 PlaceDep = Annotated[Place, Depends(get_place)]
@@ -81,7 +92,7 @@ def get_readable_place(place: PlaceDep, session: SessionDep, account: CurrentAcc
 ReadablePlaceDep = Annotated[Place, Depends(get_readable_place)]
 
 
-@router.get("/annotations")
+@router.get("/annotations", response_model=Page[AnnotationOut])
 def list_annotations(
     sequence: SequenceDep,
     session: SessionDep,
@@ -93,7 +104,7 @@ def list_annotations(
     to: Annotated[FrameQuery, Query(description="Last frame.")] = None,
     cursor: Cursor = None,
     limit: Annotated[int, Query(ge=1, le=10_000, description="Most items of a page.")] = 2_000,
-) -> Page[AnnotationOut]:
+) -> JSONResponse:
     """Annotations of a recording by frame, camera and hand."""
     rows, next_cursor = service.list_annotations(
         session,
@@ -105,7 +116,7 @@ def list_annotations(
         replica=replica,
         hidden=guards.find_hidden(guarding, session, account, sequence.id, replica),
     )
-    return Page(items=_describe(session, rows), next_cursor=next_cursor)
+    return JSONResponse({"items": _write_out(session, rows), "next_cursor": next_cursor})
 
 
 @router.get("/annotations.json", response_model=AnnotationFile)
@@ -122,37 +133,43 @@ def get_annotation_file(
     return JSONResponse(service.export_annotations(session, sequence.id, replica, hidden), headers=headers)
 
 
-@router.get("/annotations/{camera}/{frame}/{hand}")
-def get_annotation(place: ReadablePlaceDep, session: SessionDep, response: Response) -> AnnotationOut:
+@router.get("/annotations/{camera}/{frame}/{hand}", response_model=AnnotationOut)
+async def get_annotation(
+    place: AddressDep, admission: AdmissionDep, account: CurrentAccount, guarding: GuardsDep
+) -> Response:
     """One annotation; its `ETag` is what a change must send as `If-Match`."""
-    row = service.get_annotation(session, place)
-    response.headers["ETag"] = write_etag(row.revision)
-    return _describe(session, [row])[0]
+
+    def read(session: Session) -> Marked:
+        now = look_up(session, place).now
+        guards.check_read(guarding, session, account, place)
+        if now is None or now.points is None:
+            raise NotFoundError(f"There is no annotation of {place}.")
+        return now
+
+    return _answer(place, await admission.read(read))
 
 
-@router.put("/annotations/{camera}/{frame}/{hand}", responses=CONFLICTS)
-def put_annotation(
-    place: PlaceDep,
-    sequence: SequenceDep,
+@router.put("/annotations/{camera}/{frame}/{hand}", response_model=AnnotationOut, responses=CONFLICTS)
+async def put_annotation(
+    place: AddressDep,
     body: AnnotationPut,
-    session: SessionDep,
+    admission: AdmissionDep,
     account: CurrentAccount,
     guarding: GuardsDep,
-    response: Response,
     if_match: IfMatch = None,
     if_none_match: IfNoneMatch = None,
-) -> AnnotationOut:
+) -> Response:
     """Store an annotation: the first one with `If-None-Match: *`, a change with `If-Match`.
 
     A request that is sent again with its `operation_id` changes nothing and is answered as the first time.
     """
-    points = service.check_points(sequence, place, body.points)
     expected = _read_expected(if_match, if_none_match)
     sources = None
     if body.sources is not None:
         sources = [source and source.model_dump(mode="json", exclude_defaults=True) for source in body.sources]
-    change = Change("put", points, expected, body.operation_id, account.id, sources)
-    return _describe_made(session, place, _change(session, account, guarding, place, change, response))
+    change = Change("put", body.points, expected, body.operation_id, account.id, sources)
+    made = await admission.write(lambda session: _change(session, account, guarding, place, change))
+    return _answer(place, made)
 
 
 @router.delete("/annotations/{camera}/{frame}/{hand}", status_code=204, responses=CONFLICTS)
@@ -168,7 +185,7 @@ def delete_annotation(
     """Delete an annotation; its history stays, and every revision of it can be restored."""
     expected = read_if_match(if_match)
     change = Change("delete", None, expected, operation_id or uuid.uuid4(), account.id)
-    _change(session, account, guarding, place, change, response)
+    response.headers["ETag"] = write_etag(_change(session, account, guarding, place, change).revision)
 
 
 @router.get("/annotations/{camera}/{frame}/{hand}/history")
@@ -185,7 +202,9 @@ def list_annotation_history(
     return Page(items=[_describe_revision(item, names) for item in history], next_cursor=None)
 
 
-@router.post("/annotations/{camera}/{frame}/{hand}/history/{revision}/restore", responses=CONFLICTS)
+@router.post(
+    "/annotations/{camera}/{frame}/{hand}/history/{revision}/restore", response_model=AnnotationOut, responses=CONFLICTS
+)
 def restore_annotation(
     place: ReadablePlaceDep,
     revision: Annotated[int, Path(ge=1, le=10**9)],
@@ -193,15 +212,14 @@ def restore_annotation(
     session: SessionDep,
     account: CurrentAccount,
     guarding: GuardsDep,
-    response: Response,
     if_match: IfMatch = None,
-) -> AnnotationOut:
+) -> Response:
     """Make an earlier revision the current one again, as a new revision."""
     row = service.get_annotation(session, place, deleted_too=True)
     past = service.get_past(session, row, revision)
     expected = read_if_match(if_match)
     change = Change("restore", past.points, expected, body.operation_id, account.id, past.sources)
-    return _describe_made(session, place, _change(session, account, guarding, place, change, response))
+    return _answer(place, _change(session, account, guarding, place, change))
 
 
 @router.get("/key-frames")
@@ -236,58 +254,54 @@ def _read_expected(if_match: str | None, if_none_match: str | None) -> int | Non
     return None
 
 
-def _change(
-    session: Session,
-    account: Account,
-    guarding: Sequence[PlaceGuard],
-    place: Place,
-    change: Change,
-    response: Response,
-) -> AnnotationRevisionRow:
+def _change(session: Session, account: Account, guarding: Sequence[PlaceGuard], place: Place, change: Change) -> Marked:
     """Do it; when somebody else was first, the answer carries theirs."""
     try:
-        made = service.change_annotation(
-            session, place, change, lambda: guards.check_change(guarding, session, account, place)
-        )
+        made = change_annotation(session, place, change, lambda: guards.check_change(guarding, session, account, place))
     except StaleAnnotationError as stale:
-        row = stale.row
-        theirs = None if row is None or row.points is None else _describe(session, [row])[0].model_dump(mode="json")
-        headers = None if row is None else {"ETag": write_etag(row.revision)}
+        now = stale.now
+        theirs = None if now is None or now.points is None else _describe_marked(place, now).model_dump(mode="json")
+        headers = None if now is None else {"ETag": write_etag(now.revision)}
         raise ConflictError(stale.detail, headers=headers, theirs=theirs) from None
-    response.headers["ETag"] = write_etag(made.revision)
-    return made
+    return replace(made, author=account.name) if made.author_id == account.id else made
 
 
-def _describe_made(session: Session, place: Place, made: AnnotationRevisionRow) -> AnnotationOut:
+def _answer(place: Place, marked: Marked) -> Response:
+    """The answer in full: FastAPI would check once more what was just made, and on another thread."""
+    body = _describe_marked(place, marked).model_dump_json()
+    return Response(body, media_type="application/json", headers={"ETag": write_etag(marked.revision)})
+
+
+def _describe_marked(place: Place, marked: Marked) -> AnnotationOut:
     return AnnotationOut.model_validate(
         {
             "frame": place.frame,
             "camera": place.camera,
             "hand": place.hand,
-            "points": made.points,
-            "sources": made.sources,
-            "revision": made.revision,
-            "updated_at": made.created_at,
-            "author": find_names(session, [made.author_id]).get(made.author_id),
+            "points": marked.points,
+            "sources": marked.sources,
+            "revision": marked.revision,
+            "updated_at": marked.updated_at,
+            "author": marked.author,
         }
     )
 
 
-def _describe(session: Session, rows: Sequence[AnnotationRow]) -> list[AnnotationOut]:
+def _write_out(session: Session, rows: Sequence[AnnotationRow]) -> list[dict[str, Any]]:
+    """Each as an AnnotationOut in JSON. To check again the joints that were checked when they were stored took longer
+    than all else, and every page that comes back after an outage asks for thousands of hands."""
     names = find_names(session, [row.author_id for row in rows])
     return [
-        AnnotationOut.model_validate(
-            {
-                "frame": row.frame,
-                "camera": row.camera,
-                "hand": row.hand,
-                "points": row.points,
-                "sources": row.sources,
-                "revision": row.revision,
-                "updated_at": row.updated_at,
-                "author": names.get(row.author_id),
-            }
-        )
+        {
+            "frame": row.frame,
+            "camera": row.camera,
+            "hand": row.hand,
+            "points": row.points,
+            "sources": row.sources and [source and SOURCE_DEFAULTS | source for source in row.sources],
+            "revision": row.revision,
+            "updated_at": row.updated_at.isoformat().replace("+00:00", "Z"),
+            "author": names.get(row.author_id),
+        }
         for row in rows
     ]
 

@@ -47,6 +47,11 @@ class JointSourceOut(BaseModel):
     )
 
 
+SOURCE_DEFAULTS = {
+    name: field.default for name, field in JointSourceOut.model_fields.items() if not field.is_required()
+}
+"""What the database leaves out of a source."""
+
 SourceChoice = Literal[
     "independent",
     "all",

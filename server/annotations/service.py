@@ -3,27 +3,18 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from sqlalchemy import Label, and_, case, distinct, func, not_, null, select, tuple_
-from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from server.annotations.models import Act, AnnotationRevisionRow, AnnotationRow
-from server.annotations.sources import (
-    JOINT_COUNT,
-    carry_sources,
-    count_decided,
-    imported_sources,
-    read_sources,
-    write_sources,
-)
-from server.database import utc_now
+from server.annotations.models import AnnotationRevisionRow, AnnotationRow
+from server.annotations.sources import JOINT_COUNT, read_sources
 from server.database.paging import read_cursor, write_cursor
-from server.errors import ConflictError, InvalidError, NotFoundError
+from server.errors import InvalidError, NotFoundError
 from server.sequences.models import SequenceRow
 from tracker import Annotation, Annotations
 
@@ -43,6 +34,16 @@ class Place:
 
 
 @dataclass(frozen=True)
+class Extent:
+    """Of a recording, as much as says where hands can be: what a save reads of it."""
+
+    id: uuid.UUID
+    name: str
+    frame_count: int
+    cameras: list[Any]
+
+
+@dataclass(frozen=True)
 class HiddenPlaces:
     """Places that somebody must not read: every one of these hands in every one of these cameras and frames."""
 
@@ -54,37 +55,7 @@ class HiddenPlaces:
         return place.frame in self.frames and place.camera in self.cameras and place.hand in self.hands
 
 
-@dataclass(frozen=True)
-class Change:
-    """What somebody wants to do.
-
-    Attributes:
-        act: For the history.
-        points: 21 times [x, y, v], or None to delete.
-        expected: Revision that is changed; None: there must be none yet.
-        operation_id: The client's.
-        account_id: Who.
-        sources: Of each joint what was accepted there; None: as `carry_sources` has it.
-    """
-
-    act: Act
-    points: list[Any] | None
-    expected: int | None
-    operation_id: uuid.UUID
-    account_id: uuid.UUID
-    sources: list[Any] | None = None
-
-
-class StaleAnnotationError(ConflictError):
-    """Somebody changed the annotation meanwhile; `row` is how it is now, None when there is none."""
-
-    def __init__(self, place: Place, row: AnnotationRow | None) -> None:
-        now = "there is none now" if row is None or row.points is None else f"it is at revision {row.revision}"
-        super().__init__(f"The annotation of {place} was changed meanwhile; {now}. Yours was not stored.")
-        self.row = row
-
-
-def check_place(sequence: SequenceRow, camera: str, frame: int, hand: str, replica: str = "") -> Place:
+def check_place(sequence: SequenceRow | Extent, camera: str, frame: int, hand: str, replica: str = "") -> Place:
     """The place, if the recording has it."""
     if camera not in (known := [item["id"] for item in sequence.cameras]):
         raise NotFoundError(f"{sequence.name} has no camera {camera!r}; it has {known}.")
@@ -93,7 +64,7 @@ def check_place(sequence: SequenceRow, camera: str, frame: int, hand: str, repli
     return Place(sequence.id, camera, frame, hand, replica)
 
 
-def check_points(sequence: SequenceRow, place: Place, points: Sequence[Sequence[float]]) -> list[Any]:
+def check_points(sequence: SequenceRow | Extent, place: Place, points: Sequence[Sequence[float]]) -> list[Any]:
     """The points ready to be stored. Joints that are there may lie outside the image by its size at most."""
     camera = next(item for item in sequence.cameras if item["id"] == place.camera)
     width, height = camera["width"], camera["height"]
@@ -106,7 +77,7 @@ def check_points(sequence: SequenceRow, place: Place, points: Sequence[Sequence[
     return [[float(x), float(y), int(v)] for x, y, v in points]
 
 
-def find_annotation(session: Session, place: Place, *, for_update: bool = False) -> AnnotationRow | None:
+def find_annotation(session: Session, place: Place) -> AnnotationRow | None:
     """The annotation at a place, a deleted one too."""
     query = select(AnnotationRow).where(
         AnnotationRow.sequence_id == place.sequence_id,
@@ -115,8 +86,6 @@ def find_annotation(session: Session, place: Place, *, for_update: bool = False)
         AnnotationRow.frame == place.frame,
         AnnotationRow.hand == place.hand,
     )
-    if for_update:
-        query = query.with_for_update().execution_options(populate_existing=True)
     return session.scalars(query).one_or_none()
 
 
@@ -126,83 +95,6 @@ def get_annotation(session: Session, place: Place, *, deleted_too: bool = False)
     if row is None or (row.points is None and not deleted_too):
         raise NotFoundError(f"There is no annotation of {place}.")
     return row
-
-
-def change_annotation(
-    session: Session, place: Place, change: Change, check: Callable[[], None] | None = None
-) -> AnnotationRevisionRow:
-    """Do it, if the annotation is as expected. A repeated operation does nothing and gives what it made at first.
-
-    Args:
-        check: Raises when it must not be done (`guards.check_change`). A repeated operation is not asked again: its
-            work may have been locked since.
-    """
-    row = find_annotation(session, place, for_update=True)
-    if (done := _find_operation(session, row, place, change)) is not None:
-        return done
-    if check is not None:
-        check()
-    if change.act == "delete" and (row is None or row.points is None):
-        raise NotFoundError(f"There is no annotation of {place}.")
-    if row is None:
-        if change.expected is not None:
-            raise StaleAnnotationError(place, None)
-        try:
-            with session.begin_nested():
-                row = AnnotationRow(**vars(place), points=None, revision=0)
-                session.add(row)
-                session.flush()
-        except IntegrityError:  # another request made it between our look and now
-            return change_annotation(session, place, change, check)
-    elif not (row.points is None if change.expected is None else row.revision == change.expected):
-        raise StaleAnnotationError(place, row)
-    return _write(session, row, change)
-
-
-def _find_operation(
-    session: Session, row: AnnotationRow | None, place: Place, change: Change
-) -> AnnotationRevisionRow | None:
-    query = select(AnnotationRevisionRow).where(AnnotationRevisionRow.operation_id == change.operation_id)
-    done = session.scalars(query).one_or_none()
-    if done is None:
-        return None
-    row = row or find_annotation(session, place)  # the same operation may have made it since we looked
-    if row is None or done.annotation_id != row.id or done.act != change.act or done.points != change.points:
-        raise InvalidError(
-            f"The operation {change.operation_id} was another change before; {place} was left as it is. "
-            "Make a new operation_id for each change."
-        )
-    return done
-
-
-def _write(session: Session, row: AnnotationRow, change: Change) -> AnnotationRevisionRow:
-    set_points(row, change.points, change.sources)
-    row.revision += 1
-    row.updated_at = utc_now()
-    row.author_id = change.account_id
-    made = AnnotationRevisionRow(
-        annotation_id=row.id,
-        revision=row.revision,
-        operation_id=change.operation_id,
-        act=change.act,
-        points=change.points,
-        sources=row.sources,
-        created_at=row.updated_at,
-        author_id=change.account_id,
-    )
-    session.add(made)
-    session.flush()
-    return made
-
-
-def set_points(row: AnnotationRow, points: list[Any] | None, sources: list[Any] | None) -> None:
-    """New joints, with where they came from and how many are decided."""
-    if points is None:
-        row.sources = None
-    else:
-        row.sources = carry_sources(row.sources, row.points, points) if sources is None else sources
-    row.points = points
-    row.decided = count_decided(points)
 
 
 def list_history(session: Session, row: AnnotationRow) -> Sequence[AnnotationRevisionRow]:
@@ -296,21 +188,6 @@ def export_annotations(
 ) -> dict[str, Any]:
     """The content of `annotations.json`."""
     return load_annotations(session, sequence_id, replica, hidden).to_json()
-
-
-def add_imported_annotations(
-    session: Session, sequence: SequenceRow, annotations: Annotations, account_id: uuid.UUID
-) -> int:
-    """Take in the annotations that a recording brought along, each as its first revision; gives their number."""
-    for item in annotations.items:
-        place = check_place(sequence, item.camera, item.frame, item.hand)
-        points = check_points(sequence, place, item.points.tolist())
-        row = AnnotationRow(id=uuid.uuid4(), **vars(place), points=None, revision=0)
-        session.add(row)
-        session.flush()
-        sources = write_sources(item.sources) or imported_sources(points, "the recording's own annotations")
-        _write(session, row, Change("import", points, None, uuid.uuid4(), account_id, sources))
-    return len(annotations.items)
 
 
 def find_annotated_frames(session: Session, ids: Sequence[uuid.UUID]) -> dict[uuid.UUID, dict[str, Any]]:

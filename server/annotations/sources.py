@@ -35,6 +35,15 @@ def carry_sources(before: list[Any] | None, was: list[Any] | None, points: list[
     return [source if old[:2] == new[:2] else None for source, old, new in zip(before, was, points, strict=True)]
 
 
+def settle_sources(
+    before: list[Any] | None, was: list[Any] | None, points: list[Any] | None, said: list[Any] | None
+) -> list[Any] | None:
+    """Of new joints: what was said of them, or carried; a deleted annotation has none."""
+    if points is None:
+        return None
+    return carry_sources(before, was, points) if said is None else said
+
+
 def is_decided(point: Sequence[float]) -> bool:
     """Somebody placed the joint or said that it is not in the image: v = 0 with a position other than (0, 0)."""
     return bool(point[2]) or bool(point[0]) or bool(point[1])

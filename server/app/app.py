@@ -96,6 +96,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         database = app.state.database = Database(settings.sqlalchemy_url)
         stack.callback(database.close)
         app.state.admission = Admission(database)
+        stack.callback(app.state.admission.close)
         await run_in_threadpool(upgrade, database)
         app.state.frame_images = FrameImages(database, storage, settings.image_cache_mb * 1_000_000)
         for lifespan in LIFESPANS:

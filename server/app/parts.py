@@ -60,6 +60,7 @@ from server.viewer import routes as viewer
 Lifespan = Callable[[FastAPI], AbstractAsyncContextManager[None]]
 
 ROUTERS: tuple[APIRouter, ...] = (
+    annotations.router,
     health.router,
     accounts.router,
     login_routes.router,
@@ -71,7 +72,6 @@ ROUTERS: tuple[APIRouter, ...] = (
     calibrations.router,
     sequences.router,
     frame_routes.router,
-    annotations.router,
     imports.router,
     jobs.router,
     tracks.router,
@@ -93,7 +93,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     lineage.router,
     bin_routes.router,
 )
-"""All under `/api/v1`."""
+"""All under `/api/v1`, looked through in this order at each request: what is asked most stands first."""
 
 PAGE_ROUTERS: tuple[APIRouter, ...] = (viewer.page_router,)
 """Those with addresses of their own, such as the viewer's page."""

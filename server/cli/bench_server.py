@@ -47,6 +47,7 @@ def add_subject(subjects: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--kill-every", type=float, metavar="S", help="kill -9 the studio this often, and start it again"
     )
+    parser.add_argument("--listeners", type=int, default=0, metavar="N", help="pages that hear of every save (0)")
     parser.add_argument("--tracking", action="store_true", help="have a worker track a recording all the while")
     add_json(parser)
     parser.set_defaults(run=run_guarded(run))
@@ -71,7 +72,9 @@ def bench(folder: Path, args: argparse.Namespace) -> dict[str, Any]:
         with contextlib.ExitStack() as stack:
             if args.tracking:
                 stack.enter_context(_tracking(studio, folder / "tracked"))
+            before = studio.read_processor_seconds()
             ledger = asyncio.run(_annotate(studio, sequence, args))
+            after = studio.read_processor_seconds()
         faults = find_faults(studio.url, ledger)
     times = sorted(1e3 * seconds for seconds in ledger.seconds)
     return {
@@ -85,6 +88,10 @@ def bench(folder: Path, args: argparse.Namespace) -> dict[str, Any]:
         "p95_ms": _percentile(times, 0.95),
         "p99_ms": _percentile(times, 0.99),
         "max_ms": _percentile(times, 1.0),
+        "listeners": args.listeners,
+        "studio_cpu_ms": round(1e3 * (after - before) / len(times), 2)
+        if times and before and after and studio.starts == 1
+        else None,
         "conflicts": ledger.conflicts,
         "sent_twice": ledger.doubled,
         "sent_again": ledger.resent,
@@ -97,11 +104,26 @@ async def _annotate(studio: ServedStudio, sequence: str, args: argparse.Namespac
     work = asyncio.create_task(
         annotate_together(studio.url, annotations_of(sequence), args.frames, args.annotators, args.seconds, args.pause)
     )
+    listening = [asyncio.create_task(_listen(studio.url, sequence)) for _ in range(args.listeners)]
     until = time.monotonic() + args.seconds
     while args.kill_every and time.monotonic() + args.kill_every < until and not work.done():
         await asyncio.sleep(args.kill_every)
         await asyncio.to_thread(studio.kill_and_restart)
-    return await work
+    ledger = await work
+    for listener in listening:
+        listener.cancel()
+    return ledger
+
+
+async def _listen(url: str, sequence: str) -> None:
+    """As an open page does: hear of every change, and connect again when the studio has gone."""
+    async with httpx.AsyncClient(base_url=f"{url}/api/v1", timeout=None) as client:
+        while True:
+            with contextlib.suppress(httpx.HTTPError):
+                async with client.stream("GET", f"/sequences/{sequence}/live") as answer:
+                    async for _ in answer.aiter_raw():
+                        pass
+            await asyncio.sleep(1.0)
 
 
 def annotations_of(sequence_id: str) -> str:
@@ -120,6 +142,7 @@ def show(result: dict[str, Any]) -> str:
         f"{result['gestures']} gestures saved",
         f"  a save takes {result['median_ms']} ms (median), {result['p95_ms']} (95 %), {result['p99_ms']} (99 %), "
         f"{result['max_ms']} (worst)",
+        f"  the studio's processor works {result['studio_cpu_ms']} ms for each, {result['listeners']} pages listening",
         f"  {result['conflicts']} met somebody else's, {result['sent_twice']} sent twice at once, "
         f"{result['sent_again']} sent again, {result['restarts']} times killed",
         f"  lost or double: {len(result['faults'])}",
@@ -210,6 +233,15 @@ class ServedStudio:
                     return
             time.sleep(0.1)
         raise CommandError("The studio did not start.", FAILED)
+
+    def read_processor_seconds(self) -> float | None:
+        """How long its process has worked so far, for reads and streams too; None where the system is not Linux."""
+        assert self._process is not None
+        try:
+            fields = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()
+        except OSError:
+            return None
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def kill_and_restart(self) -> None:
         """`kill -9`, and start again."""

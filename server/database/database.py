@@ -51,7 +51,7 @@ class Database:
         be made to wait, it would fail. Threads of one process take turns: SQLite itself has those that wait look again
         after ever longer naps, and whoever is unlucky waits for seconds.
         """
-        with self._take_turn(), self._sessions() as session, session.begin():
+        with self._sessions() as session, self._take_turn(), session.begin():
             if self.is_sqlite:
                 session.connection(execution_options={"is_writing": True})
             yield session

@@ -19,7 +19,7 @@ from weakref import WeakValueDictionary
 from sqlalchemy import delete, select, update
 
 from server.accounts.audit import record_act
-from server.annotations.service import add_imported_annotations
+from server.annotations.changes import add_imported_annotations
 from server.database import Database, utc_now
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.imports.models import ImportRow

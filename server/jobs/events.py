@@ -10,7 +10,6 @@ from datetime import datetime, timedelta
 from typing import Protocol
 from uuid import UUID
 
-from pydantic import BaseModel
 from sqlalchemy import or_, select
 from starlette.concurrency import run_in_threadpool
 
@@ -40,6 +39,10 @@ class Feed(Protocol):
 
     has_ended: bool
 
+    def is_quiet(self) -> bool:
+        """Whether a poll would find nothing, as far as is known without a query."""
+        ...
+
     def poll(self, database: Database) -> list[str]:
         """The events since the last time."""
         ...
@@ -49,9 +52,9 @@ class Feed(Protocol):
         ...
 
 
-def encode_event(event: str, data: BaseModel, event_id: str) -> str:
-    """One event of the stream."""
-    return f"event: {event}\nid: {event_id}\ndata: {data.model_dump_json()}\n\n"
+def encode_event(event: str, data: str, event_id: str) -> str:
+    """One event of the stream; its data is JSON."""
+    return f"event: {event}\nid: {event_id}\ndata: {data}\n\n"
 
 
 def log_line(row: JobLogRow) -> JobLogLine:
@@ -78,6 +81,9 @@ class JobFeed:
     def close(self) -> None:
         """Nothing is held."""
 
+    def is_quiet(self) -> bool:
+        return False
+
     def poll(self, database: Database) -> list[str]:
         events = []
         with database.reading() as session:
@@ -89,10 +95,10 @@ class JobFeed:
             return []
         for row in lines:
             self.line = row.number
-            events.append(encode_event("log", log_line(row), f"{self.version}.{self.line}"))
+            events.append(encode_event("log", log_line(row).model_dump_json(), f"{self.version}.{self.line}"))
         if described is not None:
             self.version = job.version
-            events.append(encode_event("job", described, f"{self.version}.{self.line}"))
+            events.append(encode_event("job", described.model_dump_json(), f"{self.version}.{self.line}"))
         self.has_ended = job.state in ENDED_STATES and len(lines) < service.LOG_PAGE
         return events
 
@@ -116,11 +122,14 @@ class AllJobsFeed:
     def close(self) -> None:
         """Nothing is held."""
 
+    def is_quiet(self) -> bool:
+        return False
+
     def poll(self, database: Database) -> list[str]:
         events = []
         for job in self.find_changes(database):
             assert self.since is not None
-            events.append(encode_event("job", job, self.since.isoformat()))
+            events.append(encode_event("job", job.model_dump_json(), self.since.isoformat()))
         return events
 
     def find_changes(self, database: Database) -> list[JobOut]:
@@ -147,10 +156,9 @@ async def stream(feed: Feed, database: Database, is_stopping: StopFlag) -> Async
         yield f"retry: {RETRY_MILLISECONDS}\n\n"
         spoken = time.monotonic()
         while not is_stopping():
-            events = await run_in_threadpool(feed.poll, database)
-            for event in events:
-                yield event
+            events = [] if feed.is_quiet() else await run_in_threadpool(feed.poll, database)
             if events:
+                yield "".join(events)
                 spoken = time.monotonic()
             if feed.has_ended:
                 yield "event: end\ndata: {}\n\n"

@@ -9,8 +9,6 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
-from pydantic import BaseModel
-
 from server.accounts.models import Account
 from server.annotations.guards import PlaceGuard, find_hidden
 from server.annotations.key_frames import list_key_frames
@@ -19,8 +17,8 @@ from server.annotations.service import HiddenPlaces
 from server.database import Database
 from server.errors import StudioError
 from server.jobs.events import AllJobsFeed, encode_event
-from server.live.schemas import PeopleHere, PersonHere, Sight, Work
-from server.live.visits import Visits
+from server.live.schemas import Sight, Work
+from server.live.visits import Visit, Visits
 from server.live.watch import Changed, Look, RecordingWatch, load_since
 
 _SEPARATOR = "~"
@@ -55,7 +53,9 @@ class RecordingFeed:
     _digest: str | None = None
     _work: tuple[Any, ...] | None = None
     _keys: tuple[Any, ...] | None = None
-    _people: PeopleHere | None = None
+    _jobs: tuple[Any, ...] | None = None
+    _people: list[Visit] | None = None
+    _state: object = None
 
     @classmethod
     def after(
@@ -81,6 +81,9 @@ class RecordingFeed:
         if self.listener.visit_id is not None:
             self.visits.leave(self.listener.account.id, self.listener.visit_id)
 
+    def is_quiet(self) -> bool:
+        return self.watch.is_quiet(self._state) and self._find_people() == self._people
+
     def poll(self, database: Database) -> list[str]:
         look = self.watch.look(database, self._number or 0)
         try:
@@ -88,17 +91,19 @@ class RecordingFeed:
         except StudioError:  # the recording or the replica is not to be read any more
             self.has_ended = True
             return []
-        events += [("job", job) for job in self.jobs.find_changes(database)]
-        self.has_ended = look.is_gone
+        if look.jobs != self._jobs:
+            self._jobs = look.jobs
+            events += [("job", job.model_dump_json()) for job in self.jobs.find_changes(database)]
+        self.has_ended, self._state = look.is_gone, look.state
         id_ = f"{self.jobs.since.isoformat() if self.jobs.since else ''}{_SEPARATOR}{look.looked_at.isoformat()}"
         return [encode_event(name, data, id_) for name, data in events]
 
-    def _read(self, database: Database, look: Look) -> list[tuple[str, BaseModel]]:
-        events: list[tuple[str, BaseModel]] = []
+    def _read(self, database: Database, look: Look) -> list[tuple[str, str]]:
+        events: list[tuple[str, str]] = []
         if look.work != self._work:
             events += self._see(database)
             if self._work is not None:
-                events.append(("work", Work()))
+                events.append(("work", Work().model_dump_json()))
             self._work = look.work
         changes = look.changes
         if self._number is None or changes is None:
@@ -107,17 +112,18 @@ class RecordingFeed:
                 with database.reading() as session:
                     changes = load_since(session, self.watch.sequence_id, self.since)
         self._number, self.since = look.number, look.looked_at
-        events += [("label", changed.label) for changed in changes if self._is_news(changed)]
+        events += [("label", changed.text) for changed in changes if self._is_news(changed)]
         if look.keys != self._keys:
             self._keys = look.keys
-            events.append(("keys", self._find_keys(database)))
+            events.append(("keys", self._find_keys(database).model_dump_json()))
         people = self._find_people()
         if people != self._people:
             self._people = people
-            events.append(("people", people))
+            texts = ",".join(visit.text for visit in people)
+            events.append(("people", f'{{"items":[{texts}]}}'))
         return events
 
-    def _see(self, database: Database) -> list[tuple[str, BaseModel]]:
+    def _see(self, database: Database) -> list[tuple[str, str]]:
         """What the listener must not read may be other places now."""
         with database.reading() as session:
             self._hidden = find_hidden(
@@ -128,15 +134,15 @@ class RecordingFeed:
         if digest == self._digest:
             return []
         self._digest = digest
-        return [("sight", Sight(digest=digest))]
+        return [("sight", Sight(digest=digest).model_dump_json())]
 
     def _is_news(self, changed: Changed) -> bool:
         place = changed.place
         if place.replica != self.listener.replica or any(place in hidden for hidden in self._hidden):
             return False
-        if self._revisions.get(place, 0) >= changed.label.revision:
+        if self._revisions.get(place, 0) >= changed.revision:
             return False
-        self._revisions[place] = changed.label.revision
+        self._revisions[place] = changed.revision
         return True
 
     def _find_keys(self, database: Database) -> KeyFrames:
@@ -144,12 +150,8 @@ class RecordingFeed:
             rows = list_key_frames(session, self.watch.sequence_id, self.listener.replica, self._hidden)
             return KeyFrames(items=[KeyFrame.model_validate(row) for row in rows])
 
-    def _find_people(self) -> PeopleHere:
+    def _find_people(self) -> list[Visit]:
         """Nobody for who marks blindly: who works where is nothing that they should know of."""
         if self.listener.replica or self._hidden:
-            return PeopleHere(items=[])
-        others = self.visits.find_others(self.watch.sequence_id, self.listener.account.id)
-        fields = PersonHere.model_fields
-        return PeopleHere(
-            items=[PersonHere.model_validate({name: getattr(visit, name) for name in fields}) for visit in others]
-        )
+            return []
+        return self.visits.find_others(self.watch.sequence_id, self.listener.account.id)

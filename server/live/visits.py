@@ -6,7 +6,10 @@ import time
 import uuid
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from threading import Lock
+
+from server.live.schemas import PersonHere
 
 SILENCE_SECONDS = 25.0
 """A page says every 10 s where it is; whoever was not heard for so long has gone."""
@@ -25,6 +28,11 @@ class Visit:
     camera: str
     frame: int
     hand: str
+
+    @cached_property
+    def text(self) -> str:
+        """A PersonHere in JSON, written once for all who hear of it."""
+        return PersonHere.model_validate(self, from_attributes=True).model_dump_json()
 
 
 class Visits:

@@ -1,7 +1,8 @@
 """Looks up what changed in a recording, once for everybody who listens to it.
 
 The labels' history is in the database, so this finds what any process of the studio has stored, on SQLite and on
-PostgreSQL. A look costs two queries, of which the first reads only what was changed within the last seconds.
+PostgreSQL. A look costs two queries, of which the first reads only what was changed within the last seconds. What it
+finds is written out once, and every listener gets the same text.
 """
 
 from __future__ import annotations
@@ -10,11 +11,11 @@ import time
 import uuid
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 from threading import Lock
 from typing import Any
 
-from sqlalchemy import func, select
+from sqlalchemy import Select, bindparam, func, select
 from sqlalchemy.orm import Session
 
 from server.accounts.service import find_names
@@ -22,6 +23,7 @@ from server.annotations.models import AnnotationRow, KeyFrameRow
 from server.annotations.service import Place
 from server.database import Database, utc_now
 from server.jobs.events import OVERLAP
+from server.jobs.models import JobRow
 from server.live.schemas import LabelChange
 from server.sequences.models import SequenceRow
 from server.teams.models import AssignmentRow, CommentRow, ProjectRow
@@ -37,10 +39,11 @@ IDLE_SECONDS = 60.0
 
 @dataclass(frozen=True)
 class Changed:
-    """A label that changed, and where it lies."""
+    """A label that changed, and where it lies; `text` is a LabelChange in JSON."""
 
     place: Place
-    label: LabelChange
+    revision: int
+    text: str
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,8 @@ class Look:
         looked_at: Changes stored before this are in it (but for `OVERLAP`).
         work: Differs when an assignment or a comment has changed.
         keys: Differs when a key frame was added or removed.
+        jobs: Differs when a job, of whatever recording, has changed.
+        state: Differs when anything of this does but `looked_at`.
     """
 
     number: int
@@ -61,6 +66,8 @@ class Look:
     is_gone: bool
     work: tuple[Any, ...]
     keys: tuple[Any, ...]
+    jobs: tuple[Any, ...]
+    state: object
 
 
 class RecordingWatch:
@@ -75,20 +82,32 @@ class RecordingWatch:
         self._revisions: dict[uuid.UUID, int] = {}
         self._changes: dict[uuid.UUID, tuple[int, Changed]] = {}
         self._number = self._forgotten = 0
-        self._facts: tuple[bool, tuple[Any, ...], tuple[Any, ...]] = (False, (), ())
+        self._facts: tuple[Any, ...] = ()
+        self._newest_job = datetime.min.replace(tzinfo=UTC) + OVERLAP
+        self.state: object = None
+
+    def is_quiet(self, state: object) -> bool:
+        """Whether who heard everything of this state need not look yet; costs no query."""
+        self.asked_at = time.monotonic()
+        return self._looked is not None and self.asked_at - self._looked < LOOK_SECONDS and state is self.state
 
     def look(self, database: Database, after: int) -> Look:
         """How it is, with the changes behind a number."""
         with self._lock:
             self.asked_at = now = time.monotonic()
             if self._looked is None or now - self._looked >= LOOK_SECONDS:
+                number, facts = self._number, self._facts
                 self._refresh(database)
+                if (self._number, self._facts) != (number, facts):
+                    self.state = object()
                 self._looked = time.monotonic()
             changes = None
             if after >= self._forgotten:
                 changes = [changed for number, changed in self._changes.values() if number > after]
-            is_gone, work, keys = self._facts
-            return Look(self._number, changes, self._looked_at, is_gone, work, keys)
+            is_there, facts = self._facts[0], self._facts[1:]
+            return Look(
+                self._number, changes, self._looked_at, not is_there, facts[:6], facts[6:8], facts[8:], self.state
+            )
 
     def _refresh(self, database: Database) -> None:
         now = utc_now()
@@ -103,7 +122,9 @@ class RecordingWatch:
                 self._changes.pop(id_, None)
                 self._changes[id_] = self._number, changed
             # After the labels: who is not to see one of them any more is known before it is handed on.
-            self._facts = _find_facts(session, self.sequence_id)
+            asked = {"sequence": self.sequence_id, "jobs_after": self._newest_job - OVERLAP}
+            self._facts = tuple(session.execute(_FACTS, asked).one())
+        self._newest_job = self._facts[-1] or self._newest_job
         self._revisions, self._looked_at = found, now
         for id_ in list(self._changes)[:-KEPT_CHANGES]:
             self._forgotten = self._changes.pop(id_)[0]
@@ -119,9 +140,10 @@ def load_changes(session: Session, *conditions: Any) -> list[tuple[uuid.UUID, Ch
             row.id,
             Changed(
                 Place(row.sequence_id, row.camera, row.frame, row.hand, row.replica),
+                row.revision,
                 LabelChange.model_validate(
                     {field: getattr(row, field) for field in fields} | {"author": names.get(row.author_id)}
-                ),
+                ).model_dump_json(),
             ),
         )
         for row in rows
@@ -134,8 +156,9 @@ def load_since(session: Session, sequence_id: uuid.UUID, since: datetime) -> lis
     return [changed for _, changed in load_changes(session, *conditions)]
 
 
-def _find_facts(session: Session, sequence_id: uuid.UUID) -> tuple[bool, tuple[Any, ...], tuple[Any, ...]]:
-    """Whether the recording is deleted, how its assignments and comments are, how its key frames are; in one query."""
+def _ask_facts() -> Select[*tuple[Any, ...]]:
+    """Whether the recording is there, how its assignments and comments are, its key frames, the jobs; in one query."""
+    sequence_id = bindparam("sequence", type_=SequenceRow.id.type)
     work = select(AssignmentRow).where(AssignmentRow.sequence_id == sequence_id)
     comments = (
         select(CommentRow)
@@ -144,6 +167,8 @@ def _find_facts(session: Session, sequence_id: uuid.UUID) -> tuple[bool, tuple[A
     )
     keys = select(KeyFrameRow).where(KeyFrameRow.sequence_id == sequence_id)
     projects = work.join(ProjectRow, ProjectRow.id == AssignmentRow.project_id)
+    # As who listens to them asks (`AllJobsFeed`): what has changed since the newest change, or a little before it.
+    jobs = select(JobRow).where(JobRow.updated_at > bindparam("jobs_after", type_=JobRow.updated_at.type))
     wanted: Collection[Any] = (
         select(func.count()).where(SequenceRow.id == sequence_id, SequenceRow.deleted_at.is_(None)),
         work.with_only_columns(func.count()),
@@ -154,9 +179,14 @@ def _find_facts(session: Session, sequence_id: uuid.UUID) -> tuple[bool, tuple[A
         comments.with_only_columns(func.count(CommentRow.resolved_at)),
         keys.with_only_columns(func.count()),
         keys.with_only_columns(func.max(KeyFrameRow.created_at)),
+        jobs.with_only_columns(func.count()),
+        jobs.with_only_columns(func.sum(JobRow.version)),
+        jobs.with_only_columns(func.max(JobRow.updated_at)),
     )
-    facts = tuple(session.execute(select(*(query.scalar_subquery() for query in wanted))).one())
-    return facts[0] == 0, facts[1:7], facts[7:]
+    return select(*(query.scalar_subquery() for query in wanted))
+
+
+_FACTS = _ask_facts()
 
 
 class Watches:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Sequence
+from typing import Any
 
-from sqlalchemy import select
+from sqlalchemy import and_, bindparam, or_, select
 from sqlalchemy.orm import Session
 
 from server.accounts.models import Account
 from server.accounts.service import find_names, has_role
 from server.annotations.guards import PlaceGuard
 from server.annotations.service import HiddenPlaces, Place
+from server.database import Base
 from server.errors import ForbiddenError, NotFoundError
 from server.teams.models import AssignmentRow, ProjectRow, ReplicaSetRow
 
@@ -51,27 +53,52 @@ def _check_replica_change(session: Session, account: Account, place: Place) -> N
         )
 
 
-def _check_shared_change(session: Session, account: Account, place: Place) -> None:
-    if any(place in hidden for hidden in _find_blind(session, account, place.sequence_id)):
-        raise ForbiddenError(f"You mark {place} blindly: open your replica instead of everybody's annotations.")
-    query = (
-        select(AssignmentRow, ProjectRow.archived_at)
-        .join(ProjectRow, ProjectRow.id == AssignmentRow.project_id)
-        .where(
-            AssignmentRow.sequence_id == place.sequence_id,
-            AssignmentRow.replica_set_id.is_(None),
-            AssignmentRow.deleted_at.is_(None),
-            AssignmentRow.frame_first <= place.frame,
-            AssignmentRow.frame_last >= place.frame,
-        )
-        .with_for_update(read=True, of=AssignmentRow)
+_ASSIGNMENTS, _SETS, _PROJECTS = (
+    Base.metadata.tables[row.__tablename__] for row in (AssignmentRow, ReplicaSetRow, ProjectRow)
+)
+_GIVEN, _SET = _ASSIGNMENTS.c, _SETS.c
+_CONCERNED = (
+    select(
+        *(_GIVEN.account_id, _GIVEN.state, _GIVEN.replica_set_id, _PROJECTS.c.archived_at),
+        *(_SET.frames, _SET.cameras, _SET.hands, _SET.deleted_at),
     )
-    found = session.execute(query).all()
-    if any(row.state == "accepted" for row, _ in found):
+    .select_from(_ASSIGNMENTS)
+    .join(_PROJECTS, _PROJECTS.c.id == _GIVEN.project_id)
+    .outerjoin(_SETS, _SET.id == _GIVEN.replica_set_id)
+    .where(
+        _GIVEN.sequence_id == bindparam("sequence"),
+        _GIVEN.deleted_at.is_(None),
+        or_(
+            and_(
+                _GIVEN.replica_set_id.is_(None),
+                _GIVEN.frame_first <= bindparam("frame"),
+                _GIVEN.frame_last >= bindparam("frame"),
+            ),
+            and_(
+                _GIVEN.replica_set_id.is_not(None),
+                _GIVEN.account_id == bindparam("account"),
+                _GIVEN.state != "accepted",
+            ),
+        ),
+    )
+    .with_for_update(read=True, of=_ASSIGNMENTS)
+)
+"""The assignments that a frame is in, and those in which somebody marks frames of its recording blindly."""
+
+
+def _check_shared_change(session: Session, account: Account, place: Place) -> None:
+    where = {"sequence": place.sequence_id, "frame": place.frame, "account": account.id}
+    concerned = session.execute(_CONCERNED, where).all()
+    for row in concerned:
+        is_blind = row.replica_set_id is not None and row.archived_at is None and row.deleted_at is None
+        if is_blind and place in _places(row):
+            raise ForbiddenError(f"You mark {place} blindly: open your replica instead of everybody's annotations.")
+    found = [row for row in concerned if row.replica_set_id is None]
+    if any(row.state == "accepted" for row in found):
         raise LockedError(
             f"Frame {place.frame} is finished: its assignment was accepted. A reviewer can return it for changes."
         )
-    live = [row for row, archived_at in found if archived_at is None]
+    live = [row for row in found if row.archived_at is None]
     if not live or has_role(account, "reviewer"):
         return
     if any(row.state == "submitted" for row in live):
@@ -90,7 +117,7 @@ def find_hidden(session: Session, account: Account, sequence_id: uuid.UUID, repl
     if replica:
         check_replica_read(session, account, *_get_replica(session, sequence_id, replica))
         return []
-    return _find_blind(session, account, sequence_id)
+    return [_places(replicas) for replicas in _find_blind_sets(session, account, sequence_id)]
 
 
 def check_replica_read(session: Session, account: Account, assignment: AssignmentRow, replicas: ReplicaSetRow) -> None:
@@ -150,28 +177,28 @@ def _get_replica(
     return found
 
 
-def _find_blind(session: Session, account: Account, sequence_id: uuid.UUID) -> list[HiddenPlaces]:
-    return [_places(replicas) for replicas in _find_blind_sets(session, account, sequence_id)]
-
-
-def _find_blind_sets(session: Session, account: Account, sequence_id: uuid.UUID) -> Sequence[ReplicaSetRow]:
-    query = (
-        select(ReplicaSetRow)
-        .join(AssignmentRow, AssignmentRow.replica_set_id == ReplicaSetRow.id)
-        .join(ProjectRow, ProjectRow.id == AssignmentRow.project_id)
-        .where(
-            AssignmentRow.account_id == account.id,
-            AssignmentRow.sequence_id == sequence_id,
-            AssignmentRow.state != "accepted",
-            AssignmentRow.deleted_at.is_(None),
-            ReplicaSetRow.deleted_at.is_(None),
-            ProjectRow.archived_at.is_(None),
-        )
+_BLIND = (
+    select(_SET.name, _SET.frames, _SET.cameras, _SET.hands)
+    .select_from(_SETS)
+    .join(_ASSIGNMENTS, _GIVEN.replica_set_id == _SET.id)
+    .join(_PROJECTS, _PROJECTS.c.id == _GIVEN.project_id)
+    .where(
+        _GIVEN.account_id == bindparam("account"),
+        _GIVEN.sequence_id == bindparam("sequence"),
+        _GIVEN.state != "accepted",
+        _GIVEN.deleted_at.is_(None),
+        _SET.deleted_at.is_(None),
+        _PROJECTS.c.archived_at.is_(None),
     )
-    return session.scalars(query).all()
+)
+"""The replica sets of a recording that somebody marks and is not done with."""
 
 
-def _places(replicas: ReplicaSetRow) -> HiddenPlaces:
+def _find_blind_sets(session: Session, account: Account, sequence_id: uuid.UUID) -> Sequence[Any]:
+    return session.execute(_BLIND, {"account": account.id, "sequence": sequence_id}).all()
+
+
+def _places(replicas: Any) -> HiddenPlaces:
     return HiddenPlaces(frozenset(replicas.frames), frozenset(replicas.cameras), frozenset(replicas.hands))
 
 

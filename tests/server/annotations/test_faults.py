@@ -12,7 +12,7 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import text
 
-from server.annotations import service
+from server.annotations import changes
 from server.database import Database
 
 
@@ -77,7 +77,7 @@ def test_a_clock_set_back_changes_neither_order_nor_what_counts(
     client: TestClient, place: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert put(client, place, 1.0, None).status_code == 200
-    monkeypatch.setattr(service, "utc_now", lambda: datetime(1999, 1, 1, tzinfo=UTC))
+    monkeypatch.setattr(changes, "utc_now", lambda: datetime(1999, 1, 1, tzinfo=UTC))
     assert put(client, place, 2.0, 1).json()["revision"] == 2
     monkeypatch.undo()
     assert put(client, place, 9.0, 1).status_code == 409

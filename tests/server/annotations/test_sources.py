@@ -10,6 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from server.annotations.models import AnnotationRow
+from server.annotations.schemas import AnnotationOut, JointSourceOut
 from server.annotations.sources import count_decided
 from server.database import Database
 from tracker import JointSource, load_annotations
@@ -38,6 +39,19 @@ def put(client: TestClient, place: str, points: Any, sources: Any = None, revisi
 
 def kinds(found: Any) -> list[str | None]:
     return [source and source["kind"] for source in found["sources"]]
+
+
+def test_the_list_says_of_each_hand_what_its_own_address_says(client, recording) -> None:
+    base = f"{recording}/annotations"
+    for frame in (0, 1):
+        sources = [TRACK] * 4 + [FIT] + [None] * 16 if frame else None
+        put(client, f"{base}/cam0/{frame}/right", hand(), sources)
+    each = [client.get(f"{base}/cam0/{frame}/right").json() for frame in (0, 1)]
+    assert client.get(base).json() == {"items": each, "next_cursor": None}
+    assert (
+        AnnotationOut.model_validate(each[1]).sources
+        == [JointSourceOut.model_validate(TRACK)] * 4 + [JointSourceOut.model_validate(FIT)] + [None] * 16
+    )
 
 
 def test_what_was_accepted_stays_beside_the_label_in_its_history_and_in_the_file(client, recording, tmp_path) -> None:

@@ -19,7 +19,7 @@ def measure(capsys: pytest.CaptureFixture[str], *options: str) -> tuple[int, dic
 
 @pytest.mark.slow
 def test_annotators_lose_nothing_when_the_studio_is_killed_under_them(capsys) -> None:
-    code, result = measure(capsys, "--annotators", "6", "--seconds", "5", "--kill-every", "1.5")
+    code, result = measure(capsys, "--annotators", "6", "--seconds", "5", "--kill-every", "1.5", "--listeners", "3")
     assert code == 0 and result["faults"] == []
     assert result["restarts"] >= 1 and result["sent_again"] > 0 and result["gestures"] > 0
 

@@ -12,6 +12,7 @@ from sqlalchemy import event
 
 from server.accounts.models import Account
 from server.app.parts import PLACE_GUARDS
+from server.jobs.models import JobRow
 from server.live import watch as watching
 from server.live.feed import Listener, RecordingFeed
 from server.live.visits import SILENCE_SECONDS, Visit, Visits
@@ -110,7 +111,43 @@ def test_fifty_who_listen_cost_the_database_what_one_does(studio, project, ann, 
     event.listen(studio.database.engine, "before_cursor_execute", lambda *args: asked.append(args[2]))
     for feed in feeds:
         hear(feed, studio)
-    assert [statement for statement in asked if "annotations" in statement or "assignments" in statement] == []
+    assert asked == []
+    assert all(feed.is_quiet() for feed in feeds), "and no thread"
+    feeds[0].visits.put(uuid.uuid4(), Visit(uuid.UUID(project.sequence), uuid.uuid4(), "zoe", "cam0", 1, "right"))
+    assert not any(feed.is_quiet() for feed in feeds)
+
+
+def test_what_fifty_hear_is_written_once(studio, project, ann, bob, listen, monkeypatch) -> None:
+    feeds = [listen(ann) for _ in range(50)]
+    for feed in feeds:
+        hear(feed, studio)
+    written: list[int] = []
+    write = watching.LabelChange.model_dump_json
+
+    def note(label: watching.LabelChange) -> str:
+        written.append(label.frame)
+        return write(label)
+
+    monkeypatch.setattr(watching.LabelChange, "model_dump_json", note)
+    bob.mark(project.sequence, 4, 7)
+    assert [places(hear(feed, studio)) for feed in feeds] == [[(4, 1)]] * 50
+    assert written == [4]
+
+
+def test_a_job_is_heard_of_by_everybody_and_asked_for_only_when_one_has_changed(studio, project, ann, listen) -> None:
+    feeds = [listen(ann) for _ in range(2)]
+    for feed in feeds:
+        assert "job" not in hear(feed, studio)
+    job = JobRow(kind="track", params={}, sequence_id=uuid.UUID(project.sequence))
+    with studio.database.writing() as session:
+        session.add(job)
+    for feed in feeds:
+        assert [one["id"] for one in hear(feed, studio)["job"]] == [str(job.id)]
+        assert "job" not in hear(feed, studio)
+    with studio.database.writing() as session:
+        session.get_one(JobRow, job.id).version += 1
+    for feed in feeds:
+        assert [one["id"] for one in hear(feed, studio)["job"]] == [str(job.id)]
 
 
 def test_who_marks_blindly_hears_of_their_own_version_only(studio, project, ann, bob, lead, listen) -> None:

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from server.accounts.models import LOCAL_ACCOUNT_ID
-from server.annotations.service import Change, Place, change_annotation
+from server.annotations.changes import Change, change_annotation
+from server.annotations.service import Place
 
 
 def assignments_of(person: Any, made: dict[str, Any]) -> dict[str, Any]:

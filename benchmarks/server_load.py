@@ -79,8 +79,8 @@ def main() -> None:
     table = "\n".join(["| " + " | ".join(HEADS) + " |", "|" + "---|" * len(HEADS), *map(row, results)])
     print(table)
     if args.write:
-        before = PAGE.read_text().partition("<!-- table -->")[0]
-        PAGE.write_text(f"{before}<!-- table -->\n\n{table}\n")
+        before, _, rest = PAGE.read_text().partition("<!-- table -->\n")
+        PAGE.write_text(f"{before}<!-- table -->\n{table}\n<!-- table end -->{rest.partition('<!-- table end -->')[2]}")
 
 
 if __name__ == "__main__":

@@ -105,6 +105,13 @@ class TrackSetup:
         """A frame as an ideal pinhole camera sees it, and that camera."""
         return undistort(sequence.frame(index, self.camera_id), sequence.camera(self.camera_id))
 
+    def project_hands(self, pose: npt.NDArray[np.float64], camera: Camera) -> dict[str, npt.NDArray[np.float64]]:
+        """Name of each hand that is before a camera to its joints (21, 2) px at a pose (D,)."""
+        posed = self.scene.pose_at(pose)
+        hands = [(name, place) for place, name in enumerate(self.names) if self.models[place].hand]
+        joints = {name: camera.project(posed.landmarks(place)) for name, place in hands}
+        return {name: points for name, points in joints.items() if np.all(np.isfinite(points))}
+
     def read_views(self, sequence: Sequence, index: int) -> list[CameraFrame]:
         """The frames of all views: as recorded, those with depth as ideal pinhole cameras see them."""
 

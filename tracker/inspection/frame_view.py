@@ -190,9 +190,7 @@ class FrameView:
         region, setup = region_around(self._posed.vertices, self._camera), self.aids.setup
         if region is None or self._frame.depth is None:
             return None
-        models = zip(setup.names, setup.models, strict=True)
-        hands = {name: self._posed.landmarks(index) for index, (name, model) in enumerate(models) if model.hand}
-        expected = {name: self._camera.project(joints) for name, joints in hands.items()}
+        expected = setup.project_hands(self._posed.pose, self._camera)
         sightings = find_sightings(setup.hand_detector, self._frame, self._camera, setup.hand_names, {}, expected)
         return observe(sightings.frame, self._camera, region, setup.preprocessing)
 

@@ -146,7 +146,8 @@ def _choose(setup: TrackSetup, poses: dict[int, Array], count: int) -> list[int]
 def _look(sequence: Sequence, setup: TrackSetup, index: int, pose: Array, is_first: bool) -> CalibrationFrame | None:
     """What is seen and marked in a frame; None where too little of a hand shows."""
     frame, camera = setup.read(sequence, index)
-    frame = find_sightings(setup.hand_detector, frame, camera, setup.hand_names, {}).frame
+    expected = setup.project_hands(pose, camera)
+    frame = find_sightings(setup.hand_detector, frame, camera, setup.hand_names, {}, expected).frame
     region = region_around(setup.scene.pose_at(pose).vertices, camera)
     if region is None:
         return None

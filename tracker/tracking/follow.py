@@ -117,11 +117,9 @@ def _expect(setup: TrackSetup, state: TrackState, camera: Camera) -> dict[str, A
     """
     if state.next_frame == setup.options.first_frame:
         return {}
-    gone, posed = state.gone_hands(setup), setup.scene.pose_at(state.predict(setup.scene))
-    joints = {
-        setup.names[hand]: camera.project(posed.landmarks(hand)) for hand in list_hands(setup) if hand not in gone
-    }
-    return {name: points for name, points in joints.items() if np.all(np.isfinite(points))}
+    gone = {setup.names[hand] for hand in state.gone_hands(setup)}
+    expected = setup.project_hands(state.predict(setup.scene), camera)
+    return {name: joints for name, joints in expected.items() if name not in gone}
 
 
 def _judge(setup: TrackSetup, recovery: Recovery) -> tuple[str, ...]:

@@ -257,6 +257,8 @@ def test_scans_become_a_model_that_is_judged_and_registers_again(studio, scans, 
     loop = studio.get(f"/jobs/{page.url.rsplit('/', 1)[1]}")
     assert (loop["kind"], loop["params"]["model_id"], loop["params"]["by"]) == ("loop", job["hand_model_id"], "verdict")
     expect(page.get_by_text("running", exact=True).first).to_be_visible()
+    while not studio.get(f"/jobs/{loop['id']}")["frames_done"]:  # something must be kept to go on from
+        page.wait_for_timeout(200)
     page.get_by_role("button", name="Cancel").click()
     expect(page.get_by_text("cancelled", exact=True).first).to_be_visible()
     expect(page.get_by_role("button", name="Resume")).to_be_visible()

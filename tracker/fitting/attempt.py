@@ -202,8 +202,9 @@ def attempt_fit(
         for index in hands:
             if setup.names[index] in sightings.hands:
                 joints = sightings.camera.project(view.posed.landmarks(index))
-                apart, worst = sightings.hands[setup.names[index]].measure(joints)
-                qualities[index] = replace(qualities[index], apart=apart, worst_finger=worst)
+                sighting = sightings.hands[setup.names[index]]
+                apart, worst = sighting.measure(joints)
+                qualities[index] = replace(qualities[index], apart=apart, worst_finger=worst, is_led=sighting.is_led)
     return Attempt(fit.pose, qualities, fit, objects)
 
 

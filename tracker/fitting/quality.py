@@ -47,6 +47,7 @@ class Quality:
         apart: Mean distance of the joints from where the hand detector saw them, 0 to 1 (`Sighting.measure`); None
             where it did not see the hand.
         worst_finger: The same of the finger that is farthest off.
+        is_led: Whether the detector saw the hand only because it was told where to look (`Sighting.is_led`).
     """
 
     depth_residual: float
@@ -60,6 +61,7 @@ class Quality:
     area: float
     apart: float | None = None
     worst_finger: float | None = None
+    is_led: bool = False
 
     @property
     def merit(self) -> float:
@@ -80,10 +82,10 @@ class Quality:
     def is_lost(self) -> bool:
         """Whether no one should believe this pose.
 
-        A real hand of another shape leaves some misfit with every finger in its place; where the detector saw the hand,
-        it says whether one is not.
+        A real hand of another shape leaves some misfit with every finger in its place; where the detector saw the hand
+        by itself, it says whether one is not.
         """
-        if self.worst_finger is None:
+        if self.worst_finger is None or self.is_led:
             return self.is_gone or self.misfit > MISFIT
         is_finger_elsewhere = self.broad_misfit > BROAD_MISFIT and self.worst_finger > ELSEWHERE
         is_hand_elsewhere = self.misfit > BROAD_MISFIT and (self.apart or 0.0) > HAND_ELSEWHERE

@@ -49,10 +49,13 @@ class Sighting:
     Attributes:
         hand: As it was detected.
         beliefs: (21,) 0 to 1, how much each joint is believed.
+        is_led: Whether it was seen only because the fit told where to look. Its joints help the next fit, but are no
+            witness of it: the detector agreed so with hands that were inside out.
     """
 
     hand: DetectedHand
     beliefs: Array
+    is_led: bool = False
 
     @property
     def points(self) -> Array:
@@ -92,6 +95,11 @@ class Sightings:
     tells_color: bool = False
 
     @property
+    def followed(self) -> dict[str, DetectedHand]:
+        """The hands that the detector follows on by itself, by name."""
+        return {name: sighting.hand for name, sighting in self.hands.items() if not sighting.is_led}
+
+    @property
     def is_covered(self) -> bool:
         """Whether something stands before a hand."""
         return any(np.count_nonzero(hand.beliefs == COVERED) >= FEW for hand in self.hands.values())
@@ -127,23 +135,25 @@ def find_sightings(
         camera: Its camera.
         names: Of the hands, `right` or `left`.
         before: The hands that were seen in the frame before.
-        expected: Joints (21, 2) px of hands that are followed, where they should be now. The pixels of a hand that the
-            detector does not see are told by them, and the only hand of a recording is looked for there. (Of two drawn
-            hands that cross, joints that were found so were off by a tenth of the square and pulled the fit along.)
+        expected: Joints (21, 2) px of hands that are followed, where they should be now. They tell the pixels of a hand
+            that the detector does not see; the only hand of a recording is looked for there, too.
     """
     expected = expected or {}
     depth = frame.depth
     if detector is None or frame.color is None or depth is None or not names:
         return Sightings(frame, camera, {}, is_looked_at=False)
-    turns = (0, 1 + frame.index % 3) if before or expected else (0, 1, 2, 3)
+    turns = (0, 1 + frame.index % 3) if before else (0, 1, 2, 3)
     followed = [before[name] for name in names if name in before]
-    if not followed and len(names) == 1:  # the square around one of two hands shows the other, too
-        followed = [DetectedHand.expected(joints, name) for name, joints in expected.items()]
 
     def has_size(hand: DetectedHand) -> bool:
         return _has_size_of(hand, depth, camera)
 
     hands = name_hands(detector.find(frame.color, len(names), followed, turns, has_size), names)
+    is_led = not hands and len(names) == 1 and bool(expected)
+    if is_led:
+        there = DetectedHand.expected(expected[names[0]], names[0])
+        found = detector.find(frame.color, 1, [there], (), lambda hand: has_size(hand) and hand.is_same(there))
+        hands = name_hands(found, names)
     joints = {**expected, **{name: hand.points for name, hand in hands.items()}}
     if not joints:
         return Sightings(frame, camera, {})
@@ -155,7 +165,7 @@ def find_sightings(
     islands = find_islands(is_hand, depth, camera.K) if tells_color else []
     focal = float(camera.K[0, 0])
     sightings = {
-        name: _give_tips(Sighting(hand, _believe(hand, depth, is_hand)), islands, expected.get(name), focal)
+        name: _give_tips(Sighting(hand, _believe(hand, depth, is_hand), is_led), islands, expected.get(name), focal)
         for name, hand in hands.items()
     }
     return Sightings(frame, camera, sightings, tells_color=tells_color)
@@ -185,7 +195,7 @@ def _give_tips(sighting: Sighting, islands: list[Island], expected: Array | None
         if apart.min() < room:
             points[tip], beliefs[tip] = island.middle, SEEN
             beliefs[tip - 2 : tip] = COVERED
-    return Sighting(replace(sighting.hand, points=points), beliefs)
+    return replace(sighting, hand=replace(sighting.hand, points=points), beliefs=beliefs)
 
 
 def _has_size_of(hand: DetectedHand, depth: npt.NDArray[np.float32], camera: Camera) -> bool:

@@ -49,11 +49,6 @@ class DetectedHand:
         return cls(points, np.zeros((21, 3)), 0.0, float(side == "right"))
 
     @property
-    def was_seen(self) -> bool:
-        """Whether it was, and is not only expected."""
-        return self.presence > 0.0
-
-    @property
     def side(self) -> str:
         return "right" if self.right >= 0.5 else "left"
 

@@ -60,8 +60,7 @@ class HandDetector:
         Args:
             image: (H, W, 3) red green blue, or (H, W) grey.
             hands: At most so many. Palms are looked for only when fewer were followed.
-            before: What was found in the image before, or where hands are expected: one that was not seen before counts
-                only where it is expected.
+            before: What was found in the image before.
             turns: By so many quarters, counterclockwise, the image is turned to look for palms, in this order until all
                 hands are found. The network knows hands that point up best; a turn costs as much as a look.
             accept: Whether something found is a hand; what is not is not given back; a palm there may still tell one.
@@ -77,9 +76,7 @@ class HandDetector:
                 self._add(found, hand, earlier)
 
         for hand in before:
-            there = self._look(image, hand.next_square)
-            if hand.was_seen or there is None or there.is_same(hand):
-                add(there, hand)
+            add(self._look(image, hand.next_square), hand)
         for turn in turns:
             if len(found) < hands:
                 with self._lock:

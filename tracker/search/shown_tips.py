@@ -46,7 +46,8 @@ def reach_shown_tips(
 
     Neither the depth image nor a network draws a finger there: its matches are too far away, and all but the tip of it
     is hidden. [T16] §3.2.5 lets salient points find their fingertips likewise. To the largest such tip each finger is
-    drawn that reaches it, and the one that then looks most like the depth image is fitted to it.
+    drawn that reaches it. Of those that then look most like the depth image (one that shows elsewhere leaves its own
+    tip) the one that has to turn least is fitted.
     """
     view = draw(setup.scene.pose_at(best.pose), seen)
     for hand in best.qualities:
@@ -55,10 +56,11 @@ def reach_shown_tips(
             return measure_quality(draw(setup.scene.pose_at(pose), seen), seen, hand).score
 
         for tip in find_shown_tips(view, seen, hand):
-            reaching = (reach(setup, best.pose, hand, finger, tip, sightings.camera) for finger in range(len(FINGERS)))
-            starts = [pose for pose in reaching if pose is not None]
+            reaching = [reach(setup, best.pose, hand, finger, tip, sightings.camera) for finger in range(len(FINGERS))]
+            starts = [(cost, look_alike(pose), pose) for pose, cost in reaching if np.isfinite(cost)]
             if starts:
-                start = max(starts, key=look_alike)
+                most = max(score for _, score, _ in starts)
+                start = min((one for one in starts if one[1] > most - GAIN), key=lambda one: one[0])[2]
                 other = attempt_fit(setup, seen, start, start, objective, options, sightings)
                 return other if other.agreement > best.agreement + GAIN else best
     return None
@@ -78,8 +80,8 @@ def find_shown_tips(view: View, seen: Observation, hand: int) -> list[Array]:
     return tips
 
 
-def reach(setup: TrackSetup, pose: Array, hand: int, finger: int, tip: Array, camera: Camera) -> Array | None:
-    """The pose (D,) with a finger's tip where one shows, (3,) world, m; None where the finger is too short."""
+def reach(setup: TrackSetup, pose: Array, hand: int, finger: int, tip: Array, camera: Camera) -> tuple[Array, float]:
+    """The pose (D,) with a finger's tip where one shows, (3,) world, m, and its cost; infinite if it is too short."""
     where, model = setup.scene.pose_slices[hand], setup.models[hand]
     scene = Scene((model,))
     rest = pose[where].copy()
@@ -87,7 +89,7 @@ def reach(setup: TrackSetup, pose: Array, hand: int, finger: int, tip: Array, ca
     straight, joints = scene.pose_at(rest).landmarks(0), scene.pose_at(pose[where]).landmarks(0)
     own = slice(1 + 4 * finger, 5 + 4 * finger)
     if np.linalg.norm(tip - straight[own][0]) > REACH * np.linalg.norm(np.diff(straight[own], axis=0), axis=1).sum():
-        return None
+        return pose, np.inf
     ray = tip - camera.T_world_camera[:3, 3]
     joints[own][-1] = tip + FLESH * ray / np.linalg.norm(ray)
     known = np.ones(21, dtype=np.bool_)
@@ -95,5 +97,5 @@ def reach(setup: TrackSetup, pose: Array, hand: int, finger: int, tip: Array, ca
     points = np.column_stack([camera.project(joints), np.where(known, 2.0, 0.0)])
     descent = JointDescent(scene, mark_joints(scene, 0, points, camera), joints, known)
     found = pose.copy()
-    found[where] = descent.descend(rest, rest, STEPS)[0]
-    return found
+    found[where], cost = descent.descend(rest, rest, STEPS)
+    return found, cost

@@ -95,7 +95,7 @@ def follow_frame(
         image=recovery.image,
         tips=followed.tips,
         lost_hands=gone,
-        detected={name: sighting.hand for name, sighting in sightings.hands.items()},
+        detected=sightings.followed,
     )
     return next_state, FrameResult(
         state.next_frame,

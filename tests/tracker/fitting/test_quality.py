@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tracker.fitting.finger_search import curl_fingers
 from tracker.fitting.frame_fit import draw
 from tracker.fitting.measure_quality import measure_quality
-from tracker.fitting.quality import Quality
+from tracker.fitting.quality import MISFIT, Quality
 from tracker.fitting.region import region_around
 from tracker.observation import observe
 
@@ -78,3 +80,10 @@ def test_where_the_detector_saw_a_hand_it_and_the_depth_must_both_say_that_a_fin
     followed = Quality(0.002, 0.9, 0.9, 0.9, 0.8, 0.9, misfit, broad, 4e-3, 0.1, worst_finger)
     assert not followed.is_gone
     assert followed.is_lost is is_lost
+
+
+def test_a_detector_that_was_told_where_to_look_does_not_talk_misfit_away(recorded, run):
+    """One that sees the hand by itself does: a real hand of another shape leaves misfit with every finger in place."""
+    seen = replace(judge(recorded, run, run[3].pose[3]), misfit=2.0 * MISFIT, apart=0.1, worst_finger=0.2)
+    assert not seen.is_lost
+    assert replace(seen, is_led=True).is_lost and replace(seen, apart=None, worst_finger=None).is_lost

@@ -66,14 +66,36 @@ def test_of_two_hands_the_one_that_looks_more_like_a_right_one_is_it(rights):
     assert seen.frame.is_hand is not None
 
 
-def test_a_followed_hand_that_the_detector_overlooks_is_looked_for_where_it_should_be_and_its_pixels_are_told():
-    hand, detector = hand_at(160), Told()
-    seen = find_sightings(detector, frame([hand]), CAMERA, ("right",), {}, {"right": hand.points})
+class Near:
+    """A detector that overlooks a hand until it is told where to look."""
+
+    def __init__(self, *hands: DetectedHand) -> None:
+        self.hands = list(hands)
+
+    def find(self, image, hands, before, turns, accept):
+        return [hand for hand in self.hands if before and accept(hand)]
+
+
+def test_of_a_followed_hand_that_the_detector_overlooks_the_pixels_are_told_by_where_it_should_be():
+    hand = hand_at(160)
+    seen = find_sightings(Near(), frame([hand]), CAMERA, ("right",), {}, {"right": hand.points})
     assert seen.hands == {}
-    assert np.array_equal(detector.asked[0][0].points, hand.points)
-    assert detector.asked[0][0].side == "right"
     assert seen.frame.is_hand is not None
     assert all(seen.frame.is_hand[row, column] for column, row in np.rint(hand.points).astype(int))
+
+
+def test_a_hand_that_is_seen_only_where_the_fit_says_helps_but_is_no_witness_and_is_not_followed_on():
+    hand = hand_at(160)
+    seen = find_sightings(Near(hand), frame([hand]), CAMERA, ("right",), {}, {"right": hand.points + 3.0})
+    assert seen.hands["right"].is_led and not seen.followed
+    told = find_sightings(Told(hand), frame([hand]), CAMERA, ("right",), {}, {"right": hand.points + 3.0})
+    assert not told.hands["right"].is_led and np.array_equal(told.followed["right"].points, hand.points)
+
+
+def test_what_is_seen_far_from_where_the_hand_should_be_is_not_it():
+    hand = hand_at(160)
+    aside = {"right": hand.points + np.array([40.0, 0.0])}
+    assert find_sightings(Near(hand), frame([hand]), CAMERA, ("right",), {}, aside).hands == {}
 
 
 def test_a_fingertip_that_shows_where_it_is_expected_is_believed_in_place_of_a_detected_one_on_the_fingers_root():

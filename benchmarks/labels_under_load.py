@@ -12,14 +12,13 @@ from __future__ import annotations
 import argparse
 import asyncio
 import random
-import shutil
 import sys
 import tempfile
 import time
 from pathlib import Path
 from typing import Any
 
-from benchmarks.load.browser_annotators import BrowserAnnotator
+from benchmarks.load.other_computers import sit_elsewhere
 from benchmarks.load.slow_network import SlowNetwork
 from benchmarks.load.stored import Judgement, judge
 from server.cli.bench_server import ServedStudio, annotations_of, write_recording
@@ -31,61 +30,27 @@ KILLS, OUTAGES, OUTAGE_SECONDS = 2, 4, 5.0
 REST_SECONDS = 20.0
 """So long after an outage everybody's page saves and loads at once."""
 
-CALM_SECONDS = 120.0
-"""So long the browsers have to save everything once the network is well again."""
 
-
-async def work(
-    studio: ServedStudio, recording: dict[str, Any], args: argparse.Namespace, folder: Path
-) -> dict[str, Any]:
+async def work(studio: ServedStudio, recording: dict[str, Any], args: argparse.Namespace) -> dict[str, Any]:
     """All of it: people at work, a network and a studio that fail them, and what is stored afterwards."""
-    from playwright.async_api import async_playwright
-
     simulated = args.annotators - args.browsers
     own = FRAMES - args.browsers * OF_ONE_BROWSER
-    chance = random.Random(args.seed)
     base = annotations_of(recording["id"])
-    async with (
-        SlowNetwork(studio.url, args.latency, args.cut, random.Random(args.seed)) as network,
-        async_playwright() as playwright,
-    ):
-        browser = await playwright.chromium.launch(
-            executable_path=_write_modest_browser(folder), args=["--no-sandbox", "--disable-gpu"]
-        )
-        people = []
-        for n in range(args.browsers):
-            context = await browser.new_context(viewport={"width": 1280, "height": 720}, locale="en-GB")
-            first = own + n * OF_ONE_BROWSER
-            url = f"{network.url}/recordings/{recording['id']}/annotate"
-            frames = range(first, first + OF_ONE_BROWSER)
-            people.append(BrowserAnnotator(await context.new_page(), url, frames, 1.0, random.Random(chance.random())))
-        until = time.monotonic() + args.seconds
+    async with SlowNetwork(studio.url, args.latency, args.cut, random.Random(args.seed)) as network:
+        url = f"{network.url}/recordings/{recording['id']}/annotate"
+        people = asyncio.create_task(sit_elsewhere(url, range(own, FRAMES), OF_ONE_BROWSER, args.seconds, args.seed))
         ledger, *_ = await asyncio.gather(
             annotate_together(network.url, base, own, simulated, args.seconds, 1.0, args.seed),
-            *(person.work(until) for person in people),
             _trouble(studio, network, args.seconds),
         )
         network.latency = network.cut_part = 0.0
-        await asyncio.gather(*(person.finish(CALM_SECONDS) for person in people))
-        await browser.close()
-    gestures = [gesture for person in people for gesture in person.gestures]
-    opened = [
-        f"{at:.1f} a browser at frames from {person.frames[0]} opened" for person in people for at in person.opened
-    ]
-    judged = await asyncio.to_thread(judge, studio.url, base, range(own, FRAMES), gestures)
+        seen = await people
+    judged = await asyncio.to_thread(judge, studio.url, base, range(own, FRAMES), seen.gestures)
     faults = await asyncio.to_thread(find_faults, studio.url, ledger)
     result = describe(network, ledger, judged, faults, studio, args)
     if judged.lost:
-        result["faults"] += opened
+        result["faults"] += seen.opened
     return result
-
-
-def _write_modest_browser(folder: Path) -> Path:
-    """Chromium that leaves the processors to the studio: people's browsers run on computers of their own."""
-    path = folder / "modest-chromium"
-    path.write_text(f'#!/bin/sh\nexec chrt --idle 0 {shutil.which("chromium")} "$@"\n')
-    path.chmod(0o755)
-    return path
 
 
 async def _trouble(studio: ServedStudio, network: SlowNetwork, seconds: float) -> None:
@@ -153,7 +118,7 @@ def main() -> None:
         studio = ServedStudio(Path(folder) / "data", None, with_worker=False)
         recording = studio.command("import", str(path), "--json")
         with studio:
-            result = asyncio.run(work(studio, recording, args, Path(folder)))
+            result = asyncio.run(work(studio, recording, args))
     faults = result.pop("faults")
     table = "\n".join(["| figure | value |", "|---|---|", *(f"| {name} | {value} |" for name, value in result.items())])
     print(table)

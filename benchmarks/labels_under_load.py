@@ -18,6 +18,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from benchmarks.load.bystander import stand_by
 from benchmarks.load.other_computers import sit_elsewhere
 from benchmarks.load.slow_network import SlowNetwork
 from benchmarks.load.stored import Judgement, judge
@@ -25,7 +26,7 @@ from server.cli.bench_server import ServedStudio, annotations_of, write_recordin
 from server.cli.simulated_annotators import Ledger, annotate_together, find_faults
 
 PAGE = Path(__file__).parents[1] / "docs" / "server_load.md"
-FRAMES, OF_ONE_BROWSER = 10_000, 200
+FRAMES, OF_ONE_BROWSER, OF_BYSTANDER = 10_000, 200, 20
 KILLS, OUTAGES, OUTAGE_SECONDS = 2, 4, 5.0
 REST_SECONDS = 20.0
 """So long after an outage everybody's page saves and loads at once."""
@@ -35,19 +36,21 @@ async def work(studio: ServedStudio, recording: dict[str, Any], args: argparse.N
     """All of it: people at work, a network and a studio that fail them, and what is stored afterwards."""
     simulated = args.annotators - args.browsers
     own = FRAMES - args.browsers * OF_ONE_BROWSER
+    theirs = own - OF_BYSTANDER
     base = annotations_of(recording["id"])
     async with SlowNetwork(studio.url, args.latency, args.cut, random.Random(args.seed)) as network:
         url = f"{network.url}/recordings/{recording['id']}/annotate"
         people = asyncio.create_task(sit_elsewhere(url, range(own, FRAMES), OF_ONE_BROWSER, args.seconds, args.seed))
-        ledger, *_ = await asyncio.gather(
-            annotate_together(network.url, base, own, simulated, args.seconds, 1.0, args.seed),
+        ledger, bystander, _ = await asyncio.gather(
+            annotate_together(network.url, base, theirs, simulated, args.seconds, 1.0, args.seed),
+            stand_by(studio.url, base, range(theirs, own), args.seconds, args.seed),
             _trouble(studio, network, args.seconds),
         )
         network.latency = network.cut_part = 0.0
         seen = await people
     judged = await asyncio.to_thread(judge, studio.url, base, range(own, FRAMES), seen.gestures)
-    faults = await asyncio.to_thread(find_faults, studio.url, ledger)
-    result = describe(network, ledger, judged, faults, studio, args)
+    faults = [fault for one in (ledger, bystander) for fault in await asyncio.to_thread(find_faults, studio.url, one)]
+    result = describe(network, ledger, bystander, judged, faults, studio, args)
     if judged.lost:
         result["faults"] += seen.opened
     return result
@@ -70,6 +73,7 @@ async def _trouble(studio: ServedStudio, network: SlowNetwork, seconds: float) -
 def describe(
     network: SlowNetwork,
     ledger: Ledger,
+    bystander: Ledger,
     judged: Judgement,
     faults: list[str],
     studio: ServedStudio,
@@ -79,8 +83,9 @@ def describe(
     saves = [
         one for one in network.answered if one.method == "PUT" and "/annotations/" in one.path and one.status < 500
     ]
-    times = sorted(1e3 * one.seconds for one in saves)
+    seen = sorted(1e3 * one.seconds for one in saves)
     calm = sorted(1e3 * one.seconds for one in saves if not any(0 <= one.at - m < REST_SECONDS for m in network.mended))
+    times = sorted(1e3 * seconds for seconds in bystander.seconds)
     return {
         "annotators": f"{args.annotators}, {args.browsers} of them at browsers",
         "seconds": args.seconds,
@@ -91,10 +96,11 @@ def describe(
         "gestures of simulated annotators acknowledged": len({one.operation_id for one in ledger.acknowledged}),
         "clicks at browsers taken": judged.taken,
         "clicks at browsers not taken": judged.refused,
-        "saves, median ms of the server's own time": round(times[len(times) // 2], 1),
-        "saves, 95 % ms": round(times[int(0.95 * len(times))], 1),
-        "saves, 99 % ms": round(times[int(0.99 * len(times))], 1),
-        f"the same but for {REST_SECONDS:g} s after each outage, median ms": round(calm[len(calm) // 2], 1),
+        f"{len(times)} saves of a bystander, median ms of the server's own time": round(times[len(times) // 2], 1),
+        "saves of the bystander, 95 % ms": round(times[int(0.95 * len(times))], 1),
+        "saves of the bystander, 99 % ms": round(times[int(0.99 * len(times))], 1),
+        "as the busy network saw them: median ms": round(seen[len(seen) // 2], 1),
+        "as the busy network saw them: 95 % ms": round(seen[int(0.95 * len(seen))], 1),
         f"the same but for {REST_SECONDS:g} s after each outage, 95 % ms": round(calm[int(0.95 * len(calm))], 1),
         "simulated: lost or double": len(faults),
         "browsers: lost": len(judged.lost),

@@ -60,7 +60,7 @@ class RefinementReport(BaseModel):
 class RefinementOut(BaseModel):
     """Refined cameras of a recording."""
 
-    model_config = ConfigDict(from_attributes=True, title="Refinement")
+    model_config = ConfigDict(from_attributes=True)
 
     id: uuid.UUID
     sequence_id: uuid.UUID

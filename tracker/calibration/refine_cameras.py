@@ -194,7 +194,8 @@ def _open(camera: Camera, arrangement: Arrangement, number: int) -> Camera:
     count = camera.distortion.size or (5 if distortion.any() else 0)
     if distortion[count:].any():
         count = 5
-    return replace(camera, K=arrangement.K[number], distortion=distortion[:count], T_world_camera=T)
+    place = camera.T_world_camera if number == 0 else T  # to the last digit
+    return replace(camera, K=arrangement.K[number], distortion=distortion[:count], T_world_camera=place)
 
 
 def _summarize(distances: Array) -> Agreement:

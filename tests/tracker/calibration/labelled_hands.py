@@ -87,7 +87,7 @@ def find_farthest_off_px(found: Sequence[Camera], truth: Sequence[Camera], reach
 
 
 def record_knocked(folder: Path, rng: np.random.Generator, frames: int = 40) -> None:
-    """Write a recording of four cameras, all but the first knocked after they were calibrated; all frames have labels."""
+    """Write a recording of four cameras, all but the first knocked after they were calibrated, and labels."""
     truth = stand_around(4)
     labels = mark_hands(truth, frames, rng)
     cameras = tuple(

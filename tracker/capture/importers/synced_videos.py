@@ -77,8 +77,7 @@ class SyncedVideos:
                 )
                 for video, camera in matched
             )
-            if options.camera_shifts is None:
-                _propose_shifts(files, matched, options, warnings, questions)
+            _propose_shifts(files, matched, options, warnings, questions)
         ignored = [name for name in files.names if name not in {*videos, *used}]
         if ignored:
             shown = ", ".join(ignored[:3]) + (", ..." if len(ignored) > 3 else "")
@@ -122,7 +121,8 @@ def _propose_shifts(
     if not shifts:
         return
     found = f"The calibration found videos out of step: a moment is later in {', '.join(told)}."
-    warnings.append(f"{found} They are imported as they are unless camera_shifts says {','.join(shifts)}.")
+    if options.camera_shifts is None:
+        warnings.append(f"{found} They are imported as they are unless camera_shifts says {','.join(shifts)}.")
     choices = (
         ImportChoice(",".join(shifts), f"Shift by whole frames: {', '.join(shifts)}"),
         ImportChoice(NO_SHIFT, "Leave the videos as they are"),

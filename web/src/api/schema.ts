@@ -7576,7 +7576,7 @@ export interface components {
             lenses: boolean;
         };
         /**
-         * Refinement
+         * RefinementOut
          * @description Refined cameras of a recording.
          */
         RefinementOut: {

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from tracker.calibration.coverage import encode_coverage
     from tracker.calibration.film_folder import FilmFolder, list_films
     from tracker.calibration.known_lenses import load_lenses
+    from tracker.calibration.refine_cameras import refine_cameras
     from tracker.calibration.sightings import Sightings, find_sightings
     from tracker.calibration.source_check import SourceCheck, check_sources
     from tracker.capture.annotations import Annotation, Annotations, load_annotations, save_annotations
@@ -168,6 +169,7 @@ _HOMES = {
     "encode_report": "tracker.calibration.calibration_output",
     "write_calibration": "tracker.calibration.calibration_output",
     "encode_coverage": "tracker.calibration.coverage",
+    "refine_cameras": "tracker.calibration.refine_cameras",
     "CameraSource": "tracker.calibration.camera_source",
     "MAX_CAMERAS": "tracker.calibration.camera_source",
     "open_source": "tracker.calibration.camera_source",
@@ -510,6 +512,7 @@ __all__ = [
     "read_import_picture",
     "read_label_files",
     "read_scan",
+    "refine_cameras",
     "register_scan",
     "render_overlay",
     "render_unknown",

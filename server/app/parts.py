@@ -34,6 +34,7 @@ from server.lineage import routes as lineage
 from server.live import routes as live
 from server.quality import queue_routes as quality_queue
 from server.quality import routes as quality
+from server.refinements import routes as refinements
 from server.registrations import model_routes
 from server.registrations import routes as registrations
 from server.registrations.service import find_newest, settle_current
@@ -79,6 +80,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     evaluations.router,
     triangulation_routes.router,
     suggestions.router,
+    refinements.router,
     quality.router,
     quality_queue.router,
     *teams.ROUTERS,

@@ -116,6 +116,35 @@ def update_sequence(
     return row
 
 
+def describe_places(cameras: Many[Any]) -> list[dict[str, Any]]:
+    """Of cameras as rows and `sequence.json` have them what calibrates them: lens and place."""
+    return [{name: camera[name] for name in ("K", "distortion", "T_world_camera")} for camera in cameras]
+
+
+def change_cameras(
+    session: Session, storage: Storage, row: SequenceRow, recording: Sequence, content_key: str, revision: int
+) -> None:
+    """Give a recording lenses and places of `recording`'s cameras, if it is still the revision given.
+
+    Its `sequence.json` follows, and so does its content key: whatever was computed from the old cameras is another
+    thing. The caller computes the key before the transaction, as that reads every file.
+    """
+    places = describe_places([camera.to_json() for camera in recording.cameras])
+    cameras = [camera | place for camera, place in zip(row.cameras, places, strict=True)]
+    statement = (
+        update(SequenceRow)
+        .where(SequenceRow.id == row.id, SequenceRow.revision == revision)
+        .values(cameras=cameras, content_key=content_key, revision=revision + 1, updated_at=utc_now())
+        .execution_options(synchronize_session=False)
+    )
+    if session.connection().execute(statement).rowcount != 1:
+        session.refresh(row)
+        raise StaleSequenceError(row)
+    session.refresh(row)
+    save_sequence_json(dataclasses.replace(recording, name=row.name, hands=tuple(row.hands)))
+    storage.publish(AREA, row.id)
+
+
 class StaleSequenceError(ConflictError):
     """Somebody changed the recording meanwhile; `row` is how it is now."""
 

@@ -57,6 +57,15 @@ class Arrangement:
     offsets: Array
     sizes: Array
 
+    def find_centres(self) -> Array:
+        """(C, 3) world, m, of the cameras."""
+        return -np.einsum("cji,cj->ci", self.T_camera_world[:, :3, :3], self.T_camera_world[:, :3, 3])
+
+    def find_baselines(self) -> Array:
+        """(C,) m, from the first camera to each."""
+        centres = self.find_centres()
+        return np.linalg.norm(centres - centres[0], axis=1)
+
     def residuals(self, corners: Corners) -> Array:
         """(M, 2) px, projected minus seen. Behind a camera they are large."""
         world = _transform(self.T_world_board[corners.moment], corners.points)

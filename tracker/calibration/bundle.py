@@ -42,6 +42,12 @@ over the picture override it, a board that was never near the borders does not m
 DISTORTION_STD = (0.5, 0.5, 0.005, 0.005, 0.2)
 """Likewise of k1, k2, p1, p2, k3."""
 
+BASELINE_STD = 1e-4
+"""Of a kept baseline, as a share of it. Nothing in the pictures pulls at it, so it is met whatever this is."""
+
+OF_LENS, OF_BASELINE = -1, -2
+"""In place of the moment: residuals that no board touches."""
+
 
 @dataclass(frozen=True)
 class Freedom:
@@ -51,11 +57,14 @@ class Freedom:
         cameras: All cameras' places but the first's.
         lenses: Their lenses.
         offsets: All time offsets but the first's.
+        kept_baseline: A camera's number and its distance from the first camera, m, that stays; None where boards of
+            known size tell the scale.
     """
 
     cameras: bool = True
     lenses: bool = True
     offsets: bool = True
+    kept_baseline: tuple[int, float] | None = None
 
 
 def adjust(start: Arrangement, corners: Corners, freedom: Freedom, robust_px: float = ROBUST_PX) -> Arrangement:
@@ -95,24 +104,30 @@ def adjust(start: Arrangement, corners: Corners, freedom: Freedom, robust_px: fl
 
 
 def find_residuals(cameras: Arrangement, corners: Corners, freedom: Freedom) -> Array:
-    """(2 M,) px, and after them what is unexpected about free lenses, (8 C,), in standard deviations."""
-    seen = cameras.residuals(corners).ravel()
-    if not freedom.lenses:
-        return seen
-    fx, fy = cameras.K[:, 0, 0], cameras.K[:, 1, 1]
-    middle = (cameras.sizes - 1.0) / 2.0
-    away = (cameras.K[:, :2, 2] - middle) / (CENTRE_STD * cameras.sizes.max(axis=1, keepdims=True))
-    odd = np.column_stack([(fx / fy - 1.0) / ASPECT_STD, away, cameras.distortion[:, :5] / DISTORTION_STD])
-    return np.concatenate([seen, odd.ravel()])
+    """(2 M,) px; after them, in standard deviations, what is odd about free lenses (8 C,) and a kept baseline (1,)."""
+    parts = [cameras.residuals(corners).ravel()]
+    if freedom.lenses:
+        fx, fy = cameras.K[:, 0, 0], cameras.K[:, 1, 1]
+        middle = (cameras.sizes - 1.0) / 2.0
+        away = (cameras.K[:, :2, 2] - middle) / (CENTRE_STD * cameras.sizes.max(axis=1, keepdims=True))
+        odd = np.column_stack([(fx / fy - 1.0) / ASPECT_STD, away, cameras.distortion[:, :5] / DISTORTION_STD])
+        parts.append(odd.ravel())
+    if freedom.kept_baseline is not None:
+        number, length = freedom.kept_baseline
+        parts.append((cameras.find_baselines()[[number]] / length - 1.0) / BASELINE_STD)
+    return np.concatenate(parts)
 
 
 def find_jacobian(start: Arrangement, layout: Layout, corners: Corners, freedom: Freedom, x: Array) -> csr_array:
-    """Derivatives of `find_residuals` by the parameters, forward differences (2 M [+ 8 C], parameters)."""
+    """Derivatives of `find_residuals` by the parameters, forward differences (residuals, parameters)."""
     here = find_residuals(_move(start, layout, x), corners, freedom)
-    count, cameras = len(corners.camera), layout.cameras
-    own = np.repeat(np.arange(cameras), 8) if freedom.lenses else np.zeros(0, dtype=np.int64)
-    camera = np.concatenate([np.repeat(corners.camera, 2), own])
-    moment = np.concatenate([np.repeat(corners.moment, 2), np.full(len(own), -1)])
+    of_lens = np.repeat(np.arange(layout.cameras), 8) if freedom.lenses else np.zeros(0, dtype=np.int64)
+    kept = [] if freedom.kept_baseline is None else [freedom.kept_baseline[0]]
+    camera = np.concatenate([np.repeat(corners.camera, 2), of_lens, np.array(kept, dtype=np.int64)])
+    moment = np.concatenate(
+        [np.repeat(corners.moment, 2), np.full(len(of_lens), OF_LENS), np.full(len(kept), OF_BASELINE)]
+    )
+    assert len(camera) == len(here)
     rows = np.arange(len(here))
     parts = []
     for columns, which in layout.groups(camera, moment):
@@ -122,7 +137,6 @@ def find_jacobian(start: Arrangement, layout: Layout, corners: Corners, freedom:
         is_hit = which >= 0
         parts.append((change[is_hit], rows[is_hit], which[is_hit]))
     values, at_rows, at_columns = (np.concatenate(part) for part in zip(*parts, strict=True))
-    assert 2 * count + len(own) == len(here)
     return csr_array(coo_array((values, (at_rows, at_columns)), shape=(len(here), layout.size)))
 
 
@@ -140,7 +154,7 @@ class Layout:
         """Parameters no two of which touch one residual, and for each residual (R,) which of them does, or -1."""
         for part in range(6):
             yield np.arange(part, self.places, 6), np.where(moment >= 0, 6 * moment + part, -1)
-        is_other = (moment >= 0) & (camera > 0)
+        is_other = (moment != OF_LENS) & (camera > 0)
         for part in range(6 if self.offsets > self.places else 0):
             which = np.where(is_other, self.places + 6 * (camera - 1) + part, -1)
             yield np.arange(self.places + part, self.offsets, 6), which

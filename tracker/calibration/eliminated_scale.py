@@ -46,6 +46,11 @@ class EliminatedScale:
         rest += np.diag(RIDGE * np.diag(rest) + floor)
         self._factor = cholesky(rest - flat.T @ flat + 1e-9 * np.diag(np.diag(rest)), lower=True) if len(rest) else rest
 
+    @property
+    def factor(self) -> Array:
+        """(n, n) lower Cholesky factor of the normal equations of all but the boards, those eliminated."""
+        return self._factor
+
     def apply(self, y: Array) -> Array:
         """x (n,) of y (n,)."""
         of_boards, of_cameras = y[: self.boards].reshape(-1, 6), y[self.boards :]

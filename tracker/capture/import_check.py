@@ -11,6 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera_check import report_camera
+from tracker.capture.camera_shifts import shift_plan
+from tracker.capture.frame_shifts import parse_shifts
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import Importer, ImportPlan, PlannedCamera, StreamProbe
 from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question, merge_questions
@@ -90,6 +92,8 @@ def examine(
         files = list_files(source)
         importer = _choose_importer(files, format)
         plan = importer.plan(files, options)
+        if shifts := parse_shifts(options.camera_shifts or ""):
+            plan = shift_plan(plan, shifts)
     except (TrackerError, OSError) as fault:
         text = str(fault) if isinstance(fault, TrackerError) else f"Cannot be read: {fault}."
         return CheckedImport(None, ImportReport(format or "", name, problems=(text,), options=told), {}, {}, source)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from tracker.capture.document import Node
+from tracker.capture.frame_shifts import parse_shifts
 from tracker.capture.recorded_object import UNIT_LIMITS
 from tracker.errors import ImportRefusedError
 
@@ -40,6 +41,7 @@ class ImportOptions:
     allow_gaps: bool | None = _help("Import although frames are missing; the report says which.")
     world_unit_m: float | None = _help("Metres per unit of the calibration, such as 0.001 or a checkerboard square.")
     object_unit_m: float | None = _help("Metres per unit of the objects' meshes, where sequence.json does not tell it.")
+    camera_shifts: str | None = _help("Frames by which a moment is later in a camera's video: cam1=+3, cam2=-2.")
     color_format: str | None = _help("How frames of videos are stored: jpeg (quality 95) or png.")
 
     def to_json(self) -> dict[str, Any]:
@@ -69,6 +71,9 @@ def _parse(key: str, node: Node) -> Any:
         return node.text(200).strip()
     if key in ("depth_pattern", "color_pattern"):
         return node.text(1024)
+    if key == "camera_shifts":
+        parse_shifts(text := node.text(2000))
+        return text
     if key == "preset":
         return node.text(64)
     if key == "intrinsics":

@@ -25,6 +25,7 @@ _FIELDS: dict[str, tuple[str, Kind, str]] = {
     "object_unit_m": ("Unit of the objects' meshes", "number", "m"),
     "fps": ("Frames per second", "number", "1/s"),
     "hands": ("Hands seen", "choice", ""),
+    "camera_shifts": ("Videos out of step", "choice", ""),
     "allow_gaps": ("Import although frames are missing", "boolean", ""),
 }
 

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 
 from tracker.capture.importers.video_calibration import VideoCamera, make_camera
 from tracker.errors import CalibrationError, reading
+
+LONGEST_OFFSET_S = 600.0
+"""That `handloom calibrate-cameras` looks for."""
 
 
 def parse_anipose(data: bytes, file: str) -> list[VideoCamera]:
@@ -14,6 +18,7 @@ def parse_anipose(data: bytes, file: str) -> list[VideoCamera]:
         document = tomllib.loads(data.decode("utf-8"))
     metadata = document.get("metadata")
     is_metric = isinstance(metadata, dict) and metadata.get("unit") == "m"  # as `handloom calibrate-cameras` writes it
+    offsets = metadata.get("time_offsets_s") if isinstance(metadata, dict) and is_metric else None
     cameras = []
     for key, table in document.items():
         if key == "metadata" or not isinstance(table, dict):
@@ -32,7 +37,10 @@ def parse_anipose(data: bytes, file: str) -> list[VideoCamera]:
             "size": table.get("size"),
             "unit_m": 1.0 if is_metric else None,
         }
-        cameras.append(make_camera(str(table.get("name", key))[:100], what, values))
+        camera = make_camera(str(table.get("name", key))[:100], what, values)
+        offset = offsets.get(camera.name, 0.0) if isinstance(offsets, dict) else 0.0
+        is_told = isinstance(offset, int | float) and abs(offset) <= LONGEST_OFFSET_S
+        cameras.append(replace(camera, offset_s=float(offset) if is_told else 0.0))
     if not cameras:
         raise CalibrationError(f"{file}: holds no camera; needed tables like [cam_0].")
     return cameras

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from tracker.capture.document import read_regular_file
+from tracker.capture.frame_shifts import NO_SHIFT
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
-from tracker.capture.import_question import ImportQuestion, make_question
+from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question
 from tracker.capture.importers.anipose_calibration import parse_anipose
 from tracker.capture.importers.colmap_calibration import parse_colmap
 from tracker.capture.importers.dat_calibration import parse_dat
@@ -59,9 +60,12 @@ class SyncedVideos:
                 "COLMAP's cameras.txt and images.txt, or c0.dat and rot_trans_c0.dat for each camera."
             )
         else:
+            if len(videos) > 1:
+                takes = ("camera_shifts", *takes)
             if find_unit(calibration) is None:
                 takes = ("world_unit_m", *takes)
             unit = _choose_unit(calibration, options, problems, warnings, questions)
+            matched = match_cameras(videos, calibration, warnings)
             cameras = tuple(
                 PlannedCamera(
                     id=_make_id(video),
@@ -71,8 +75,9 @@ class SyncedVideos:
                     color=VideoFile(files.root, video, lossless),
                     calibrated_size=camera.size,
                 )
-                for video, camera in match_cameras(videos, calibration, warnings)
+                for video, camera in matched
             )
+            _propose_shifts(files, matched, options, warnings, questions)
         ignored = [name for name in files.names if name not in {*videos, *used}]
         if ignored:
             shown = ", ".join(ignored[:3]) + (", ..." if len(ignored) > 3 else "")
@@ -95,6 +100,42 @@ class SyncedVideos:
             takes=takes,
             unit_known=options.world_unit_m is not None or len(cameras) == 1 or find_unit(calibration) is not None,
         )
+
+
+def _propose_shifts(
+    files: ListedFiles,
+    matched: list[tuple[str, VideoCamera]],
+    options: ImportOptions,
+    warnings: list[str],
+    questions: list[ImportQuestion],
+) -> None:
+    """Propose to shift cameras whose calibration found their videos out of step; nothing is shifted by itself."""
+    first = matched[0][1].offset_s
+    shifts, told = [], []
+    for video, camera in matched[1:]:
+        late = camera.offset_s - first
+        fps = options.fps or VideoFile(files.root, video).read_header()[0]
+        if late * fps and (frames := round(late * fps)):
+            shifts.append(f"{_make_id(video)}={frames:+d}")
+            told.append(f"{_make_id(video)} by {late * fps:.2f} frames ({1000 * late:.1f} ms)")
+    if not shifts:
+        return
+    found = f"The calibration found videos out of step: a moment is later in {', '.join(told)}."
+    if options.camera_shifts is None:
+        warnings.append(f"{found} They are imported as they are unless camera_shifts says {','.join(shifts)}.")
+    choices = (
+        ImportChoice(",".join(shifts), f"Shift by whole frames: {', '.join(shifts)}"),
+        ImportChoice(NO_SHIFT, "Leave the videos as they are"),
+    )
+    questions.append(
+        make_question(
+            "camera_shifts",
+            f"{found} That holds here only if the cameras started as they did for the board; else leave them.",
+            proposal=choices[0].value,
+            proposed_by="found by the calibration of these cameras",
+            choices=choices,
+        )
+    )
 
 
 def read_calibration(files: ListedFiles) -> tuple[list[VideoCamera], list[str]]:

@@ -32,6 +32,8 @@ class VideoCamera:
         t: (3,) in the calibration's unit.
         size: (width, height) px, or None when it is not said.
         unit_m: Metres per unit of the calibration, or None when it is not said.
+        offset_s: To be added to a time of the first camera's video to get the same moment's in this one's; 0 where the
+            calibration does not say it.
     """
 
     name: str
@@ -41,6 +43,7 @@ class VideoCamera:
     t: Array = field(default_factory=lambda: np.zeros(3))
     size: tuple[int, int] | None = None
     unit_m: float | None = None
+    offset_s: float = 0.0
 
     def find_pose(self, unit_m: float) -> Array:
         """T_world_camera (4, 4), m, with `unit_m` metres per unit of the calibration."""

@@ -2140,6 +2140,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/refinements/{refinement_id}/put-back": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Put Refinement Back
+         * @description Give the recording the cameras that it had before these were taken.
+         */
+        post: operations["put_refinement_back"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/refinements/{refinement_id}/take": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Take Refinement
+         * @description Give the recording these cameras; those it had are kept. Tracks made before stay in the world of theirs.
+         */
+        post: operations["take_refinement"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/registrations": {
         parameters: {
             query?: never;
@@ -3011,6 +3051,30 @@ export interface paths {
         get: operations["stream_recording"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sequences/{sequence_id}/refinements": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Refinements
+         * @description What labels made of a recording's cameras, the newest first, at most 20.
+         */
+        get: operations["list_refinements"];
+        put?: never;
+        /**
+         * Create Refinement
+         * @description Refine a recording's cameras by the joints labelled in two or more of them. The recording stays as it is.
+         */
+        post: operations["create_refinement"];
         delete?: never;
         options?: never;
         head?: never;
@@ -4357,6 +4421,14 @@ export interface components {
             };
             /** Total */
             total: number;
+        };
+        /**
+         * BeforeAfter
+         * @description The same of the cameras as they were and as they are refined.
+         */
+        BeforeAfter: {
+            after: components["schemas"]["LabelAgreement"];
+            before: components["schemas"]["LabelAgreement"];
         };
         /**
          * BestTrack
@@ -6334,6 +6406,24 @@ export interface components {
             items: components["schemas"]["KeyFrame"][];
         };
         /**
+         * LabelAgreement
+         * @description How far marks are from where cameras see the points that the marks of all of them make.
+         */
+        LabelAgreement: {
+            /** Joints */
+            joints: number;
+            /**
+             * Median
+             * @description px; null of none.
+             */
+            median: number | null;
+            /**
+             * Rms
+             * @description px; null of none.
+             */
+            rms: number | null;
+        };
+        /**
          * LabelComparison
          * @description What is different between two states of the labels.
          */
@@ -7441,6 +7531,114 @@ export interface components {
              * Format: uuid
              */
             sequence_id: string;
+        };
+        /**
+         * RefinedCameraOut
+         * @description One camera before and after.
+         */
+        RefinedCameraOut: {
+            /** @description On the labels that were fitted to. */
+            fitted_px: components["schemas"]["BeforeAfter"];
+            /**
+             * Focal Percent
+             * @description How much longer its focal length became.
+             */
+            focal_percent: number;
+            /** Id */
+            id: string;
+            /**
+             * Is Moved
+             * @description False of the one that stands still and of those that share too few labels.
+             */
+            is_moved: boolean;
+            /** @description On the labels that were left out. */
+            left_out_px: components["schemas"]["BeforeAfter"];
+            /** Moved Mm */
+            moved_mm: number;
+            /** Turned Deg */
+            turned_deg: number;
+            /**
+             * Unsure Px
+             * @description One standard deviation of where it sees a point, anywhere in its picture at the hands' distance.
+             */
+            unsure_px: number;
+        };
+        /**
+         * RefinementCreate
+         * @description How cameras shall be refined.
+         */
+        RefinementCreate: {
+            /**
+             * Lenses
+             * @description Focal lengths, principal points and distortion may change too.
+             * @default false
+             */
+            lenses: boolean;
+        };
+        /**
+         * RefinementOut
+         * @description Refined cameras of a recording.
+         */
+        RefinementOut: {
+            /**
+             * Changed At
+             * @description When it was taken or put back.
+             */
+            changed_at: string | null;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /**
+             * Is Current
+             * @description The recording has the cameras of before (proposed) or after (taken) now.
+             */
+            is_current: boolean;
+            report: components["schemas"]["RefinementReport"];
+            /**
+             * Sequence Id
+             * Format: uuid
+             */
+            sequence_id: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "proposed" | "taken" | "put_back";
+        };
+        /**
+         * RefinementReport
+         * @description What labels made of the cameras of a recording.
+         */
+        RefinementReport: {
+            /** Cameras */
+            cameras: components["schemas"]["RefinedCameraOut"][];
+            /**
+             * Frames
+             * @description Labelled frames that were fitted to.
+             */
+            frames: number;
+            /**
+             * Frames Left Out
+             * @description Labelled frames that the cameras were judged by.
+             */
+            frames_left_out: number;
+            /**
+             * Kept
+             * @description What gave place and scale.
+             */
+            kept: string;
+            /**
+             * Refusal
+             * @description Why the cameras should stay as they are; empty when they may be taken.
+             */
+            refusal: string;
         };
         /**
          * RegisterCreate
@@ -20222,6 +20420,194 @@ export interface operations {
             };
         };
     };
+    put_refinement_back: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                refinement_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RefinementOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    take_refinement: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                refinement_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RefinementOut"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     list_registrations: {
         parameters: {
             query?: {
@@ -25224,6 +25610,180 @@ export interface operations {
                 };
                 content: {
                     "text/event-stream": unknown;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_refinements: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RefinementOut"][];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    create_refinement: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                sequence_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RefinementCreate"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RefinementOut"];
                 };
             };
             /** @description Unauthorized */

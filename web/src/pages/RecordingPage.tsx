@@ -22,6 +22,7 @@ import { HandBadge } from "./parts/HandBadge";
 import { ImportFacts } from "./parts/ImportFacts";
 import { JobRow } from "./parts/JobRow";
 import { PageSkeleton } from "./parts/PageSkeleton";
+import { RefineCameras } from "./parts/RefineCameras";
 import { Sentences } from "./parts/Sentences";
 import { Awaited } from "./parts/Awaited";
 import { StartTracking, whereItStarts } from "./parts/StartTracking";
@@ -31,7 +32,7 @@ import { useTitle } from "./parts/useTitle";
 import { offerUndo } from "./projects/offerUndo";
 import { For } from "./parts/For";
 
-function Cameras({ recording }: { recording: Recording }) {
+function Cameras({ recording, tracks }: { recording: Recording; tracks: number }) {
   return (
     <section aria-label="Cameras">
       <Title order={2} mb="sm">
@@ -59,6 +60,7 @@ function Cameras({ recording }: { recording: Recording }) {
           </div>
         ))}
       </SimpleGrid>
+      <RefineCameras recording={recording} tracks={tracks} />
     </section>
   );
 }
@@ -180,7 +182,7 @@ export function RecordingPage() {
           </div>
         </section>
 
-        <Cameras recording={recording} />
+        <Cameras recording={recording} tracks={tracks.data?.length ?? 0} />
 
         <section aria-label="Tracks">
           <Group justify="space-between" mb="sm">

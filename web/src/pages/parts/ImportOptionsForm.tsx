@@ -13,7 +13,7 @@ import { SeriesChoice } from "./SeriesChoice";
 import type { LiveCheck } from "./useLiveCheck";
 
 const HANDS: Record<string, string[]> = { right: ["right"], left: ["left"], both: ["right", "left"] };
-const SERIES = ["depth_pattern", "color_pattern"] as const;
+const SERIES = ["depth_pattern", "color_pattern", "camera_shifts"] as const;
 
 interface ImportOptionsFormProps {
   importId: string;

@@ -1,0 +1,1 @@
+"""Cameras of recordings, refined from labels: shown, taken by a person, put back."""

@@ -173,7 +173,7 @@ def _part(scene: Scene, planned: Array) -> Array:
     smoothing a motion that changes sides would push them into each other again.
     """
     objective = Objective(terms={"collision": Collision(weight=1.0)})
-    moved, kept = np.zeros_like(planned), np.exp(-1.0 / (RETURN * len(planned)))
+    moved, kept = np.zeros_like(planned), float(np.exp(-1.0 / (RETURN * len(planned))))
     for moment, pose in enumerate(planned):
         start = pose if moment == 0 else _move(scene, pose, kept * moved[moment - 1])
         found = fit_frame(scene, None, start, start, objective, PARTING).pose
@@ -182,8 +182,8 @@ def _part(scene: Scene, planned: Array) -> Array:
                 root = slice(where.start, where.start + 6)
                 moved[moment, where] = found[where] - pose[where]
                 moved[moment, root] = se3.log(se3.exp(found[root]) @ se3.inverse(se3.exp(pose[root])))
-    moved = gaussian_filter1d(moved, SMOOTH * len(moved), axis=0, mode="nearest")
-    return np.array([_move(scene, pose, by) for pose, by in zip(planned, moved, strict=True)])
+    smooth: Array = gaussian_filter1d(moved, SMOOTH * len(moved), axis=0, mode="nearest")
+    return np.array([_move(scene, pose, smooth[moment]) for moment, pose in enumerate(planned)])
 
 
 def _move(scene: Scene, pose: Array, by: Array) -> Array:

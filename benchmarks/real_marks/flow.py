@@ -29,9 +29,9 @@ from tracker.fitting.view_hands import ViewHands  # noqa: E402
 from tracker.observation.image_flow import find_image_flow  # noqa: E402
 from tracker.terms.flow import follow_surface, join_flows  # noqa: E402
 from tracker.tracking import follow_views  # noqa: E402
-from tracker.tracking.fit_views import EDGE_MARGIN, fit_views  # noqa: E402
+from tracker.tracking.fit_views import fit_views  # noqa: E402
 from tracker.tracking.track import Track  # noqa: E402
-from tracker.tracking.view_edges import find_place  # noqa: E402
+from tracker.tracking.view_edges import EDGE_MARGIN, find_place  # noqa: E402
 
 Array = npt.NDArray[np.float64]
 RESAMPLES, SEED = 2000, 20160508

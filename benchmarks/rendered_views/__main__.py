@@ -30,8 +30,16 @@ def run(shown: Shown, setting: Setting, work: Path) -> None:
     kept = work / "runs" / shown.sequence.folder.name / f"{setting.key}.npz"
     if not kept.exists():
         kept.parent.mkdir(parents=True, exist_ok=True)
-        truth = {"truth": shown.truth.joints_3d, "true_ball": shown.truth.T_world_object[:, :, :3, 3]}
-        np.savez(kept, **vars(follow(shown, setting)), **truth)
+        found, true_ball = follow(shown, setting), shown.truth.T_world_object[:, :, :3, 3]
+        np.savez(
+            kept,
+            joints=found.joints,
+            ball=found.ball,
+            ball_score=found.ball_score,
+            seconds=found.seconds,
+            truth=shown.truth.joints_3d,
+            true_ball=true_ball,
+        )
     stored = np.load(kept)
     errors = Errors.of(stored["joints"], stored["truth"])
     apart = 1000.0 * np.linalg.norm(stored["ball"] - stored["true_ball"], axis=2)

@@ -30,7 +30,6 @@ from tracker.terms.contours import Contours
 from tracker.terms.flow import Flow, follow_surface, join_flows
 from tracker.terms.joint_prior import Regularization
 from tracker.tracking.fit_views import (
-    EDGE_MARGIN,
     MANY_CONTOUR_ITERATIONS,
     MANY_REGULARIZATION,
     add_contours,
@@ -38,7 +37,7 @@ from tracker.tracking.fit_views import (
     see_hands,
 )
 from tracker.tracking.state import TrackState
-from tracker.tracking.view_edges import find_place
+from tracker.tracking.view_edges import EDGE_MARGIN, find_place
 from tracker.tracking.view_objects import judge_objects, list_objects
 
 Array = npt.NDArray[np.float64]

@@ -30,8 +30,8 @@ from tracker.terms.joint_prior import Regularization
 from tracker.terms.marked_joints import MarkedJoints
 from tracker.terms.residual import Term
 from tracker.tracking.recovery import list_hands
-from tracker.tracking.view_edges import find_edges
-from tracker.tracking.view_objects import bring_objects_near, find_object_contours
+from tracker.tracking.view_edges import EDGE_MARGIN, find_edges
+from tracker.tracking.view_objects import find_object_contours
 
 Array = npt.NDArray[np.float64]
 
@@ -59,9 +59,6 @@ CONTOUR_ITERATIONS = 4
 BESIDE_JOINTS = 0.2
 """Share of their weights that the terms of depth have beside detected joints. Of 0.2, 1 and 10 this one follows
 `d405_take001` farthest (112, 105 and 93 of 126 frames, depth by stereo matching) and nearest to its marks."""
-
-EDGE_MARGIN = 0.015
-"""m around the scene in which edges are looked for."""
 
 MOST = 11
 """So many of the 21 joints are most of a hand."""
@@ -104,8 +101,8 @@ def fit_views(
 ) -> Fit:
     """Fit the scene from a pose (D,) to what the views saw.
 
-    First far joints alone count, and objects are brought near; then near joints with depth images, the contours of
-    objects and what the run's terms add, at last all contours in colour images.
+    First far joints alone count, then near ones with depth images, the contours of objects and what the run's terms
+    add, at last all contours in colour images.
     """
     scene, names = setup.scene, setup.names
     has_many = len(seen.cameras) >= MANY
@@ -114,14 +111,11 @@ def fit_views(
     far = seen.add_to(replace(objective, terms={}), scene, names, FAR_REACH)
     first = fit_frame(scene, None, pose, pose, far, FitOptions(iterations=max(1, iterations // 2), fine=0))
     started = perf_counter()
+    near = compose_near(objective, setup, seen, views, scene.pose_at(first.pose))
+    stages = {"preparing depth": perf_counter() - started}
     objects = find_object_contours(setup, views, scene.pose_at(first.pose))
-    begin = bring_objects_near(setup, first.pose, objects)
-    stages = {"bringing objects near": perf_counter() - started} if objects else {}
-    started = perf_counter()
-    near = compose_near(objective, setup, seen, views, scene.pose_at(begin))
-    stages["preparing depth"] = perf_counter() - started
     held = replace(near, terms=near.terms | objects)
-    second = fit_frame(scene, None, begin, pose, held, FitOptions(iterations=iterations))
+    second = fit_frame(scene, None, first.pose, pose, held, FitOptions(iterations=iterations))
     started = perf_counter()
     last = seen.add_to(near, scene, names, MANY_REACH) if has_many else near
     drawn = add_contours(last, scene.pose_at(second.pose), views, setup.options.threads)

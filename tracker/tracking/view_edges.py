@@ -15,6 +15,9 @@ from tracker.observation.image_edges import ImageEdges, find_image_edges
 
 Array = npt.NDArray[np.float64]
 
+EDGE_MARGIN = 0.015
+"""m around the scene in which edges are looked for."""
+
 NEAREST = 0.05
 """m before a camera; what is nearer is not drawn."""
 

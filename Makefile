@@ -14,7 +14,7 @@ WEB := web/dist/.stamp
 TRACKER_SOURCES := $(shell find tracker -name '*.py')
 WEB_SOURCES := $(shell find web -type f -not -path '*/node_modules/*' -not -path '*/dist/*' -not -path '*/test-results/*' -not -name '*.tsbuildinfo')
 
-.PHONY: setup demo test test-python test-rooms test-browser test-web proofs proofs-rooms proofs-browser lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies real clean
+.PHONY: setup demo test test-python test-rooms test-browser test-web proofs proofs-rooms proofs-browser lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies real house clean
 .DELETE_ON_ERROR:
 
 setup: $(PROJECT) $(WEB) $(COMPILED)
@@ -119,6 +119,10 @@ studies: setup
 real: setup
 	@test -n "$(DATA)" || { echo "real: say where the recordings are: make real DATA=FOLDER"; exit 2; }
 	$(BIN)/python -m benchmarks.real_marks $(DATA) --write
+
+# How large, how tangled and how tested each room is.
+house: $(PROJECT)
+	$(BIN)/python scripts/measure_house.py
 
 clean:
 	rm -rf .venv web/node_modules web/dist

@@ -31,6 +31,7 @@ from server.app.parts import (
     SEQUENCE_FACTS,
     SIGHT_GUARDS,
 )
+from server.compute import Compute
 from server.database import Admission, Database
 from server.database.migrate import upgrade
 from server.errors import error_responses
@@ -98,6 +99,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         app.state.admission = Admission(database)
         stack.callback(app.state.admission.close)
         await run_in_threadpool(upgrade, database)
+        app.state.compute = Compute(settings, database, storage)
+        stack.push_async_callback(run_in_threadpool, app.state.compute.close)
         app.state.frame_images = FrameImages(database, storage, settings.image_cache_mb * 1_000_000)
         for lifespan in LIFESPANS:
             await stack.enter_async_context(lifespan(app))

@@ -10,6 +10,7 @@ import uvicorn
 
 from server.app import create_app
 from server.settings import Settings
+from server.suggestions.service import warm_up
 
 GRACE_SECONDS = 3
 """How long open requests may take when the studio stops."""
@@ -42,6 +43,7 @@ class StudioServer(uvicorn.Server):
             sys.stdout.write(f"Handloom is at {self._address} (data in {self._data_dir}). Stop it with Ctrl+C.\n")
             sys.stdout.flush()
             self._app.state.viewer_sessions.prepare()
+            self._app.state.compute.start(warm_up)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         self._app.state.is_stopping = True

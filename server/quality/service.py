@@ -18,9 +18,11 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
+from server.accounts.service import CurrentAccount
+from server.annotations.guards import GuardsDep, find_hidden
 from server.annotations.models import AnnotationRow
-from server.annotations.service import Place, find_revisions, get_annotation, list_annotations
-from server.database import Database
+from server.annotations.service import HiddenPlaces, Place, find_revisions, get_annotation, list_annotations
+from server.database import AdmissionDep, Database
 from server.errors import ConflictError
 from server.jobs.detections import AREA, find_detections
 from server.quality.doubt import Doubt
@@ -30,6 +32,7 @@ from server.quality.labels import Label, LabelReader
 from server.quality.models import DismissalRow
 from server.quality.queue import find_doubts, find_label_doubts
 from server.quality.witnesses import read_detections, read_track
+from server.sequences.service import get_sequence
 from server.storage import Storage
 from server.tracks.facts import find_best_tracks
 from server.tracks.service import get_track
@@ -122,7 +125,6 @@ class FlagFinder:
         self._reader = LabelReader()
         self._known: OrderedDict[tuple, _Known] = OrderedDict()
         self._lock = threading.Lock()
-        self.turns = CapacityLimiter(2)
 
     def find(
         self,
@@ -240,13 +242,28 @@ def restore(session: Session, place: Place, kind: str, revision: int) -> None:
     )
 
 
-async def get_flag_finder(connection: HTTPConnection) -> AsyncIterator[FlagFinder]:
-    """The app's; who waits for it does so here, not in a thread."""
+async def get_hidden(
+    sequence_id: uuid.UUID, admission: AdmissionDep, account: CurrentAccount, guards: GuardsDep
+) -> list[HiddenPlaces]:
+    """Places of the address's recording that whoever asks must not read."""
+
+    def look(session: Session) -> list[HiddenPlaces]:
+        get_sequence(session, sequence_id)
+        return find_hidden(guards, session, account, sequence_id)
+
+    return await admission.read(look)
+
+
+HiddenDep = Annotated[list[HiddenPlaces], Depends(get_hidden)]
+
+
+async def wait_for_turn(connection: HTTPConnection) -> AsyncIterator[None]:
+    """Two requests at a time have labels checked: suggestions find free threads beside them."""
     state = connection.app.state
-    if not hasattr(state, "flag_finder"):
-        state.flag_finder = FlagFinder(state.storage)
-    async with state.flag_finder.turns:
-        yield state.flag_finder
+    if not hasattr(state, "check_turns"):
+        state.check_turns = CapacityLimiter(2)
+    async with state.check_turns:
+        yield
 
 
-FlagFinderDep = Annotated[FlagFinder, Depends(get_flag_finder, scope="function")]
+IN_TURN = Depends(wait_for_turn, scope="function")

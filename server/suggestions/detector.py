@@ -6,6 +6,7 @@ import uuid
 from typing import TYPE_CHECKING
 
 from server.annotations.service import Place
+from server.compute import ComputeContext
 from server.suggestions.schemas import SuggestedJoint, Suggestion
 from server.suggestions.service import Recorded
 from server.suggestions.shelf import Shelf
@@ -16,17 +17,20 @@ if TYPE_CHECKING:
 OCCLUDED = 1
 
 
-def suggest_detected(shelf: Shelf, recorded: Recorded, job_id: uuid.UUID | None, place: Place) -> list[Suggestion]:
+def suggest_detected(
+    context: ComputeContext, recorded: Recorded, job_id: uuid.UUID | None, place: Place
+) -> list[Suggestion]:
     """The hands of an image; `place.hand` is ignored. None where the camera has depth alone, or none is seen.
 
     Args:
-        shelf: Keeps recordings and what was found.
+        context: Keeps recordings and what was found.
         recorded: The recording.
         job_id: The job that has looked at the whole recording, where one has.
         place: The image.
     """
     from tracker import DETECTOR_LABEL
 
+    shelf = context.keep(Shelf)
     found = None if job_id is None else shelf.detections(job_id)
     if found is not None and found.covers(place.frame, place.camera):
         hands = found.at(place.frame, place.camera)

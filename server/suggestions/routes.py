@@ -7,14 +7,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Annotated
 
-from fastapi import APIRouter, BackgroundTasks, Query
+from fastapi import APIRouter, Query
+from sqlalchemy.orm import Session
 
 from server.accounts.service import CurrentAccount
 from server.annotations.guards import GuardsDep, check_read, find_hidden
 from server.annotations.routes import CameraPath, get_annotated_sequence
 from server.annotations.schemas import Hand
 from server.annotations.service import HiddenPlaces, Place, check_place, check_points
-from server.database import DatabaseDep
+from server.compute import ComputeDep
+from server.database import AdmissionDep
 from server.database.frames import FramePath
 from server.database.paging import Page
 from server.errors import error_responses
@@ -22,7 +24,6 @@ from server.jobs.detections import find_detections
 from server.suggestions import service
 from server.suggestions.detector import suggest_detected
 from server.suggestions.schemas import FitRequest, Suggestion
-from server.suggestions.shelf import ShelfDep
 
 router = APIRouter(
     prefix="/sequences/{sequence_id}/suggestions/{camera}/{frame}",
@@ -36,36 +37,36 @@ TrackQuery = Annotated[
 
 
 @router.get("")
-def list_suggestions(
+async def list_suggestions(
     sequence_id: uuid.UUID,
     camera: CameraPath,
     frame: FramePath,
-    database: DatabaseDep,
-    shelf: ShelfDep,
+    admission: AdmissionDep,
+    compute: ComputeDep,
     account: CurrentAccount,
     guards: GuardsDep,
-    later: BackgroundTasks,
     track_id: TrackQuery = None,
 ) -> Page[Suggestion]:
     """The hands of an image as a track has them; empty where it was lost, where there is none, or one marks blindly."""
-    with database.reading() as session:
+
+    def look(session: Session) -> tuple[Place, service.Recorded, service.ChosenTrack | None, list[HiddenPlaces]]:
         sequence = get_annotated_sequence(sequence_id, session)
         place = check_place(sequence, camera, frame, "right")
-        recorded = service.Recorded.of(sequence)
         chosen = service.choose_track(session, sequence_id, track_id)
-        hidden = find_hidden(guards, session, account, sequence_id)
-    later.add_task(service.warm_up, shelf, recorded, place)
-    items = [] if chosen is None else service.suggest_from_track(shelf, recorded, chosen, place)
+        return place, service.Recorded.of(sequence), chosen, find_hidden(guards, session, account, sequence_id)
+
+    place, recorded, chosen, hidden = await admission.read(look)
+    items = [] if chosen is None else await compute.run(service.suggest_from_track, recorded, chosen, place)
     return _show(items, place, hidden)
 
 
 @router.get("/detector")
-def list_detected(
+async def list_detected(
     sequence_id: uuid.UUID,
     camera: CameraPath,
     frame: FramePath,
-    database: DatabaseDep,
-    shelf: ShelfDep,
+    admission: AdmissionDep,
+    compute: ComputeDep,
     account: CurrentAccount,
     guards: GuardsDep,
 ) -> Page[Suggestion]:
@@ -73,13 +74,15 @@ def list_detected(
 
     They come from the last job that looked at the whole recording; where there is none the image is looked at now.
     """
-    with database.reading() as session:
+
+    def look(session: Session) -> tuple[Place, service.Recorded, uuid.UUID | None, list[HiddenPlaces]]:
         sequence = get_annotated_sequence(sequence_id, session)
         place = check_place(sequence, camera, frame, "right")
-        recorded = service.Recorded.of(sequence)
         job_id = find_detections(session, sequence_id)
-        hidden = find_hidden(guards, session, account, sequence_id)
-    return _show(suggest_detected(shelf, recorded, job_id, place), place, hidden)
+        return place, service.Recorded.of(sequence), job_id, find_hidden(guards, session, account, sequence_id)
+
+    place, recorded, job_id, hidden = await admission.read(look)
+    return _show(await compute.run(suggest_detected, recorded, job_id, place), place, hidden)
 
 
 def _show(items: Sequence[Suggestion], place: Place, hidden: Sequence[HiddenPlaces]) -> Page[Suggestion]:
@@ -89,14 +92,14 @@ def _show(items: Sequence[Suggestion], place: Place, hidden: Sequence[HiddenPlac
 
 
 @router.post("/{hand}/fit")
-def fit_suggestion(
+async def fit_suggestion(
     sequence_id: uuid.UUID,
     camera: CameraPath,
     frame: FramePath,
     hand: Hand,
     body: FitRequest,
-    database: DatabaseDep,
-    shelf: ShelfDep,
+    admission: AdmissionDep,
+    compute: ComputeDep,
     account: CurrentAccount,
     guards: GuardsDep,
 ) -> Suggestion:
@@ -104,11 +107,12 @@ def fit_suggestion(
 
     Nothing is stored.
     """
-    with database.reading() as session:
+
+    def look(session: Session) -> tuple[service.Recorded, service.ChosenTrack | None, Place, list[list[float]]]:
         sequence = get_annotated_sequence(sequence_id, session)
         place = check_place(sequence, camera, frame, hand)
         check_read(guards, session, account, place)
         points = check_points(sequence, place, body.points)
-        recorded = service.Recorded.of(sequence)
-        chosen = service.choose_track(session, sequence_id, None)
-    return service.suggest_by_fit(shelf, recorded, chosen, place, points)
+        return service.Recorded.of(sequence), service.choose_track(session, sequence_id, None), place, points
+
+    return await compute.run(service.suggest_by_fit, *await admission.read(look))

@@ -11,6 +11,7 @@ import numpy as np
 from sqlalchemy.orm import Session
 
 from server.annotations.service import Place
+from server.compute import ComputeContext
 from server.errors import InvalidError, NotFoundError
 from server.sequences.models import SequenceRow
 from server.suggestions.schemas import SuggestedJoint, Suggestion
@@ -57,10 +58,13 @@ def choose_track(session: Session, sequence_id: uuid.UUID, track_id: uuid.UUID |
     return ChosenTrack(row.id, row.name)
 
 
-def suggest_from_track(shelf: Shelf, recorded: Recorded, chosen: ChosenTrack, place: Place) -> list[Suggestion]:
+def suggest_from_track(
+    context: ComputeContext, recorded: Recorded, chosen: ChosenTrack, place: Place
+) -> list[Suggestion]:
     """The hands of a track in one image; none where the track was lost or does not reach. `place.hand` is ignored."""
     from tracker import view_track_hands
 
+    shelf = context.keep(Shelf)
     track, rows = shelf.track(chosen.id)
     row = rows.get(place.frame)
     if row is None or track.status[row] == "lost":
@@ -83,7 +87,11 @@ def suggest_from_track(shelf: Shelf, recorded: Recorded, chosen: ChosenTrack, pl
 
 
 def suggest_by_fit(
-    shelf: Shelf, recorded: Recorded, chosen: ChosenTrack | None, place: Place, points: Many[Many[float]]
+    context: ComputeContext,
+    recorded: Recorded,
+    chosen: ChosenTrack | None,
+    place: Place,
+    points: Many[Many[float]],
 ) -> Suggestion:
     """A hand fitted to its placed joints; of the recording's own size where a track found that out."""
     from tracker import MIN_FIT_JOINTS, fit_marked
@@ -94,6 +102,7 @@ def suggest_by_fit(
             f"{say_count(placed, 'joint is', 'joints are')} placed; a model fit needs {MIN_FIT_JOINTS} or more. "
             "Place some more."
         )
+    shelf = context.keep(Shelf)
     camera = shelf.recording(recorded.id, recorded.content_key).camera(place.camera)
     frame = shelf.frame(recorded.id, recorded.content_key, place.camera, place.frame) if camera.has_depth else None
     model = _find_model(shelf, chosen, place.hand)
@@ -110,16 +119,17 @@ def suggest_by_fit(
     )
 
 
-def warm_up(shelf: Shelf, recorded: Recorded, place: Place) -> None:
-    """Fit a hand once that nobody asked for: the kernels are loaded by then, when somebody waits."""
-    if shelf.is_warm:
-        return
-    shelf.is_warm = True
-    camera = shelf.recording(recorded.id, recorded.content_key).camera(place.camera)
-    middle = (camera.width / 2, camera.height / 2)
-    step = camera.height / 40
-    points = [[middle[0] + step * (joint % 5), middle[1] - step * (joint // 5), 2] for joint in range(21)]
-    suggest_by_fit(shelf, recorded, None, place, points)
+def warm_up(_context: ComputeContext) -> None:
+    """Fit a hand and look at an image that nobody asked for: kernels and networks are loaded when somebody waits."""
+    from tracker import Camera, Frame, default_hand, default_hand_detector, find_image_hands, fit_marked
+
+    width, height, focal = 640, 480, 600.0
+    K = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1]])
+    step = height / 40
+    points = [[width / 2 + step * (joint % 5), height / 2 - step * (joint // 5), 2.0] for joint in range(21)]
+    fit_marked(default_hand("right"), np.array(points), Camera("warm-up", width, height, K))
+    image = Frame(0, "warm-up", np.zeros((height, width, 3), dtype=np.uint8), None)
+    find_image_hands(default_hand_detector(), image, focal, ("right",))
 
 
 def _find_model(shelf: Shelf, chosen: ChosenTrack | None, hand: str) -> ArticulatedModel:

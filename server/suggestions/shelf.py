@@ -6,10 +6,7 @@ import threading
 import uuid
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar
-
-from fastapi import Depends
-from starlette.requests import HTTPConnection
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from server.jobs.detections import AREA
 from server.storage import Storage
@@ -30,7 +27,6 @@ class Shelf:
         self._storage = storage
         self._things: OrderedDict[Hashable, Any] = OrderedDict()
         self._lock = threading.Lock()
-        self.is_warm = False
 
     def recording(self, sequence_id: uuid.UUID, content_key: str) -> Sequence:
         from tracker import load_sequence
@@ -69,14 +65,3 @@ class Shelf:
             while len(self._things) > KEPT:
                 self._things.popitem(last=False)
         return loaded
-
-
-async def get_shelf(connection: HTTPConnection) -> Shelf:
-    """The app's."""
-    state = connection.app.state
-    if not hasattr(state, "suggestion_shelf"):
-        state.suggestion_shelf = Shelf(state.storage)
-    return state.suggestion_shelf
-
-
-ShelfDep = Annotated[Shelf, Depends(get_shelf)]

@@ -17,7 +17,6 @@ from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID, find_file
 from server.jobs import making, service
 from server.jobs.files import JobFiles
-from server.jobs.pace import LEAST_SECONDS
 from server.jobs.scan_workflow import plan_loop
 from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate, TrainingParams
 from server.jobs.tracking import TrackingJob
@@ -47,11 +46,7 @@ def test_a_killed_worker_loses_one_scan_at_most_and_none_is_registered_twice(
     (bench.storage.folder("scans", damaged.id) / "scan.ply").write_bytes(b"ply\nnothing\n")
     worker = bench.start_worker()
     job_id = bench.make(making.make_register_job, RegisterCreate(only="all"))
-    job = bench.wait(job_id, lambda job: job.frames_done >= 1)
-    assert job.started_at is not None
-    if (job.updated_at - job.started_at).total_seconds() > 2.0 * LEAST_SECONDS:  # a quick first scan tells too little
-        assert job.seconds_left is not None
-    assert job.seconds_left is None or 0.0 < job.seconds_left < 120.0, "two scans, each as long as the first took"
+    bench.wait(job_id, lambda job: job.frames_done >= 1)
     bench.kill(worker)
     assert bench.job(job_id).state == "running"
     bench.start_worker()

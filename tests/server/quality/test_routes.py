@@ -15,6 +15,7 @@ from server.imports.service import ImportDesk, import_recording
 from server.jobs.detections import AREA
 from server.jobs.service import create_job
 from server.quality import service
+from server.suggestions.service import warm_up
 from tests.server.quality.errors import Item, inject
 from tracker import default_hand_detector, detect_hands, load_sequence
 
@@ -295,3 +296,17 @@ def test_where_checks_would_take_too_long_the_last_one_is_given_and_says_that_it
     caught_up = find(client, labelled)
     assert not caught_up["checked"]["is_behind"]
     assert caught_up["items"][0]["frame"] == 3
+
+
+def test_beside_the_studio_the_same_flags_are_found(studio, client, labelled):
+    """`handloom serve` has a process of its own for this; its answers, and its refusals, are the same."""
+    spoil(client, labelled, "outside", 4)
+    here, refused = find(client, labelled), client.get(f"{labelled}/flags", params={"cursor": "abc"})
+    queue = client.get(f"{labelled}/frames-to-look-at").json()
+    studio.app.state.compute.start(warm_up)
+    assert find(client, labelled) == here
+    assert client.get(f"{labelled}/frames-to-look-at").json() == queue
+    again = client.get(f"{labelled}/flags", params={"cursor": "abc"})
+    assert (again.status_code, again.json()) == (404, refused.json())
+    relabel(client, labelled, 4, client.get(f"{labelled}/annotations/cam0/3/right").json()["points"], 2)
+    assert not find(client, labelled, kind="outside")["items"], "what is saved here is seen there"

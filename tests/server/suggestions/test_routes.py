@@ -7,6 +7,7 @@ import uuid
 import numpy as np
 import pytest
 
+from server.suggestions.service import warm_up
 from tracker import load_annotations
 
 FEW = (0, 5, 17, 4, 12, 20)
@@ -154,3 +155,19 @@ def test_an_accepted_detected_joint_stays_known_as_one_and_judges_no_track(clien
     [left_out] = [one for one in found["sources"] if not one["is_counted"]]
     assert (left_out["words"], left_out["joints"]) == ("accepted from the hand detector", 21)
     assert 5 not in [item["frame"] for item in found["items"] if item["joints"]]
+
+
+def test_beside_the_studio_the_same_is_suggested(studio, client, tracked, rendered):
+    """`handloom serve` has a process of its own for this."""
+    place = f"/api/v1/sequences/{tracked.sequence_id}/suggestions/cam0/12"
+    fits = [{"points": keep(find_truth(rendered, 12), joints)} for joints in (FEW, FEW[:3])]
+
+    def ask():
+        answers = [client.get(place.replace("12", "5")), client.get(f"{place}/detector")]
+        answers += [client.post(f"{place}/right/fit", json=body) for body in fits]
+        return [(answer.status_code, answer.json()) for answer in answers]
+
+    here = ask()
+    assert [status for status, _ in here] == [200, 200, 200, 422]
+    studio.app.state.compute.start(warm_up)
+    assert ask() == here

@@ -1,0 +1,60 @@
+"""The figures of the program itself count what a reader would count."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+from scripts.measure_house import Room, add_module, complexity, count_parameters, measure
+
+SOURCE = """
+LIMIT, _OTHER = 1, 2
+UNIT: float = 0.001
+name = "no constant"
+
+
+def decide(a, /, b, *more, c=1, **rest):
+    def inner(x):
+        return x if x else 0
+
+    if a and b or c:
+        return [inner(one) for one in more if one]
+    while rest:
+        rest.popitem()
+    return None
+
+
+class Hand:
+    def grow(self, factor):
+        return factor
+
+
+@njit(cache=True)
+def kernel(p1, p2, p3):
+    for _ in range(p1):
+        pass
+"""
+
+
+def test_parameters_leave_self_out_and_complexity_counts_every_branch(tmp_path: Path) -> None:
+    decide = ast.parse(SOURCE).body[3]
+    assert isinstance(decide, ast.FunctionDef)
+    assert count_parameters(decide) == 5
+    assert complexity(decide) == 6, "an if with two operators, a comprehension with a condition, a while; not inner's"
+
+
+def test_a_room_adds_up_its_modules_and_keeps_kernels_apart(tmp_path: Path) -> None:
+    path = tmp_path / "tracker" / "fitting" / "fit.py"
+    path.parent.mkdir(parents=True)
+    path.write_text(SOURCE)
+    room = Room("tracker/fitting")
+    add_module(room, path, tmp_path)
+    assert (room.modules, room.constants, room.lines) == (1, 3, len(SOURCE.splitlines()))
+    assert sorted(one[0].split()[1] for one in room.functions) == ["decide", "grow", "inner"]
+    assert [one[0].split()[1] for one in room.kernels] == ["kernel"]
+
+
+def test_every_room_is_there_with_its_tests() -> None:
+    rooms = {room.name: room for room in measure(Path(__file__).parents[1])}
+    assert rooms["tracker/terms"].test_lines > 0 and rooms["server/jobs"].kernels == []
+    assert sum("tests" in name for name in rooms) == 0

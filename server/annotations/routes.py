@@ -14,11 +14,11 @@ from sqlalchemy.orm import Session
 from server.accounts.models import Account
 from server.accounts.service import CurrentAccount, find_names
 from server.annotations import guards, key_frames, service
+from server.annotations.annotation_page import AnnotationQuestion, make_annotation_page
 from server.annotations.changes import Change, Marked, StaleAnnotationError, change_annotation, look_up
 from server.annotations.guards import GuardsDep, PlaceGuard
-from server.annotations.models import AnnotationRevisionRow, AnnotationRow
+from server.annotations.models import AnnotationRevisionRow
 from server.annotations.schemas import (
-    SOURCE_DEFAULTS,
     AnnotationConflict,
     AnnotationFile,
     AnnotationOut,
@@ -29,7 +29,8 @@ from server.annotations.schemas import (
     KeyFrame,
     KeyFrames,
 )
-from server.annotations.service import Place
+from server.annotations.service import HiddenPlaces, Place
+from server.compute import ComputeDep
 from server.database import AdmissionDep, SessionDep
 from server.database.frames import FramePath
 from server.database.paging import Cursor, Page
@@ -93,30 +94,29 @@ ReadablePlaceDep = Annotated[Place, Depends(get_readable_place)]
 
 
 @router.get("/annotations", response_model=Page[AnnotationOut])
-def list_annotations(
-    sequence: SequenceDep,
-    session: SessionDep,
+async def list_annotations(
+    sequence_id: uuid.UUID,
+    admission: AdmissionDep,
+    compute: ComputeDep,
     account: CurrentAccount,
     guarding: GuardsDep,
-    replica: ReplicaDep,
+    replica: ReplicaQuery = None,
     camera: Annotated[str | None, Query(max_length=64)] = None,
     from_: Annotated[FrameQuery, Query(alias="from", description="First frame.")] = None,
     to: Annotated[FrameQuery, Query(description="Last frame.")] = None,
     cursor: Cursor = None,
     limit: Annotated[int, Query(ge=1, le=10_000, description="Most items of a page.")] = 2_000,
-) -> JSONResponse:
+) -> Response:
     """Annotations of a recording by frame, camera and hand."""
-    rows, next_cursor = service.list_annotations(
-        session,
-        sequence.id,
-        camera=camera,
-        frames=(from_, to),
-        cursor=cursor,
-        limit=limit,
-        replica=replica,
-        hidden=guards.find_hidden(guarding, session, account, sequence.id, replica),
-    )
-    return JSONResponse({"items": _write_out(session, rows), "next_cursor": next_cursor})
+    name = await name_replica(replica)
+
+    def look(session: Session) -> Sequence[HiddenPlaces]:
+        get_sequence(session, sequence_id)
+        return guards.find_hidden(guarding, session, account, sequence_id, name)
+
+    hidden = await admission.read(look)
+    asked = AnnotationQuestion(sequence_id, hidden, name, camera, (from_, to), cursor, limit)
+    return Response(await compute.run(make_annotation_page, asked), media_type="application/json")
 
 
 @router.get("/annotations.json", response_model=AnnotationFile)
@@ -285,25 +285,6 @@ def _describe_marked(place: Place, marked: Marked) -> AnnotationOut:
             "author": marked.author,
         }
     )
-
-
-def _write_out(session: Session, rows: Sequence[AnnotationRow]) -> list[dict[str, Any]]:
-    """Each as an AnnotationOut in JSON. To check again the joints that were checked when they were stored took longer
-    than all else, and every page that comes back after an outage asks for thousands of hands."""
-    names = find_names(session, [row.author_id for row in rows])
-    return [
-        {
-            "frame": row.frame,
-            "camera": row.camera,
-            "hand": row.hand,
-            "points": row.points,
-            "sources": row.sources and [source and SOURCE_DEFAULTS | source for source in row.sources],
-            "revision": row.revision,
-            "updated_at": row.updated_at.isoformat().replace("+00:00", "Z"),
-            "author": names.get(row.author_id),
-        }
-        for row in rows
-    ]
 
 
 def _describe_revision(item: AnnotationRevisionRow, names: dict[uuid.UUID | None, str]) -> AnnotationRevision:

@@ -23223,6 +23223,8 @@ export interface operations {
     list_annotations: {
         parameters: {
             query?: {
+                /** @description The assignment of a blind replica; none for the annotations of everybody. */
+                replica?: string;
                 camera?: string;
                 /** @description First frame. */
                 from?: number;
@@ -23232,8 +23234,6 @@ export interface operations {
                 cursor?: string;
                 /** @description Most items of a page. */
                 limit?: number;
-                /** @description The assignment of a blind replica; none for the annotations of everybody. */
-                replica?: string;
             };
             header?: never;
             path: {

@@ -29,8 +29,9 @@ from tracker.fitting.view_hands import ViewHands  # noqa: E402
 from tracker.observation.image_flow import find_image_flow  # noqa: E402
 from tracker.terms.flow import follow_surface, join_flows  # noqa: E402
 from tracker.tracking import follow_views  # noqa: E402
-from tracker.tracking.fit_views import find_place, fit_views  # noqa: E402
+from tracker.tracking.fit_views import fit_views  # noqa: E402
 from tracker.tracking.track import Track  # noqa: E402
+from tracker.tracking.view_edges import EDGE_MARGIN, find_place  # noqa: E402
 
 Array = npt.NDArray[np.float64]
 RESAMPLES, SEED = 2000, 20160508
@@ -67,7 +68,7 @@ class WithFlow:
         posed, parts = setup.scene.pose_at(self.before[1]), []
         for camera, first, second in zip(seen.cameras, self.before[0], frames, strict=True):
             assert first.color is not None and second.color is not None
-            points, margin = find_place(posed, camera)
+            points, margin = find_place(posed.vertices, camera, EDGE_MARGIN)
             flow = find_image_flow(first.color, second.color, camera, points, margin) if len(points) else None
             if flow is not None:
                 parts.append(follow_surface(posed, flow))

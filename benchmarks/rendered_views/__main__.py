@@ -29,14 +29,24 @@ def run(shown: Shown, setting: Setting, work: Path) -> None:
     """Follow, unless that was done before, and say how exactly."""
     kept = work / "runs" / shown.sequence.folder.name / f"{setting.key}.npz"
     if not kept.exists():
-        joints, seconds = follow(shown, setting)
         kept.parent.mkdir(parents=True, exist_ok=True)
-        np.savez(kept, joints=joints, seconds=seconds, truth=shown.truth.joints_3d)
+        found, true_ball = follow(shown, setting), shown.truth.T_world_object[:, :, :3, 3]
+        np.savez(
+            kept,
+            joints=found.joints,
+            ball=found.ball,
+            ball_score=found.ball_score,
+            seconds=found.seconds,
+            truth=shown.truth.joints_3d,
+            true_ball=true_ball,
+        )
     stored = np.load(kept)
     errors = Errors.of(stored["joints"], stored["truth"])
+    apart = 1000.0 * np.linalg.norm(stored["ball"] - stored["true_ball"], axis=2)
+    ball = f", ball {apart.mean():.2f} mm, max {apart.max():.1f}" if apart.size else ""
     print(
         f"{shown.name} {setting.key}: mean {errors.mm.mean():.2f} mm, max {errors.mm.max():.1f}, "
-        f"{errors.degrees.mean():.2f} deg, median {1000 * np.median(stored['seconds']):.0f} ms",
+        f"{errors.degrees.mean():.2f} deg{ball}, median {1000 * np.median(stored['seconds']):.0f} ms",
         flush=True,
     )
 

@@ -6,7 +6,7 @@ are looked for farther off first. As in the paper the first pose is given; what 
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import cv2
@@ -33,11 +33,12 @@ from tracker.tracking.fit_views import (
     MANY_CONTOUR_ITERATIONS,
     MANY_REGULARIZATION,
     add_contours,
-    find_place,
     fit_views,
     see_hands,
 )
 from tracker.tracking.state import TrackState
+from tracker.tracking.view_edges import EDGE_MARGIN, find_place
+from tracker.tracking.view_objects import judge_objects, list_objects
 
 Array = npt.NDArray[np.float64]
 
@@ -49,8 +50,25 @@ IMAGES, JOINTS = 1, 2
 """Streams of chance."""
 
 
-def follow(shown: Shown, setting: Setting, moments: range | None = None) -> tuple[Array, Array]:
-    """Joints (T, 42, 3) of the hands, world, m, and seconds (T,) without reading and disturbing the images.
+@dataclass(frozen=True)
+class Followed:
+    """What one run gave.
+
+    Attributes:
+        joints: (T, 42, 3) of the hands, world, m.
+        ball: (T, 1, 3) its middle, world, m; (T, 0, 3) where there is none.
+        ball_score: (T, 1) as `ContourQuality` has it; (T, 0) likewise.
+        seconds: (T,) without reading and disturbing the images.
+    """
+
+    joints: Array
+    ball: Array
+    ball_score: Array
+    seconds: Array
+
+
+def follow(shown: Shown, setting: Setting, moments: range | None = None) -> Followed:
+    """Fit the frames one after the other.
 
     Args:
         shown: The recording.
@@ -67,7 +85,7 @@ def follow(shown: Shown, setting: Setting, moments: range | None = None) -> tupl
     first = shown.poses[moments[0]]
     state = TrackState(moments[0], first, first)
     before: tuple[list[Frame], list[npt.NDArray[np.bool_] | None]] | None = None
-    joints, seconds = [], []
+    joints, balls, scores, seconds = [], [], [], []
     for index in moments:
         frames, covers = _read(shown, cameras, index, noise, setting.seed)
         started = perf_counter()
@@ -86,8 +104,13 @@ def follow(shown: Shown, setting: Setting, moments: range | None = None) -> tupl
         state = TrackState(index + 1, pose, state.pose)
         posed = scene.pose_at(pose)
         joints.append(np.concatenate([posed.landmarks(0), posed.landmarks(1)]))
+        watched = judge_objects(setup, _pair(cameras, frames), posed)
+        balls.append([posed.T_world_model(index)[:3, 3] for index in list_objects(setup)])
+        scores.append([one.quality.score for one in watched])
         before = frames, covers
-    return np.array(joints), np.array(seconds)
+    count = len(joints)
+    ball, score = np.reshape(balls, (count, -1, 3)), np.reshape(scores, (count, -1))
+    return Followed(np.array(joints), ball, score, np.array(seconds))
 
 
 def _read(shown: Shown, cameras, index: int, noise: ViewNoise | None, seed: int):
@@ -134,7 +157,7 @@ def _find_flow(posed: PosedScene, cameras, before, now, weight: float) -> Flow |
     """O in all views together; flow that begins or ends in a disc is dropped (§4.4.1)."""
     parts = []
     for number, camera in enumerate(cameras):
-        points, margin = find_place(posed, camera)
+        points, margin = find_place(posed.vertices, camera, EDGE_MARGIN)
         first, second = before[1][number], now[1][number]
         covered = None if first is None else first | second
         images = before[0][number].color, now[0][number].color

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from benchmarks.rendered_views.errors import Errors, find_interval
-from benchmarks.rendered_views.page import list_settings, write_page
+from benchmarks.rendered_views.page import BASE, list_settings, write_page
 
 
 def test_errors_are_distances_of_joints_and_angles_of_bones(rng):
@@ -36,3 +38,19 @@ def test_every_setting_is_run_once_and_a_page_without_runs_has_its_heads(tmp_pat
     page = write_page(tmp_path, 4, (64, 48))
     assert "Table 15" in page
     assert "64x48" in page
+
+
+def test_a_page_tells_the_errors_of_joints_and_ball_by_detection_rate_beside_what_the_paper_says(tmp_path, rng):
+    truth, ball = rng.uniform(-0.1, 0.1, (4, 42, 3)), rng.uniform(-0.1, 0.1, (4, 1, 3))
+    for name, balls in (("crossing", ball[:, :0]), ("passing", ball)):
+        for rate, off in ((0.3, 0.003), (0.7, 0.002)):
+            path = tmp_path / f"{name}_4_64x48" / f"{replace(BASE, detected=rate).key}.npz"
+            path.parent.mkdir(exist_ok=True)
+            off_x = np.array([off, 0.0, 0.0])
+            np.savez(path, joints=truth + off_x, truth=truth, ball=balls + 2.0 * off_x, true_ball=balls)
+    lines = write_page(tmp_path, 4, (64, 48)).splitlines()
+    start = lines.index("## Detection rate (Fig. 17a)")
+    assert "a detection rate of only 30%" in " ".join(lines[start:])
+    rows = [line for line in lines[start:] if line.startswith(("| 30% ", "| 70% "))]
+    assert [row.split(" | ")[1] for row in rows] == ["3.00", "2.00"]
+    assert [row.removesuffix(" |").split(" | ")[-1] for row in rows] == ["6.00 (6.0)", "4.00 (4.0)"]

@@ -82,7 +82,11 @@ class ViewHands:
         return replace(self, hands=tuple(kept))
 
     def rays(self, scene: Scene, model: int, name: str, reach: float = REACH) -> MarkedJoints:
-        """The viewing rays of one hand's joints, in all views together, without those that most others contradict."""
+        """The viewing rays of one hand's joints, in all views together, without those that most others contradict.
+
+        Where four views or more see a hand, a joint that a single one tells of does not pull from afar: one in ten is
+        false in the noise of [T16] §4.4.1, and took its finger 65 mm along (docs/studies/rendered_views.md).
+        """
         first = scene.landmark_slices[model].start
         ids, directions, moments = [np.zeros(0, np.int32)], [np.zeros((0, 3))], [np.zeros((0, 3))]
         every = np.full((21, len(self.cameras), 3), np.nan)
@@ -95,6 +99,8 @@ class ViewHands:
         if reach > REACH and len(origins) > ENOUGH and np.count_nonzero(supported.any(axis=1)) >= SUPPORTED:
             believed = supported
         is_known = np.isfinite(every).all(axis=2) & believed
+        if reach > REACH and len(origins) > ENOUGH:
+            is_known &= (np.count_nonzero(is_known, axis=1) > 1)[:, None]  # nothing bears a lone ray out
         for view, camera in enumerate(self.cameras):
             known = np.flatnonzero(is_known[:, view])
             own = every[known, view]

@@ -16,6 +16,8 @@ from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
 
+Array = npt.NDArray[np.float64]
+
 
 @dataclass(frozen=True)
 class Contours:
@@ -41,8 +43,32 @@ class Contours:
     jump: float = 0.008
     """Depth step of a contour within the model, m."""
 
+    models: tuple[int, ...] = ()
+    """Indices of the models whose contours are matched; all where none are given. The others hide what is behind."""
+
     def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToLine:
         """Match the contours of the model as it is drawn now."""
+        ids, barycentric, pixels, distances = self._match(posed)
+        near = distances <= self.max_distance
+        if self.models:
+            near &= np.isin(posed.scene.vertex_models[ids[:, 0]], self.models)
+        ids, barycentric, pixels, distances = ids[near], barycentric[near], pixels[near], distances[near]
+        kept = reject_by_bone(posed, ids, distances)
+        K, T = self.edges.K, self.edges.T_world_camera
+        rays = np.column_stack([(pixels[kept] - K[:2, 2]) / K[[0, 1], [0, 1]], np.ones(np.count_nonzero(kept))])
+        directions = rays @ T[:3, :3].T
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        moments = np.asarray(np.cross(np.broadcast_to(T[:3, 3], directions.shape), directions), dtype=np.float64)
+        weights = np.full(len(directions), self.weight)
+        return PointToLine(ids[kept], barycentric[kept], directions, moments, weights)
+
+    def measure(self, posed: PosedScene, model: int) -> Array:
+        """(N,) distances from each contour pixel of one model to the edge it would go to, m; infinite without one."""
+        ids, _, _, distances = self._match(posed)
+        return distances[posed.scene.vertex_models[ids[:, 0]] == model]
+
+    def _match(self, posed: PosedScene) -> tuple[npt.NDArray[np.int32], Array, Array, Array]:
+        """Ids (N, 3), shares (N, 3), edge (N, 2) px and distance (N,) m of every contour pixel, near or far."""
         edges = self.edges
         height, width = edges.nearest.shape[1:3]
         view = render_view(posed, edges.K, edges.T_world_camera, height, width)
@@ -56,17 +82,8 @@ class Contours:
             (view.face, view.inverse_depth, view.projected, posed.scene.arrays.faces, edges.nearest, edges.K[0, 0]),
             self.stride,
             self.jump,
-            self.max_distance,
         )
-        ids, barycentric = room.ids[:count], room.barycentric[:count]
-        kept = reject_by_bone(posed, ids, spans[:count])
-        K, T = edges.K, edges.T_world_camera
-        rays = np.column_stack([(pixels[:count][kept] - K[:2, 2]) / K[[0, 1], [0, 1]], np.ones(np.count_nonzero(kept))])
-        directions = rays @ T[:3, :3].T
-        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-        moments = np.asarray(np.cross(np.broadcast_to(T[:3, 3], directions.shape), directions), dtype=np.float64)
-        weights = np.full(len(directions), self.weight)
-        return PointToLine(ids[kept], barycentric[kept], directions, moments, weights)
+        return room.ids[:count], room.barycentric[:count], pixels[:count], spans[:count]
 
 
 def reject_by_bone(
@@ -82,18 +99,17 @@ def reject_by_bone(
 
 
 @njit(cache=True, nogil=True)
-def _find_into(ids, barycentric, pixels, distances, drawn, stride, jump, max_distance):
+def _find_into(ids, barycentric, pixels, distances, drawn, stride, jump):
     """Write the matches and return their number.
 
     Args:
         ids: (N, 3) out.
         barycentric: (N, 3) out.
         pixels: (N, 2) out, column and row of the edges.
-        distances: (N,) out, m.
+        distances: (N,) out, m; infinite, with an edge of no meaning, where there is none of the direction.
         drawn: face (H, W), inverse depth (H, W), projected (V, 3), faces (F, 3), nearest (D, H, W, 2), focal length px.
         stride: As in `Contours`.
         jump: As there.
-        max_distance: As there.
     """
     face, inverse_depth, projected, faces, nearest, focal = drawn
     height, width = face.shape
@@ -124,17 +140,18 @@ def _find_into(ids, barycentric, pixels, distances, drawn, stride, jump, max_dis
                         dy += 0.5 * (r - row)
             angle = np.arctan2(dy, dx) % np.pi
             direction = int(angle * (DIRECTIONS / np.pi)) % DIRECTIONS
+            length = np.hypot(dx, dy)
+            if length == 0.0:
+                continue
             # The surface ends half a pixel beyond the middle of its last one.
-            half = 0.5 / np.hypot(dx, dy)
+            half = 0.5 / length
             to_row, to_column = (
                 nearest[direction, row, column, 0] - half * dy,
                 nearest[direction, row, column, 1] - half * dx,
             )
-            if np.isnan(to_row):
-                continue
             apart = np.hypot(to_row - row, to_column - column) * z / focal
-            if apart > max_distance:
-                continue
+            if np.isnan(apart):
+                apart = np.inf
             corners = faces[f]
             barycentric_into(barycentric[count], corners, projected, column, row)
             for i in range(3):

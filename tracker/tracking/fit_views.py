@@ -22,16 +22,16 @@ from tracker.fitting.region import choose_stride, region_around
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import find_hand_pixels
 from tracker.fitting.view_hands import FOLLOWS, HOLDS, REACH, ViewHands
-from tracker.geometry import se3
 from tracker.landmarks import DetectedHand, HandDetector, default_hand_detector
 from tracker.model.scene import PosedScene
 from tracker.observation import observe
-from tracker.observation.image_edges import ImageEdges, find_image_edges
 from tracker.terms.contours import Contours
 from tracker.terms.joint_prior import Regularization
 from tracker.terms.marked_joints import MarkedJoints
 from tracker.terms.residual import Term
 from tracker.tracking.recovery import list_hands
+from tracker.tracking.view_edges import EDGE_MARGIN, find_edges
+from tracker.tracking.view_objects import find_object_contours
 
 Array = npt.NDArray[np.float64]
 
@@ -59,12 +59,6 @@ CONTOUR_ITERATIONS = 4
 BESIDE_JOINTS = 0.2
 """Share of their weights that the terms of depth have beside detected joints. Of 0.2, 1 and 10 this one follows
 `d405_take001` farthest (112, 105 and 93 of 126 frames, depth by stereo matching) and nearest to its marks."""
-
-EDGE_MARGIN = 0.015
-"""m around the scene in which edges are looked for."""
-
-NEAREST = 0.05
-"""m before a camera; what is nearer is not drawn."""
 
 MOST = 11
 """So many of the 21 joints are most of a hand."""
@@ -107,8 +101,8 @@ def fit_views(
 ) -> Fit:
     """Fit the scene from a pose (D,) to what the views saw.
 
-    First far joints alone count, then near ones with depth images and what the run's terms add, at last the contours in
-    colour images too.
+    First far joints alone count, then near ones with depth images, the contours of objects and what the run's terms
+    add, at last all contours in colour images.
     """
     scene, names = setup.scene, setup.names
     has_many = len(seen.cameras) >= MANY
@@ -119,7 +113,9 @@ def fit_views(
     started = perf_counter()
     near = compose_near(objective, setup, seen, views, scene.pose_at(first.pose))
     stages = {"preparing depth": perf_counter() - started}
-    second = fit_frame(scene, None, first.pose, pose, near, FitOptions(iterations=iterations))
+    objects = find_object_contours(setup, views, scene.pose_at(first.pose))
+    held = replace(near, terms=near.terms | objects)
+    second = fit_frame(scene, None, first.pose, pose, held, FitOptions(iterations=iterations))
     started = perf_counter()
     last = seen.add_to(near, scene, names, MANY_REACH) if has_many else near
     drawn = add_contours(last, scene.pose_at(second.pose), views, setup.options.threads)
@@ -137,14 +133,8 @@ def fit_views(
 
 def add_contours(objective: Objective, posed: PosedScene, views: Sequence[CameraFrame], threads: int = 1) -> Objective:
     """The objective with the edges of each image near the scene."""
-
-    def look(view: CameraFrame) -> ImageEdges | None:
-        points, margin = find_place(posed, view.camera)
-        color = view.frame.color
-        return None if color is None or not len(points) else find_image_edges(color, view.camera, points, margin)
-
-    found = zip(views, map_views(look, views, threads), strict=True)
-    own: dict[str, Term] = {f"contours_{view.camera.id}": Contours(edges) for view, edges in found if edges is not None}
+    edges = find_edges(posed.vertices, views, EDGE_MARGIN, threads)
+    own: dict[str, Term] = {f"contours_{camera_id}": Contours(seen) for camera_id, seen in edges.items()}
     return replace(objective, terms=objective.terms | own)
 
 
@@ -184,16 +174,6 @@ def leave_to_depth(objective: Objective, posed: PosedScene) -> Objective | None:
     terms = {name: term for name, term in objective.terms.items() if not isinstance(term, MarkedJoints)}
     whole = {name: DepthView.of(depth.observation, 1.0) for name, depth in depths.items()}
     return replace(objective, terms=terms | whole)
-
-
-def find_place(posed: PosedScene, camera: Camera) -> tuple[Array, float]:
-    """Where an ideal lens shows the vertices (N, 2) px that are well before a camera, and px of `EDGE_MARGIN` there."""
-    points = se3.transform(camera.T_camera_world, posed.vertices)
-    points = points[points[:, 2] > NEAREST]
-    if not len(points):
-        return np.zeros((0, 2)), 0.0
-    pixels = points[:, :2] / points[:, 2:] * camera.K[[0, 1], [0, 1]] + camera.K[:2, 2]
-    return pixels, EDGE_MARGIN * float(camera.K[0, 0] / np.median(points[:, 2]))
 
 
 def judge_hand(setup: TrackSetup, seen: ViewHands, posed: PosedScene, hand: int) -> tuple[bool, bool]:

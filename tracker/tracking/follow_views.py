@@ -15,6 +15,8 @@ from tracker.tracking.fit_views import fit_views, judge_hand, see_hands
 from tracker.tracking.frame_result import FrameResult
 from tracker.tracking.recovery import list_hands
 from tracker.tracking.state import TrackState
+from tracker.tracking.view_objects import judge_objects
+from tracker.tracking.watch_objects import stop_unseen
 
 
 def follow_views(
@@ -51,6 +53,7 @@ def follow_views(
             pose[where] = state.pose[where]
         earlier[where] = pose[where]
     statuses = tuple("lost" if hand in lost else "recovered" if hand in found else "ok" for hand in hands)
+    objects = judge_objects(part.setup, views, part.setup.scene.pose_at(fit.pose)) if part.kept else []
     result = FrameResult(
         state.next_frame,
         pose,
@@ -59,8 +62,10 @@ def follow_views(
         None,
         fit.costs,
         fit.stages | stages,
+        tuple(objects),
         hand_status=statuses,
         seen=seen.stack(setup.hand_names, setup.view_ids),
     )
+    earlier = stop_unseen(setup, pose, earlier, objects)
     after = TrackState(state.next_frame + 1, pose, earlier, is_lost=bool(left), lost_hands=tuple(sorted(left)))
     return after, result, seen

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.annotations import Annotations
+from tracker.capture.recorded_object import RecordedObject
 from tracker.capture.sequence import Sequence
 from tracker.detection import OwnDetector
 from tracker.errors import TrackingError
@@ -81,7 +82,9 @@ def start_tracking(
     given = models or {}
     hands = {name: given.get(name) or default_hand(name) for name in names}
     if view_ids:
-        setup = TrackSetup(names, tuple(hands.values()), camera_id, options, view_ids=view_ids)
+        objects = {item.name: _load_object(sequence, item, given, options) for item in sequence.objects}
+        everything = hands | objects
+        setup = TrackSetup(tuple(everything), tuple(everything.values()), camera_id, options, view_ids=view_ids)
         return start_views(sequence, setup, frames, progress or (lambda stage, share: None))
     marks = _find_marks(sequence, annotations, frames[0], camera_id)
     placed: dict[str, tuple[ArticulatedModel, Array]] = {}
@@ -97,8 +100,7 @@ def start_tracking(
         placed[name] = _begin(sightings, setup, list(placed.values()))
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
-        path = sequence.object_path(item.name)
-        model = given.get(item.name) or load_model(path, options.max_faces, item.metres_per_unit)
+        model = _load_object(sequence, item, given, options)
         others = [(other, pose) for other, pose in placed.values() if np.any(pose)]
         first_second = frames[: max(1, round(sequence.fps)) : max(1, round(sequence.fps / 6))]
         views = (setup.read(sequence, index) for index in first_second)
@@ -113,6 +115,14 @@ def start_tracking(
     if sequence.objects:
         setup = replace(setup, static_scene=see_static_scene(sequence, setup, frame, camera, pose))
     return setup, TrackState(frames[0], pose, pose, is_lost=is_lost)
+
+
+def _load_object(
+    sequence: Sequence, item: RecordedObject, given: dict[str, ArticulatedModel], options: TrackOptions
+) -> ArticulatedModel:
+    """The model that was given for an object, else the recording's own."""
+    path = sequence.object_path(item.name)
+    return given.get(item.name) or load_model(path, options.max_faces, item.metres_per_unit)
 
 
 def _find_marks(sequence: Sequence, annotations: Annotations | None, index: int, camera_id: str) -> dict[str, Array]:

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from tracker.capture.sequence import Sequence
 from tracker.fitting.calibration import CalibrationFrame, calibrate_shapes
 from tracker.fitting.setup import TrackSetup
 from tracker.model.articulated import ArticulatedModel
+from tracker.search.start_object import place_object
 from tracker.search.tools import make_tools
 from tracker.tracking.fit_views import compose_near
 from tracker.tracking.follow_views import follow_views
 from tracker.tracking.state import TrackState
 
+log = logging.getLogger(__name__)
+
+Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
 LOOKED_THROUGH = 60
@@ -30,14 +36,38 @@ def start_views(
 ) -> tuple[TrackSetup, TrackState]:
     """The setup with fitted shapes, and a state in which all hands are yet to be found, as after they were lost.
 
+    Objects start where the recording says that they were in its first frame; one of which it says nothing is left out.
+
     Where hardly any frame shows the hands in two views, or one view is all there is, they keep their default shapes.
     """
-    pose = np.zeros(setup.scene.num_dofs)
+    setup, pose = _place_objects(sequence, setup)
     nowhere = TrackState(frames[0], pose, pose, is_lost=True)
     has_shapes = any(model.hand and model.shape for model in setup.models)
     if not setup.options.calibrate or len(setup.view_ids) < 2 or not has_shapes:
         return setup, nowhere
     return replace(setup, models=_calibrate(sequence, setup, frames[:LOOKED_THROUGH], nowhere, progress)), nowhere
+
+
+def _place_objects(sequence: Sequence, setup: TrackSetup) -> tuple[TrackSetup, Array]:
+    """The setup with hands and those objects that somebody placed, and its pose (D,) with the hands nowhere."""
+    hands = [index for index, model in enumerate(setup.models) if model.hand]
+    names, models = [setup.names[index] for index in hands], [setup.models[index] for index in hands]
+    poses = [np.zeros(model.num_dofs) for model in models]
+    items = {item.name: item for item in sequence.objects}
+    for name, model in zip(setup.names, setup.models, strict=True):
+        if model.hand:
+            continue
+        if items[name].T_world_object is None:
+            log.warning(
+                "%s: left out. In colour views objects are not looked for; needed `initial.T_world_object` in "
+                "sequence.json.",
+                name,
+            )
+            continue
+        names.append(name)
+        models.append(model)
+        poses.append(place_object(model, items[name]))
+    return replace(setup, names=tuple(names), models=tuple(models)), np.concatenate(poses)
 
 
 def _calibrate(

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
+from tracker.fitting.contour_quality import ContourQuality
 from tracker.fitting.frame_fit import draw
 from tracker.fitting.object_quality import ObjectQuality, measure_object_quality
 from tracker.fitting.region import region_around
@@ -39,11 +40,11 @@ class WatchedObject:
 
     Attributes:
         status: One of OBJECT_STATUSES; the pose of a lost or hidden object is a guess.
-        quality: How well its pose explains the frame.
+        quality: How well its pose explains the frame: its depth image, or the edges of its colour views.
     """
 
     status: str
-    quality: ObjectQuality
+    quality: ObjectQuality | ContourQuality
 
 
 def watch_objects(

@@ -35,6 +35,17 @@ def test_a_joint_that_two_views_see_pulls_only_when_it_is_near(seen):
     assert len(far) == len(near) - 2
 
 
+def test_a_joint_that_a_single_view_of_four_sees_pulls_only_when_it_is_near_however_few_joints_are_sure(joints, rng):
+    seen = see(joints, [look_from(angle) for angle in ANGLES[:4]], rng)
+    for hands in seen.hands[:2]:
+        hands["right"].points[:] = np.nan  # no joint has three rays
+    seen.hands[2]["right"].points[8] = np.nan
+    near = seen.rays(SCENE, 0, "right").ids - SCENE.landmark_slices[0].start
+    far = seen.rays(SCENE, 0, "right", 4.0 * REACH).ids - SCENE.landmark_slices[0].start
+    assert np.bincount(near).tolist() == [2] * 8 + [1] + [2] * 12
+    assert np.bincount(far).tolist() == [2] * 8 + [0] + [2] * 12
+
+
 def test_of_three_views_all_rays_count(joints, rng):
     seen = see(joints, [look_from(angle) for angle in ANGLES[1:4]], rng)
     seen.hands[1]["right"].points[8] += 100.0

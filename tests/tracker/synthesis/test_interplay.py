@@ -29,6 +29,12 @@ def test_hands_meet_and_hardly_enter_each_other(posed):
         assert 1000.0 * measure_penetration(each) < 6.0
 
 
+def test_fingers_that_cross_at_the_moments_of_the_study_stay_out_of_each_other():
+    scene = Scene(tuple(HANDS.values()))
+    middle = find_poses(scene, "crossing", 144)[40:104:4]
+    assert max(1000.0 * measure_penetration(scene.pose_at(pose)) for pose in middle) < 1.5
+
+
 def test_the_hands_are_about_what_the_cameras_look_at(posed):
     joints = np.array([np.concatenate([each.landmarks(0), each.landmarks(1)]) for each in posed])
     assert np.linalg.norm(joints.mean(axis=(0, 1)) - CENTER) < 0.06

@@ -11,6 +11,8 @@ from tracker.fitting.finger_search import curl_fingers
 from tracker.fitting.frame_fit import FitOptions, fit_frame
 from tracker.fitting.objective import Objective
 from tracker.geometry import se3
+from tracker.model.ball import make_ball
+from tracker.model.scene import Scene
 from tracker.observation.image_edges import DIRECTIONS, ImageEdges, find_image_edges
 from tracker.rendering import render_view
 from tracker.terms.contours import Contours, _find_into, reject_by_bone
@@ -74,6 +76,23 @@ def test_a_contour_meets_no_edge_that_runs_across_it_or_lies_too_far(truth, edge
     assert Contours(turned, max_distance=near).find(posed).count < 0.3 * along
 
 
+def test_what_is_measured_of_a_model_tells_where_it_is_from_where_it_is_not(truth, edges):
+    away = truth.copy()
+    away[:3] += [0.010, 0.0, 0.0]
+    here, there = (
+        np.concatenate([Contours(seen).measure(SCENE.pose_at(pose), 0) for seen in edges]) for pose in (truth, away)
+    )
+    assert np.mean(here < 0.002) > 0.9 > 0.5 > np.mean(there < 0.002)
+
+
+def test_contours_of_chosen_models_pull_nothing_else(truth, edges):
+    two = Scene((HAND, make_ball(0.03)))
+    posed = two.pose_at(np.concatenate([truth, [0.0, 0.05, 0.0, 0.0, 0.0, 0.0]]))
+    matched = Contours(edges[0], max_distance=0.1, models=(1,)).find(posed)
+    assert matched.count > 10
+    assert set(two.vertex_models[matched.ids].ravel()) == {1}
+
+
 def test_matches_of_one_bone_beyond_twice_their_spread_are_left_out(truth):
     posed = SCENE.pose_at(truth)
     ids = np.zeros((20, 3), dtype=np.int32)
@@ -89,8 +108,8 @@ def test_the_kernel_finds_what_a_plain_loop_finds(truth, edges):
     ids, shares = np.zeros((count, 3), np.int32), np.zeros((count, 3))
     pixels, apart = np.zeros((count, 2)), np.zeros(count)
     drawn = (view.face, view.inverse_depth, view.projected, posed.scene.arrays.faces, seen.nearest, seen.K[0, 0])
-    found = _find_into(ids, shares, pixels, apart, drawn, 3, 0.008, 0.006)
-    plain = list(find_plainly(view, seen, 3, 0.008, 0.006))
+    found = _find_into(ids, shares, pixels, apart, drawn, 3, 0.008)
+    plain = list(find_plainly(view, seen, 3, 0.008))
     assert found == len(plain) > 50
     np.testing.assert_allclose(pixels[:found], [match[0] for match in plain], atol=1e-4)
     np.testing.assert_allclose(apart[:found], [match[1] for match in plain], atol=1e-6)
@@ -100,8 +119,24 @@ def test_the_kernel_finds_what_a_plain_loop_finds(truth, edges):
     np.testing.assert_allclose(here, [match[2] for match in plain], atol=1e-6)
 
 
-def find_plainly(view, seen, stride, jump, max_distance):
-    """Edge (column, row), distance, m, and contour pixel (column, row) of each match."""
+def test_a_contour_pixel_that_gaps_surround_evenly_has_no_direction_and_no_match():
+    inverse_depth = np.full((5, 5), 2.0)
+    inverse_depth[[2, 3, 1], [3, 1, 0]] = 0.0  # what these three pixels say of the middle one's direction cancels
+    face = np.full((5, 5), -1, np.int32)
+    face[2, 2] = 0
+    drawn = (
+        face,
+        inverse_depth,
+        np.zeros((3, 3)),
+        np.array([[0, 1, 2]], np.int32),
+        np.zeros((6, 5, 5, 2), np.float32),
+        1.0,
+    )
+    assert _find_into(np.zeros((1, 3), np.int32), np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1), drawn, 1, 0.008) == 0
+
+
+def find_plainly(view, seen, stride, jump):
+    """Edge (column, row), distance, m, and contour pixel (column, row) of each contour pixel."""
     depth = np.where(view.face >= 0, view.depth, np.inf)
     height, width = depth.shape
     for row in range(1, height - 1):
@@ -120,5 +155,4 @@ def find_plainly(view, seen, stride, jump, max_distance):
             place = int(np.arctan2(direction[1], direction[0]) % np.pi * DIRECTIONS / np.pi) % DIRECTIONS
             to_column, to_row = seen.nearest[place, row, column][::-1] - 0.5 * direction / np.linalg.norm(direction)
             apart = np.hypot(to_row - row, to_column - column) * depth[row, column] / seen.K[0, 0]
-            if apart <= max_distance:
-                yield (to_column, to_row), apart, (column, row)
+            yield (to_column, to_row), np.inf if np.isnan(apart) else apart, (column, row)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,6 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.errors import TrackingError
 from tracker.model.articulated import ArticulatedModel
-from tracker.model.object_scale import with_scale
 from tracker.observation import Preprocessing
 from tracker.search.find_object import ObjectSearch
 from tracker.search.look_for_object import look_for_object
@@ -37,6 +36,20 @@ class ScaleView:
     frame: Frame
     camera: Camera
     others: list[tuple[ArticulatedModel, Array]]
+
+
+def with_scale(model: ArticulatedModel, scale: float) -> ArticulatedModel:
+    """The model with all its lengths times `scale`, about the origin of its file's coordinates."""
+    assert model.hand is None, "hands have a shape, not a scale"
+    assert scale > 0.0
+    Ts = model.skeleton.Ts_model_bone.copy()
+    Ts[:, :3, 3] *= scale
+    return replace(
+        model,
+        vertices=model.vertices * scale,
+        skeleton=replace(model.skeleton, Ts_model_bone=Ts),
+        provenance={**model.provenance, "scale": f"{scale:.4g}"},
+    )
 
 
 def find_scale(

@@ -13,8 +13,7 @@ from tracker.capture.frame import Frame
 from tracker.errors import TrackingError
 from tracker.model.articulated import ArticulatedModel
 from tracker.observation import Preprocessing
-from tracker.search.find_object import ObjectSearch
-from tracker.search.look_for_object import look_for_object
+from tracker.search.find_object import ObjectSearch, find_object
 
 Array = npt.NDArray[np.float64]
 
@@ -73,12 +72,12 @@ def find_scale(
     assert len(scales) >= 3 and views
     scores = np.zeros((len(views), len(scales)))
     for row, view in zip(scores, views, strict=True):
-        place = look_for_object(model, view.frame, view.camera, how, view.others)
+        place = find_object(model, view.frame, view.camera, how, view.others)
         if place is None:
             continue
         for column, scale in enumerate(scales):
             sized = with_scale(model, float(scale))
-            found = look_for_object(sized, view.frame, view.camera, how, view.others, place.pose, NEARBY)
+            found = find_object(sized, view.frame, view.camera, how, view.others, place.pose, NEARBY)
             row[column] = 0.0 if found is None else found.quality.score
     scores = scores.mean(axis=0)
     best = int(np.argmax(scores))

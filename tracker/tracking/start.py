@@ -17,7 +17,7 @@ from tracker.fitting.frame_fit import FitOptions, draw, fit_frame
 from tracker.fitting.measure_quality import measure_quality
 from tracker.fitting.objective import Objective
 from tracker.fitting.options import TrackOptions
-from tracker.fitting.region import choose_stride, region_around, whole_image
+from tracker.fitting.region import choose_stride, depth_range, region_around, whole_image
 from tracker.fitting.setup import TrackSetup, choose_cameras
 from tracker.fitting.sighting import Sightings, find_sightings
 from tracker.fitting.tracking_faults import find_detector_faults
@@ -27,7 +27,6 @@ from tracker.model.files import load_model
 from tracker.model.scene import Scene
 from tracker.model.shape import with_shape
 from tracker.observation import observe
-from tracker.search.depth_range import depth_range
 from tracker.search.leave_out import leave_out
 from tracker.search.seen_hands import place_where_seen
 from tracker.search.start_annotated import start_hand, undistort_points, with_marks

@@ -16,9 +16,8 @@ from tracker.fitting.region import region_around
 from tracker.fitting.setup import TrackSetup
 from tracker.model.scene import Scene
 from tracker.observation import observe
-from tracker.search.find_object import ObjectSearch
-from tracker.search.forearm import is_in_forearm
-from tracker.search.look_for_object import look_for_object
+from tracker.search.find_object import ObjectSearch, find_object
+from tracker.search.leave_out import is_in_forearm
 
 Array = npt.NDArray[np.float64]
 
@@ -76,7 +75,7 @@ def watch_objects(
             search = ObjectSearch() if frame.index % FAR_EVERY == 0 else NEARBY
             others = [(setup.models[i], pose[slices[i]]) for i in (*hands, *objects) if i != index]
             last = pose[slices[index]]
-            found = look_for_object(setup.models[index], frame, camera, setup.preprocessing, others, last, search)
+            found = find_object(setup.models[index], frame, camera, setup.preprocessing, others, last, search)
             least = 0.0 if is_arm else quality.score + GAIN
             if found is not None and found.is_believable and found.merit > least:
                 pose[slices[index]] = found.pose

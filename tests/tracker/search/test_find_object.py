@@ -11,7 +11,7 @@ from tracker.errors import TrackingError
 from tracker.geometry import se3
 from tracker.model.scene import Scene
 from tracker.observation import Preprocessing
-from tracker.search.look_for_object import look_for_object
+from tracker.search.find_object import find_object
 from tracker.search.start_object import start_object
 from tracker.search.start_rotations import propose_rotations, sample_surface, spread_rotations
 
@@ -33,7 +33,7 @@ def test_a_mesh_is_found_beside_a_hand_within_two_millimetres(tmp_path, name, co
         true = place(model, rng.normal(size=3), PLACE + 0.01 * rng.normal(size=3))
         drawn = draw_frame(model, true, coloured)
         others = [(drawn.hand, drawn.hand_pose)]
-        found = look_for_object(model, drawn.frame, CAMERA, Preprocessing(), others)
+        found = find_object(model, drawn.frame, CAMERA, Preprocessing(), others)
         assert found is not None and found.is_believable
         assert surface_error(model, found.pose, true) < 2e-3  # m
 
@@ -42,7 +42,7 @@ def test_an_object_on_a_table_is_found(tmp_path):
     model = load_mesh(tmp_path, "bracket")
     true = place(model, np.array([0.3, 0.4, 0.2]))
     drawn = draw_frame(model, true, coloured=True, table=0.60)
-    found = look_for_object(model, drawn.frame, CAMERA, Preprocessing(), [(drawn.hand, drawn.hand_pose)])
+    found = find_object(model, drawn.frame, CAMERA, Preprocessing(), [(drawn.hand, drawn.hand_pose)])
     assert found is not None and found.is_believable
     assert surface_error(model, found.pose, true) < 2e-3  # m
 

@@ -34,7 +34,7 @@ from tracker.physics import find_support
 from tracker.rendering import View, render_view
 from tracker.tracking.as_written import compose_objective
 from tracker.tracking.fit_views import compose_near, see_hands
-from tracker.tracking.hold import HoldOptions, with_contacts
+from tracker.tracking.hold import with_contacts
 
 Array = npt.NDArray[np.float64]
 
@@ -132,7 +132,7 @@ class FrameView:
         if setup.options.is_as_written:
             objective = compose_objective(setup, tools, self._seen)
         elif tools.world is not None:
-            support = find_support(tools.world, self._posed, HoldOptions().support)
+            support = find_support(tools.world, self._posed)
             objective = objective if support.is_stable else with_contacts(objective, support)
         found = find_residuals(self._posed, self._seen, objective)
         return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}

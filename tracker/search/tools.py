@@ -54,9 +54,8 @@ def make_tools(setup: TrackSetup, T_world_camera: npt.NDArray[np.float64]) -> It
     terms = {} if setup.view_ids else dict(Objective().terms)
     if "C" in letters:
         terms["collision"] = Collision()
-    has_object = any(not model.hand for model in setup.models)
     detector = setup.fingertip_detector if "S" in letters and not setup.view_ids else None
-    if "P" not in letters or not has_object:
+    if "P" not in letters or not setup.objects:
         yield Tools(Objective(terms=terms), detector, None)
         return
     with setup.make_world(T_world_camera) as world:

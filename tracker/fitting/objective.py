@@ -99,17 +99,11 @@ class Objective:
         costs = dict(costs)
         scene, dofs = posed.scene, posed.scene.angle_dofs
         angles = posed.pose[dofs]
+        anatomy = self.anatomy.linearize(angles, scene.lower[dofs], scene.upper[dofs])
+        nearness = self.regularization.linearize(angles, previous_pose[dofs])
         for name, weight, (cost, gradient, curvature) in (
-            (
-                "anatomy",
-                self.anatomy.weight,
-                self.anatomy.linearize(angles, scene.lower[dofs], scene.upper[dofs]),
-            ),
-            (
-                "regularization",
-                self.regularization.weight,
-                self.regularization.linearize(angles, previous_pose[dofs]),
-            ),
+            ("anatomy", self.anatomy.weight, anatomy),
+            ("regularization", self.regularization.weight, nearness),
         ):
             scale = weight * max(equations.count, 1)
             costs[name] = scale * float(cost)

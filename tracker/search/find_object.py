@@ -202,5 +202,4 @@ def _share_in_sight(view: View, camera: Camera) -> float:
 
 def _best(found: list[FoundObject], count: int) -> list[FoundObject]:
     """Those with the highest merit; the earlier of equals first."""
-    order = np.argsort([-one.merit for one in found], kind="stable")
-    return [found[i] for i in order[:count]]
+    return sorted(found, key=lambda one: -one.merit)[:count]

@@ -9,7 +9,6 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
-from tracker.geometry import se3
 from tracker.model.joints import HAND_JOINTS
 from tracker.model.scene import Scene
 from tracker.rendering import render_view
@@ -50,9 +49,7 @@ def leave_out_forearms(frame: Frame, camera: Camera, hands: list[Array]) -> Fram
     if frame.depth is None or not hands:
         return frame
     rows, columns = np.nonzero(frame.depth)
-    z = frame.depth[rows, columns].astype(np.float64)
-    x, y = (columns - camera.K[0, 2]) / camera.K[0, 0] * z, (rows - camera.K[1, 2]) / camera.K[1, 1] * z
-    points = se3.transform(camera.T_world_camera, np.stack([x, y, z], axis=1))
+    points = camera.lift(np.stack([columns, rows], axis=1), frame.depth[rows, columns].astype(np.float64))
     depth = frame.depth.copy()
     for joints in hands:
         is_arm = _depth_in_cone(points, joints) < 1.0

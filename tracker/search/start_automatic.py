@@ -180,8 +180,7 @@ class _Judge:
 
     def rank(self, poses: list[tuple[Observation, Array]]) -> list[tuple[Observation, Array]]:
         """Poses, each with what it is to be compared with, by falling merit; the earlier of equals first."""
-        merits = np.array([self.merit(seen, pose) for seen, pose in poses])
-        return [poses[i] for i in np.argsort(-merits, kind="stable")]
+        return sorted(poses, key=lambda one: -self.merit(*one))
 
 
 def propose_poses(scene: Scene, candidate: PalmCandidate, camera: Camera, search: Search) -> list[Array]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -55,8 +55,6 @@ def make_tools(setup: TrackSetup, T_world_camera: npt.NDArray[np.float64]) -> It
     if "C" in letters:
         terms["collision"] = Collision()
     detector = setup.fingertip_detector if "S" in letters and not setup.view_ids else None
-    if "P" not in letters or not setup.objects:
-        yield Tools(Objective(terms=terms), detector, None)
-        return
-    with setup.make_world(T_world_camera) as world:
+    has_physics = "P" in letters and bool(setup.objects)
+    with setup.make_world(T_world_camera) if has_physics else nullcontext() as world:
         yield Tools(Objective(terms=terms), detector, world)

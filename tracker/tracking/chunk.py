@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Sequence as Several
 from dataclasses import MISSING, dataclass, field, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from tracker.fitting.quality import Quality
 from tracker.tracking.arrays_file import load_arrays, save_arrays
 from tracker.tracking.frame_result import STATUSES, FrameResult
 from tracker.tracking.watch_objects import OBJECT_STATUSES
@@ -67,25 +70,33 @@ class TrackChunk:
         assert results, "a chunk has at least one frame"
         cost_names = sorted({name for result in results for costs in result.costs for name in costs})
         stage_names = sorted({name for result in results for name in result.stages})
-        qualities = [result.quality for result in results]
-        nan = float("nan")
+
+        def column(read: Callable[[FrameResult], Any], dtype: npt.DTypeLike = np.float64) -> np.ndarray:
+            return np.array([read(result) for result in results], dtype=dtype)
+
+        def table(read: Callable[[FrameResult], Any], dtype: npt.DTypeLike = np.int8) -> np.ndarray:
+            return column(read, dtype).reshape(len(results), -1)  # also where a frame has no columns
+
+        def judge(read: Callable[[Quality], float]) -> Array:
+            return column(lambda result: read(result.quality) if result.quality else np.nan)
+
         return cls(
-            frame=np.array([result.frame for result in results], dtype=np.int64),
-            pose=np.stack([result.pose for result in results]),
-            status=np.array([STATUSES.index(result.status) for result in results], dtype=np.int8),
-            seconds=np.array([result.seconds for result in results]),
-            depth_residual_mm=np.array([1000.0 * q.depth_residual if q else nan for q in qualities]),
-            silhouette_iou=np.array([q.silhouette_iou if q else nan for q in qualities]),
-            score=np.array([q.score if q else nan for q in qualities]),
-            iterations=np.array([len(result.costs) for result in results], dtype=np.int64),
+            frame=column(lambda result: result.frame, np.int64),
+            pose=column(lambda result: result.pose),
+            status=column(lambda result: STATUSES.index(result.status), np.int8),
+            seconds=column(lambda result: result.seconds),
+            depth_residual_mm=judge(lambda quality: 1000.0 * quality.depth_residual),
+            silhouette_iou=judge(lambda quality: quality.silhouette_iou),
+            score=judge(lambda quality: quality.score),
+            iterations=column(lambda result: len(result.costs), np.int64),
             cost_names=np.array(cost_names, dtype=np.str_),
             costs=_tabulate([result.costs[-1:] for result in results], cost_names, 0.0)[:, 0],
             stage_names=np.array(stage_names, dtype=np.str_),
             stages=_tabulate([(result.stages,) for result in results], stage_names, 0.0)[:, 0],
-            iteration_costs=_tabulate([result.costs for result in results], cost_names, nan).astype(np.float32),
-            object_status=_rows([[OBJECT_STATUSES.index(o.status) for o in result.objects] for result in results]),
-            hand_status=_rows([[STATUSES.index(status) for status in result.hand_status] for result in results]),
-            object_score=_rows([[one.quality.score for one in result.objects] for result in results], np.float64),
+            iteration_costs=_tabulate([result.costs for result in results], cost_names, np.nan).astype(np.float32),
+            object_status=table(lambda result: [OBJECT_STATUSES.index(one.status) for one in result.objects]),
+            hand_status=table(lambda result: [STATUSES.index(status) for status in result.hand_status]),
+            object_score=table(lambda result: [one.quality.score for one in result.objects], np.float64),
             seen=np.stack([result.seen for result in results]),
         )
 
@@ -120,11 +131,6 @@ class TrackChunk:
         }
         nothing["iteration_costs"] = np.zeros((frames, 0, len(arrays["cost_names"])), dtype=np.float32)
         return cls(**{**nothing, **arrays})
-
-
-def _rows(rows: list[list], dtype: npt.DTypeLike = np.int8) -> np.ndarray:
-    """(T, N), also where N is 0."""
-    return np.array(rows, dtype=dtype).reshape(len(rows), -1)
 
 
 def _tabulate(frames: Several[Several[dict[str, float]]], names: list[str], fill: float) -> Array:

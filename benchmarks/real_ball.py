@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 import trimesh
 
+from benchmarks.object_scale import ScaleView, find_scale
 from tracker.capture.recorded_object import RecordedObject
 from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
 from tracker.fitting.frame_fit import draw
@@ -20,7 +21,6 @@ from tracker.fitting.region import region_around
 from tracker.model.files import load_model
 from tracker.observation import observe
 from tracker.rendering import render_view
-from tracker.search.find_scale import ScaleView, find_scale
 from tracker.tracking.track import Track
 from tracker.tracking.watch_objects import OBJECT_STATUSES
 

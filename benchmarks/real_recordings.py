@@ -21,10 +21,9 @@ from tracker.capture.import_run import run_import
 from tracker.capture.sequence import Sequence, load_sequence
 from tracker.evaluation import measure_depth_distances
 from tracker.fitting.options import TrackOptions
-from tracker.fitting.region import whole_image
+from tracker.fitting.region import depth_range, whole_image
 from tracker.inspection.frame_view import render_overlay
 from tracker.observation import HAND, OTHER, observe
-from tracker.search.depth_range import depth_range
 from tracker.tracking.follow import track_frames
 from tracker.tracking.start import start_tracking
 from tracker.tracking.track import Track, join_chunks

@@ -90,6 +90,11 @@ class Camera:
         rays[~meets] = np.nan
         return rays
 
+    def lift(self, pixels: npt.NDArray[np.number], depths: Array) -> Array:
+        """Points (N, 3) world, m, seen at (N, 2) px and at depths (N,), m along the camera's axis."""
+        R, t = self.T_world_camera[:3, :3], self.T_world_camera[:3, 3]
+        return (self.unproject(pixels.astype(np.float64)) * depths[:, None]) @ R.T + t
+
     def can_see(self, points_world: Array) -> npt.NDArray[np.bool_]:
         """Whether (N, 3) world, m, are in the image (N,): the pixel lies in it, and its ray leads back to the point."""
         pixels = self.project(points_world)

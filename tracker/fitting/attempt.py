@@ -173,13 +173,12 @@ def _bend_fingers(setup: TrackSetup, seen: Observation, pose: Array) -> Array:
     """The pose with every finger in turn at the best of a few bends."""
     scene = setup.scene
     thin = seen.thin(max(1, round((seen.hand_count / SCORED_PIXELS) ** 0.5)))
-    for index, (model, where) in enumerate(zip(setup.models, scene.pose_slices, strict=True)):
-        if model.hand is not None:
+    for hand in setup.hands:
 
-            def score(trial: Array, index: int = index) -> float:
-                return measure_quality(draw(scene.pose_at(trial), thin), thin, index).score
+        def score(trial: Array, hand: int = hand) -> float:
+            return measure_quality(draw(scene.pose_at(trial), thin), thin, hand).score
 
-            pose = search_fingers(pose, where.start, model, score)
+        pose = search_fingers(pose, scene.pose_slices[hand].start, setup.models[hand], score)
     return pose
 
 
@@ -195,11 +194,10 @@ def attempt_fit(
     """Fit a scene from a pose (D,), and judge each hand and each object; hands also by where the detector saw them."""
     fit = fit_frame(setup.scene, seen, start, previous, objective, options)
     view = draw(setup.scene.pose_at(fit.pose), seen)
-    hands = [index for index, model in enumerate(setup.models) if model.hand]
-    objects = {i: measure_object_quality(view, seen, i) for i in range(len(setup.models)) if i not in hands}
-    qualities = {index: measure_quality(view, seen, index) for index in hands}
+    objects = {index: measure_object_quality(view, seen, index) for index in setup.objects}
+    qualities = {index: measure_quality(view, seen, index) for index in setup.hands}
     if sightings is not None:
-        for index in hands:
+        for index in setup.hands:
             if setup.names[index] in sightings.hands:
                 joints = sightings.camera.project(view.posed.landmarks(index))
                 sighting = sightings.hands[setup.names[index]]

@@ -125,11 +125,7 @@ def calibrate_shapes(
     current = scene
     for turn in range(options.rounds):
         current = _shaped(scene, own, directions, values)
-        refit = FitOptions(iterations=options.iterations)
-        poses = [
-            fit_frame(current, frame.observation, pose, pose, frame.objective, refit).pose
-            for frame, pose in zip(frames, poses, strict=True)
-        ]
+        poses = _refit(current, frames, poses, options.iterations)
         equations = [
             reduce_equations(
                 current,
@@ -152,16 +148,19 @@ def calibrate_shapes(
         if progress:
             progress((turn + 1) / options.rounds)
     current = _shaped(scene, own, directions, values)
-    final = FitOptions(iterations=4 * options.iterations)
-    poses = [
-        fit_frame(current, frame.observation, pose, pose, frame.objective, final).pose
-        for frame, pose in zip(frames, poses, strict=True)
-    ]
+    poses = _refit(current, frames, poses, 4 * options.iterations)
     found = [
         dict(zip(() if part is None else part.names, values[where].tolist(), strict=True))
         for part, where in zip(own, directions.slices, strict=True)
     ]
     return Calibrated(current.models, tuple(found), poses)
+
+
+def _refit(scene: Scene, frames: list[CalibrationFrame], poses: list[Array], iterations: int) -> list[Array]:
+    """The poses (D,) after some iterations in their frames."""
+    options = FitOptions(iterations)
+    pairs = zip(frames, poses, strict=True)
+    return [fit_frame(scene, one.observation, pose, pose, one.objective, options).pose for one, pose in pairs]
 
 
 def _directions(model: ArticulatedModel, is_marked: bool) -> HandDirections | None:

@@ -130,6 +130,12 @@ def fit_frame(
     return Fit(pose, tuple(history), stages)
 
 
+def fit_from_afar(scene: Scene, observation: Observation, pose: Array, objective: Objective, iterations: int) -> Array:
+    """The pose (D,) after damped iterations in small steps from one that is far off."""
+    options = FitOptions(iterations, damping=3e-2, max_turn=0.25, max_shift=0.02)
+    return fit_frame(scene, observation, pose, pose, objective, options).pose
+
+
 def _gather(
     posed: PosedScene, context: FrameContext | None, terms: dict[str, Term], stages: dict[str, float], threads: int
 ) -> tuple[NormalEquations, dict[str, float]]:

@@ -44,6 +44,19 @@ class Objective:
     regularization: Regularization = field(default_factory=Regularization)
     bending: Bending = field(default_factory=Bending)
 
+    @classmethod
+    def wide(cls, reach: float, stiffness: float) -> Objective:
+        """With matches as far as `reach`, m, for poses that are far off; `stiffness` weighs the regularization."""
+        return cls(
+            {
+                "model_to_data": ModelToData(max_distance=reach, max_angle=60.0),
+                "data_to_surface": DataToSurface(max_distance=reach, stride=2),
+                "data_to_model": DataToModel(max_pixels=6),
+                "silhouette": Silhouette(weight=0.5, stride=1),
+            },
+            regularization=Regularization(stiffness),
+        )
+
     def coarse(self) -> Objective:
         """The same with fewer matches where terms can do with fewer, for iterations that only have to come near."""
         return replace(self, terms=thin_terms(self.terms))
@@ -86,17 +99,11 @@ class Objective:
         costs = dict(costs)
         scene, dofs = posed.scene, posed.scene.angle_dofs
         angles = posed.pose[dofs]
+        anatomy = self.anatomy.linearize(angles, scene.lower[dofs], scene.upper[dofs])
+        nearness = self.regularization.linearize(angles, previous_pose[dofs])
         for name, weight, (cost, gradient, curvature) in (
-            (
-                "anatomy",
-                self.anatomy.weight,
-                self.anatomy.linearize(angles, scene.lower[dofs], scene.upper[dofs]),
-            ),
-            (
-                "regularization",
-                self.regularization.weight,
-                self.regularization.linearize(angles, previous_pose[dofs]),
-            ),
+            ("anatomy", self.anatomy.weight, anatomy),
+            ("regularization", self.regularization.weight, nearness),
         ):
             scale = weight * max(equations.count, 1)
             costs[name] = scale * float(cost)

@@ -8,10 +8,6 @@ from typing import Any
 from tracker.errors import TrackingError
 from tracker.model.max_faces import MAX_FACES
 
-TERMS = ("LO", "LO+C", "LO+S", "LO+SC", "LO+P", "LO+CP", "LO+SP", "LO+SCP")
-"""Sets of terms that can be asked for, in the paper's letters: C collision, S salient points, P physics."""
-
-
 TERM_LABELS = {
     "LO": "depth",
     "LO+C": "depth, collision",
@@ -22,7 +18,9 @@ TERM_LABELS = {
     "LO+SP": "depth, fingertips, physics",
     "LO+SCP": "depth, fingertips, collision, physics",
 }
-"""What the sets are made of, for people."""
+"""Sets of terms that can be asked for, in the paper's letters, and what they are made of, for people."""
+
+TERMS = tuple(TERM_LABELS)
 
 METHODS = ("handloom", "t16")
 """Our tracker, or Algorithm 1 of [T16] with no term and no step beyond it (docs/objective.md)."""
@@ -146,16 +144,14 @@ class TrackOptions:
     )
 
     def __post_init__(self) -> None:
-        if self.terms not in TERMS:
-            raise TrackingError(f"terms is {self.terms!r}; needed one of {', '.join(TERMS)}.")
-        if self.method not in METHODS:
-            raise TrackingError(f"method is {self.method!r}; needed one of {', '.join(METHODS)}.")
-        if self.static_scene not in STATIC_SCENES:
-            raise TrackingError(f"static_scene is {self.static_scene!r}; needed one of {', '.join(STATIC_SCENES)}.")
         for option in fields(self):
+            value = getattr(self, option.name)
+            choices = option.metadata.get("choices", (value,))
+            if value not in choices:
+                raise TrackingError(f"{option.name} is {value!r}; needed one of {', '.join(choices)}.")
             if "low" not in option.metadata:
                 continue
-            value, low, high = getattr(self, option.name), option.metadata["low"], option.metadata["high"]
+            low, high = option.metadata["low"], option.metadata["high"]
             if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
                 raise TrackingError(f"{option.name} is {value!r}; needed a number from {low} to {high}.")
         if 0 <= self.last_frame < self.first_frame:

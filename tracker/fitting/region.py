@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
+from tracker.capture.frame import Frame
 from tracker.geometry import se3
 from tracker.observation import Region
 
@@ -98,6 +99,16 @@ def is_outgrown(region: Region, needed: Region, camera: Camera) -> bool:
 def choose_stride(region: Region, camera: Camera) -> int:
     """Of how many pixels one is enough to see a hand by in a region: cameras near by show more than a fit can use."""
     return max(1, round(FINENESS * float(camera.K[0, 0]) * 2.0 / (region.near + region.far)))
+
+
+def depth_range(frame: Frame) -> tuple[float, float]:
+    """Depths, m, between which hands are looked for in a frame of which nothing is known, [T16] §3.2.1.
+
+    It ends 0.6 m behind the nearest thing of some size.
+    """
+    assert frame.depth is not None
+    values = frame.depth[(frame.depth > 0.1) & (frame.depth < 3.0)]
+    return (0.1, float(np.partition(values, 200)[200]) + 0.6) if values.size >= 200 else (0.1, 3.0)
 
 
 def whole_image(camera: Camera, near: float, far: float) -> Region:

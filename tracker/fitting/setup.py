@@ -58,9 +58,19 @@ class TrackSetup:
     def scene(self) -> Scene:
         return Scene(self.models)
 
+    @cached_property
+    def hands(self) -> tuple[int, ...]:
+        """Indices of the hands among the models."""
+        return tuple(index for index, model in enumerate(self.models) if model.hand is not None)
+
+    @cached_property
+    def objects(self) -> tuple[int, ...]:
+        """Indices of the objects."""
+        return tuple(index for index, model in enumerate(self.models) if model.hand is None)
+
     @property
     def preprocessing(self) -> Preprocessing:
-        return Preprocessing(use_skin=self.options.use_skin, objects=any(not model.hand for model in self.models))
+        return Preprocessing(use_skin=self.options.use_skin, objects=bool(self.objects))
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -75,7 +85,7 @@ class TrackSetup:
 
     @property
     def hand_names(self) -> tuple[str, ...]:
-        return tuple(name for name, model in zip(self.names, self.models, strict=True) if model.hand)
+        return tuple(self.names[hand] for hand in self.hands)
 
     @property
     def hand_detector(self) -> HandDetector | None:
@@ -94,7 +104,7 @@ class TrackSetup:
 
     @property
     def object_names(self) -> tuple[str, ...]:
-        return tuple(name for name, model in zip(self.names, self.models, strict=True) if not model.hand)
+        return tuple(self.names[index] for index in self.objects)
 
     def make_world(self, T_world_camera: npt.NDArray[np.float64]) -> PhysicsWorld:
         """A physics world with the run's static scene; where it has none, things fall along +y of the camera (4, 4)."""
@@ -108,8 +118,7 @@ class TrackSetup:
     def project_hands(self, pose: npt.NDArray[np.float64], camera: Camera) -> dict[str, npt.NDArray[np.float64]]:
         """Name of each hand that is before a camera to its joints (21, 2) px at a pose (D,)."""
         posed = self.scene.pose_at(pose)
-        hands = [(name, place) for place, name in enumerate(self.names) if self.models[place].hand]
-        joints = {name: camera.project(posed.landmarks(place)) for name, place in hands}
+        joints = {self.names[hand]: camera.project(posed.landmarks(hand)) for hand in self.hands}
         return {name: points for name, points in joints.items() if np.all(np.isfinite(points))}
 
     def read_views(self, sequence: Sequence, index: int) -> list[CameraFrame]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -144,10 +145,7 @@ def find_sightings(
         return Sightings(frame, camera, {}, is_looked_at=False)
     turns = (0, 1 + frame.index % 3) if before else (0, 1, 2, 3)
     followed = [before[name] for name in names if name in before]
-
-    def has_size(hand: DetectedHand) -> bool:
-        return _has_size_of(hand, depth, camera)
-
+    has_size = partial(_has_size_of, depth=depth, camera=camera)
     hands = name_hands(detector.find(frame.color, len(names), followed, turns, has_size), names)
     is_led = not hands and len(names) == 1 and bool(expected)
     if is_led:

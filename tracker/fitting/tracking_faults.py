@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tracker.errors import TrackingError
 from tracker.fitting.options import TrackOptions
 
 MAX_VIEWS = 16
@@ -34,11 +35,10 @@ def find_tracking_faults(
         faults = []
     if not hands:
         faults.append("The recording does not say which hands it shows. Set its hands to right, left or both.")
-    last = frame_count - 1 if options.last_frame < 0 else options.last_frame
-    if options.first_frame > last or last >= frame_count:
-        faults.append(
-            f"Frames {options.first_frame} to {last} were asked for; the recording has 0 to {frame_count - 1}."
-        )
+    try:
+        options.frame_range(frame_count)
+    except TrackingError as error:
+        faults.append(str(error))
     return faults
 
 

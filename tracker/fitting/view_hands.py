@@ -87,31 +87,22 @@ class ViewHands:
         Where four views or more see a hand, a joint that a single one tells of does not pull from afar: one in ten is
         false in the noise of [T16] §4.4.1, and took its finger 65 mm along (docs/studies/rendered_views.md).
         """
-        first = scene.landmark_slices[model].start
-        ids, directions, moments = [np.zeros(0, np.int32)], [np.zeros((0, 3))], [np.zeros((0, 3))]
         every = np.full((21, len(self.cameras), 3), np.nan)
         for view, (camera, hands) in enumerate(zip(self.cameras, self.hands, strict=True)):
             if name in hands:
                 rays = camera.unproject(hands[name].points) @ camera.T_world_camera[:3, :3].T
                 every[:, view] = rays / np.linalg.norm(rays, axis=1, keepdims=True)
-        origins = np.array([camera.T_world_camera[:3, 3] for camera in self.cameras])
+        origins = np.array([camera.T_world_camera[:3, 3] for camera in self.cameras]).reshape(-1, 3)
         believed, supported = find_believed(origins, every)
         if reach > REACH and len(origins) > ENOUGH and np.count_nonzero(supported.any(axis=1)) >= SUPPORTED:
             believed = supported
         is_known = np.isfinite(every).all(axis=2) & believed
         if reach > REACH and len(origins) > ENOUGH:
             is_known &= (np.count_nonzero(is_known, axis=1) > 1)[:, None]  # nothing bears a lone ray out
-        for view, camera in enumerate(self.cameras):
-            known = np.flatnonzero(is_known[:, view])
-            own = every[known, view]
-            ids.append(np.asarray(first + known, dtype=np.int32))
-            directions.append(own)
-            origin = np.broadcast_to(camera.T_world_camera[:3, 3], own.shape)
-            moments.append(np.asarray(np.cross(origin, own), dtype=np.float64))
-        joined = np.concatenate(ids)
-        return MarkedJoints(
-            joined, np.concatenate(directions), np.concatenate(moments), np.ones(len(joined)), reach=reach
-        )
+        views, joints = np.nonzero(is_known.T)
+        own = every[joints, views]
+        ids = (scene.landmark_slices[model].start + joints).astype(np.int32)
+        return MarkedJoints(ids, own, np.cross(origins[views], own), np.ones(len(ids)), reach=reach)
 
     def add_to(
         self, objective: Objective, scene: Scene, names: tuple[str, ...], reach: float = REACH, weight: float = 1.0

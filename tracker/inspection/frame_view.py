@@ -19,7 +19,6 @@ from tracker.fitting.region import region_around
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import find_sightings
 from tracker.fitting.view_hands import ViewHands
-from tracker.geometry import se3
 from tracker.inspection.shown_cameras import ShownCamera, show_cameras
 from tracker.inspection.shown_collisions import ShownCollisions, show_collisions
 from tracker.inspection.shown_contacts import ShownContacts, show_contacts
@@ -27,6 +26,7 @@ from tracker.inspection.shown_detections import ShownDetection, show_detections
 from tracker.inspection.shown_unknown import ShownUnknown, show_unknown
 from tracker.inspection.surface_fit import measure_surface_fit
 from tracker.inspection.view_aids import ViewAids
+from tracker.model.articulated import ArticulatedModel
 from tracker.model.joints import HAND_EDGES
 from tracker.model.scene import PosedScene
 from tracker.observation import Observation, observe
@@ -34,7 +34,7 @@ from tracker.physics import find_support
 from tracker.rendering import View, render_view
 from tracker.tracking.as_written import compose_objective
 from tracker.tracking.fit_views import compose_near, see_hands
-from tracker.tracking.hold import HoldOptions, with_contacts
+from tracker.tracking.hold import with_contacts
 
 Array = npt.NDArray[np.float64]
 
@@ -108,7 +108,7 @@ class FrameView:
         return tuple(
             ModelView(
                 name,
-                COLORS.get(name if model.hand else "object", COLORS["object"]),
+                _find_color(name, model),
                 posed.vertices[setup.scene.vertex_slices[place]].astype(np.float32),
                 model.faces.astype(np.int32),
                 posed.landmarks(place).astype(np.float32),
@@ -122,19 +122,19 @@ class FrameView:
     @cached_property
     def correspondences(self) -> dict[str, npt.NDArray[np.float32]]:
         """Name of each term of the run to its (M, 2, 3) segments from model to data, world, m."""
-        tools, setup = self.aids.tools, self.aids.setup
+        tools, seen = self.aids.tools, self._seen
         if self._looked is not None:
-            found = find_residuals(self._posed, None, self._looked[0])
-            return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}
-        if self._seen is None:
+            seen, objective = None, self._looked[0]
+        elif seen is None:
             return {}
-        objective = tools.with_fingertips(self._seen)
-        if setup.options.is_as_written:
-            objective = compose_objective(setup, tools, self._seen)
-        elif tools.world is not None:
-            support = find_support(tools.world, self._posed, HoldOptions().support)
-            objective = objective if support.is_stable else with_contacts(objective, support)
-        found = find_residuals(self._posed, self._seen, objective)
+        elif self.aids.setup.options.is_as_written:
+            objective = compose_objective(self.aids.setup, tools, seen)
+        else:
+            objective = tools.with_fingertips(seen)
+            if tools.world is not None:
+                support = find_support(tools.world, self._posed)
+                objective = objective if support.is_stable else with_contacts(objective, support)
+        found = find_residuals(self._posed, seen, objective)
         return {name: residual.segments(self._posed).astype(np.float32) for name, residual in found.items()}
 
     @cached_property
@@ -149,7 +149,7 @@ class FrameView:
         """Fingertips found in the image, whether the run looked for them or not."""
         if self._seen is None or self._drawn is None:
             return ()
-        found = find_fingertips(self.aids.detector, self._seen)
+        found = find_fingertips(self.aids.setup.fingertip_detector, self._seen)
         return show_detections(self._posed, self._drawn, found, self.T_world_camera)
 
     @cached_property
@@ -160,7 +160,7 @@ class FrameView:
     @cached_property
     def contacts(self) -> ShownContacts:
         """Whether the object stays, and which finger parts could hold it."""
-        return show_contacts(self._posed, self.aids.world(self._posed))
+        return show_contacts(self._posed, self.aids.world)
 
     @cached_property
     def unknown(self) -> ShownUnknown:
@@ -200,13 +200,12 @@ class FrameView:
 
     @cached_property
     def _cloud(self) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:
-        depth, K = self._frame.depth, self._camera.K
+        depth = self._frame.depth
         if depth is None:
             return np.zeros((0, 3), dtype=np.float32), np.zeros((0, 3), dtype=np.uint8)
         rows, columns = np.nonzero(depth)
         depths = depth[rows, columns].astype(np.float64)
-        x, y = (columns - K[0, 2]) / K[0, 0] * depths, (rows - K[1, 2]) / K[1, 1] * depths
-        cloud = se3.transform(self.T_world_camera, np.stack([x, y, depths], axis=1))
+        cloud = self._camera.lift(np.stack([columns, rows], axis=1), depths)
         near = np.ones(len(cloud), dtype=bool)
         if np.any(self._pose):
             near = np.linalg.norm(cloud - self._posed.vertices.mean(axis=0), axis=1) < CLOUD_MARGIN
@@ -245,12 +244,7 @@ def render_overlay(
     view = render_view(posed, camera.K, camera.T_world_camera, camera.height, camera.width)
     drawn = view.face >= 0
     image = np.zeros((camera.height, camera.width, 4), dtype=np.uint8)
-    palette = np.array(
-        [
-            COLORS.get(n if m.hand else "object", COLORS["object"])
-            for n, m in zip(setup.names, setup.models, strict=True)
-        ]
-    )
+    palette = np.array([_find_color(*one) for one in zip(setup.names, setup.models, strict=True)])
     faces = view.face[drawn]
     towards = -(view.face_normals[faces] @ camera.T_world_camera[:3, 2])
     shade = 0.35 + 0.65 * np.clip(towards, 0.0, 1.0)
@@ -268,6 +262,10 @@ def render_unknown(
     if camera_id == setup.camera_id:
         image[describe_frame(sequence, setup, pose, index).unknown.mask] = (*UNKNOWN_COLOR, 165)
     return image
+
+
+def _find_color(name: str, model: ArticulatedModel) -> tuple[int, int, int]:
+    return COLORS[name if model.hand and name in COLORS else "object"]
 
 
 def _bone_edges(parents: npt.NDArray[np.int64]) -> list[tuple[int, int]]:

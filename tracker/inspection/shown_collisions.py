@@ -65,7 +65,8 @@ def show_collisions(posed: PosedScene, part_names: tuple[str, ...]) -> ShownColl
     crossings: dict[tuple[int, int], int] = defaultdict(int)
     deepest: dict[tuple[int, int], int] = {}
     for first, second in found.pairs.tolist():
-        crossings[_pair(groups[first], groups[second])] += 1
+        a, b = sorted((groups[first], groups[second]))
+        crossings[a, b] += 1
     depths = np.zeros(len(inside.ids), dtype=np.float32)
     for place, (vertex, receiver) in enumerate(zip(inside.ids, inside.receivers, strict=True)):
         own, other = int(parts.vertex_groups[vertex]), groups[receiver]
@@ -73,7 +74,7 @@ def show_collisions(posed: PosedScene, part_names: tuple[str, ...]) -> ShownColl
         start, stop = parts.model_starts[model], parts.model_starts[model + 1]
         may_meet = parts.vertices_may_meet[vertex]
         depths[place] = find_distance(fitted, may_meet, own, start, stop, posed.vertices[vertex])
-        key = _pair(own, other)
+        key = min(own, other), max(own, other)
         if key not in deepest or depths[place] > depths[deepest[key]]:
             deepest[key] = place
     vertices = posed.vertices[inside.ids].astype(np.float32)
@@ -90,7 +91,3 @@ def show_collisions(posed: PosedScene, part_names: tuple[str, ...]) -> ShownColl
         depths,
         tuple(sorted(pairs, key=lambda pair: (-pair.depth, -pair.crossings, pair.first, pair.second))),
     )
-
-
-def _pair(a: int, b: int) -> tuple[int, int]:
-    return (a, b) if a < b else (b, a)

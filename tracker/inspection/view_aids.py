@@ -8,15 +8,13 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from tracker.detection import Forest
 from tracker.fitting.setup import TrackSetup
-from tracker.model.scene import PosedScene
 from tracker.physics import PhysicsWorld
 from tracker.search.tools import Tools, make_tools
 
 
 class ViewAids:
-    """The run's own tools, and a detector and a physics world whether the run had them or not; close it in the end."""
+    """The run's own tools, and a physics world whether the run had one or not; close it in the end."""
 
     def __init__(self, setup: TrackSetup, T_world_camera: npt.NDArray[np.float64]) -> None:
         self.setup = setup
@@ -27,10 +25,6 @@ class ViewAids:
     def tools(self) -> Tools:
         """What the run itself had."""
         return self._stack.enter_context(make_tools(self.setup, self._T_world_camera))
-
-    @cached_property
-    def detector(self) -> Forest:
-        return self.setup.fingertip_detector
 
     @cached_property
     def part_names(self) -> tuple[str, ...]:
@@ -49,16 +43,11 @@ class ViewAids:
             names += own
         return tuple(names)
 
-    def world(self, posed: PosedScene) -> PhysicsWorld | None:
-        """A world with the scene's hands and objects; None where there is not at least one of each."""
-        models = self.setup.models
-        if all(model.hand for model in models) or not any(model.hand for model in models):
-            return None
-        assert posed.scene is self.setup.scene
-        return self._world
-
     @cached_property
-    def _world(self) -> PhysicsWorld:
+    def world(self) -> PhysicsWorld | None:
+        """A world with the scene's hands and objects; None where there is not at least one of each."""
+        if not self.setup.hands or not self.setup.objects:
+            return None
         return self._stack.enter_context(self.setup.make_world(self._T_world_camera))
 
     def close(self) -> None:

@@ -11,11 +11,10 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.fitting.attempt import Attempt, attempt_fit, look
 from tracker.fitting.frame_fit import FitOptions
-from tracker.fitting.region import whole_image
+from tracker.fitting.region import depth_range, whole_image
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import Sightings
 from tracker.observation import HAND, observe
-from tracker.search.depth_range import depth_range
 from tracker.search.leave_out import leave_out
 from tracker.search.part import Part
 from tracker.search.seen_hands import place_where_seen

@@ -9,22 +9,18 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
-from tracker.fitting.frame_fit import FitOptions, draw, fit_frame
+from tracker.fitting.frame_fit import draw, fit_from_afar
 from tracker.fitting.object_quality import ObjectQuality, measure_object_quality
 from tracker.fitting.objective import Objective
-from tracker.fitting.region import region_around, whole_image
+from tracker.fitting.region import depth_range, region_around, whole_image
 from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import Scene
 from tracker.observation import Observation, Preprocessing, observe
 from tracker.rendering import View
+from tracker.search.leave_out import leave_out, leave_out_forearms
 from tracker.search.object_candidates import find_object_candidates
 from tracker.search.start_rotations import propose_rotations, sample_surface, spread_rotations
-from tracker.terms.data_to_model import DataToModel
-from tracker.terms.data_to_surface import DataToSurface
-from tracker.terms.joint_prior import Regularization
-from tracker.terms.model_to_data import ModelToData
-from tracker.terms.silhouette import Silhouette
 
 Array = npt.NDArray[np.float64]
 
@@ -37,6 +33,10 @@ BEHIND = 0.005
 LEAST_SCORE = 0.45
 """So it is with a lower score: another thing of about the size reaches 0.4 to 0.7, the thing itself 0.9 in clean depth
 and 0.5 to 0.7 where the sensor is 6 mm off on it (docs/objects.md)."""
+
+
+STIFF = 2.0
+"""Weight of the regularization in a search: joints of the object stay as they are."""
 
 
 @dataclass(frozen=True)
@@ -87,42 +87,46 @@ class FoundObject:
 
 
 def find_object(
+    model: ArticulatedModel,
     frame: Frame,
     camera: Camera,
-    model: ArticulatedModel,
     how: Preprocessing,
-    near: float,
-    far: float,
-    hands: Array | None = None,
+    others: list[tuple[ArticulatedModel, Array]],
     last: Array | None = None,
     search: ObjectSearch | None = None,
 ) -> FoundObject | None:
-    """The pose of one object that explains the frame best, or None where there is nothing that could be one.
+    """The best pose of an object in a frame, believable or not; None where there is nothing that could be one.
 
-    It is drawn small at all places that may be no hand, in all rotations that look different, and compared with the
-    image; the best are fitted with wide correspondences, the best of those on the fine image.
+    What the other models explain is left out, and so are forearms, in sleeves or not; where colour tells hands from
+    other things the hands stay in. The object is drawn small at all places that may be no hand, in all rotations that
+    look different, and compared with the image; the best are fitted with wide correspondences, the best of those on the
+    fine image.
 
     Args:
-        frame: Undistorted frame with depth, without what other models explain (`leave_out`); where colour tells hands
-            from other things the hands may stay in.
-        camera: Its camera.
         model: The object.
+        frame: Undistorted, with depth.
+        camera: Its camera.
         how: Preprocessing.
-        near: Least depth, m.
-        far: Greatest depth, m.
-        hands: (H, 3) joints of hands, world, m: places near them are looked at first.
+        others: The other models of the scene that are placed, with their poses (D,); places near hands come first.
         last: (D,) pose in which it was seen last: places near it are looked at first, and its own rotation and angles
             are tried beside the others.
         search: How widely to search.
     """
-    search = search or ObjectSearch()
-    how = replace(how, objects=True)
+    search, how = search or ObjectSearch(), replace(how, objects=True)
+    depths = depth_range(frame)
+    hands = [Scene((other,)).pose_at(pose).landmarks(0) for other, pose in others if other.hand]
+    for other, pose in others:
+        if not (other.hand and frame.color is not None and how.use_skin):
+            frame = leave_out(frame, camera, Scene((other,)), pose, [0])
+    frame = leave_out_forearms(frame, camera, hands)
     scene = Scene((model,))
     stride = max(1, camera.width // search.width)
-    coarse = observe(frame, camera, whole_image(camera, near, far), how, stride)
-    hypotheses = _propose(scene, coarse, np.zeros((0, 3)) if hands is None else hands, last, search)
+    coarse = observe(frame, camera, whole_image(camera, *depths), how, stride)
+    hypotheses = _propose(scene, coarse, np.concatenate([np.zeros((0, 3)), *hands]), last, search)
     drawn = [_judge(scene, coarse, camera, pose) for pose in hypotheses]
-    rough = [_fit(scene, coarse, one.pose, _wide_objective(0.04), 10) for one in _best(drawn, search.rough)]
+    rough = [
+        fit_from_afar(scene, coarse, one.pose, Objective.wide(0.04, STIFF), 10) for one in _best(drawn, search.rough)
+    ]
     fitted = [_judge(scene, coarse, camera, pose) for pose in rough]
     found: list[FoundObject] = []
     for pose in (one.pose for one in _best(fitted, search.fine)):
@@ -130,8 +134,8 @@ def find_object(
         if region is None:
             continue
         fine = observe(frame, camera, region, how)
-        pose = _fit(scene, fine, pose, _wide_objective(0.02), 10)
-        pose = _fit(scene, fine, pose, Objective(), 10)
+        pose = fit_from_afar(scene, fine, pose, Objective.wide(0.02, STIFF), 10)
+        pose = fit_from_afar(scene, fine, pose, Objective(), 10)
         found.append(_judge(scene, fine, camera, pose))
     return _best(found, 1)[0] if found else None
 
@@ -198,23 +202,4 @@ def _share_in_sight(view: View, camera: Camera) -> float:
 
 def _best(found: list[FoundObject], count: int) -> list[FoundObject]:
     """Those with the highest merit; the earlier of equals first."""
-    order = np.argsort([-one.merit for one in found], kind="stable")
-    return [found[i] for i in order[:count]]
-
-
-def _wide_objective(reach: float) -> Objective:
-    """The objective with matches as far as `reach`, m, for poses that are far off; joints of the object stay."""
-    return Objective(
-        terms={
-            "model_to_data": ModelToData(max_distance=reach, max_angle=60.0),
-            "data_to_surface": DataToSurface(max_distance=reach, stride=2),
-            "data_to_model": DataToModel(max_pixels=6),
-            "silhouette": Silhouette(weight=0.5, stride=1),
-        },
-        regularization=Regularization(2.0),
-    )
-
-
-def _fit(scene: Scene, seen: Observation, pose: Array, objective: Objective, iterations: int) -> Array:
-    options = FitOptions(iterations=iterations, damping=3e-2, max_turn=0.25, max_shift=0.02)
-    return fit_frame(scene, seen, pose, pose, objective, options).pose
+    return sorted(found, key=lambda one: -one.merit)[:count]

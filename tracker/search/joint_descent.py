@@ -7,14 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tracker.fitting.frame_fit import FitOptions, fit_frame
 from tracker.fitting.objective import Objective
 from tracker.geometry import se3
 from tracker.model.scene import Scene
-from tracker.solver.damped_step import compute_damped_step
 from tracker.terms.joint_prior import AnatomicalLimits, Regularization
 from tracker.terms.marked_joints import MarkedJoints
 from tracker.terms.point_point import PointToPoint
-from tracker.terms.residual import Residual
 
 Array = npt.NDArray[np.float64]
 
@@ -51,21 +50,11 @@ class JointDescent:
 
     def descend(self, start: Array, rest: Array, iterations: int) -> tuple[Array, float]:
         """The pose (D,) after some steps from a start (D,), and its cost."""
-        objective = Objective(terms={}, anatomy=AnatomicalLimits(0.05), regularization=Regularization(2.0))
-        seen = self.is_placed
-        corners = np.repeat(np.arange(21, dtype=np.int32)[seen, None] + self.scene.landmark_slices[0].start, 3, axis=1)
-        shares = np.tile([1.0, 0.0, 0.0], (len(corners), 1))
-        depths = PointToPoint(corners, shares, self.places[seen], np.full(len(corners), 0.1))
-        limits = np.full(self.scene.num_dofs, 0.3)
-        limits[:3] = 0.05
-        pose, cost = start, np.inf
-        for _ in range(iterations):
-            posed = self.scene.pose_at(pose)
-            residuals: dict[str, Residual] = {"joints": self.joints.find(posed), "depths": depths}
-            JtJ, Jtr, costs = objective.linearize(posed, residuals, rest)
-            cost = sum(costs.values())
-            pose = self.scene.retract(pose, compute_damped_step(JtJ, Jtr, 1e-3, limits))
-        return pose, cost
+        landmarks = self.scene.landmark_slices[0].start + np.flatnonzero(self.is_placed)
+        depths = PointToPoint.of_vertices(landmarks, self.places[self.is_placed], 0.1)
+        objective = Objective({"joints": self.joints, "depths": depths}, AnatomicalLimits(0.05), Regularization(2.0))
+        fit = fit_frame(self.scene, None, start, rest, objective, FitOptions(iterations, max_turn=0.3))
+        return fit.pose, sum(fit.costs[-1].values()) if fit.costs else np.inf
 
 
 def align(source: Array, target: Array) -> Array:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from tracker.observation import HAND, Observation
 
@@ -30,12 +29,10 @@ class PalmCandidate:
     Attributes:
         point: (3,) on the surface, world, m.
         normal: (3,) mean surface normal there, unit, towards the camera, world.
-        radius: Of the largest disc there, m.
     """
 
     point: Array
     normal: Array
-    radius: float
 
 
 def find_palm_candidates(observation: Observation, count: int) -> list[PalmCandidate]:
@@ -45,8 +42,11 @@ def find_palm_candidates(observation: Observation, count: int) -> list[PalmCandi
     forearms and faces, so nearness decides the order and a fit decides the rest.
     """
     mask = ((observation.labels & HAND) > 0).astype(np.uint8)
-    inner = mask.copy()
-    _cut_steps_into(inner, observation.depth, MAX_STEP)
+    depth = observation.depth
+    nearest = cv2.erode(
+        np.where(depth > 0.0, depth, np.float32(100.0)), cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+    )
+    inner = np.where(depth - nearest > MAX_STEP, 0, mask)
     distance = cv2.distanceTransform(np.pad(inner, 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
     radius = distance * observation.depth / observation.K[0, 0]
     peaks = (radius >= MIN_RADIUS) & (radius <= MAX_RADIUS) & (distance >= cv2.dilate(distance, np.ones((5, 5))) - 1e-6)
@@ -59,7 +59,7 @@ def find_palm_candidates(observation: Observation, count: int) -> list[PalmCandi
         if any(np.linalg.norm(point - other.point) < APART for other in candidates):
             continue
         normal = _mean_normal(observation, row, column, point)
-        candidates.append(PalmCandidate(point, normal, float(radius[row, column])))
+        candidates.append(PalmCandidate(point, normal))
         if len(candidates) == count:
             break
     return candidates
@@ -76,19 +76,3 @@ def _mean_normal(observation: Observation, row: int, column: int, point: Array) 
     if length < 1e-6:
         return -observation.T_world_camera[:3, 2]
     return normal / length
-
-
-@njit(cache=True, nogil=True)
-def _cut_steps_into(mask, depth, max_step):
-    """Clear pixels of `mask` that lie behind a depth step."""
-    height, width = depth.shape
-    for row in range(height):
-        for column in range(width):
-            if mask[row, column] == 0:
-                continue
-            z = depth[row, column]
-            for dr, dc in ((0, 1), (0, -1), (1, 0), (-1, 0)):
-                r, c = row + dr, column + dc
-                if 0 <= r < height and 0 <= c < width and depth[r, c] > 0.0 and z - depth[r, c] > max_step:
-                    mask[row, column] = 0
-                    break

@@ -39,10 +39,6 @@ class Part:
         names = tuple(self.whole.names[index] for index in self.kept)
         return replace(self.whole, names=names, models=tuple(self.whole.models[index] for index in self.kept))
 
-    @property
-    def has_hand(self) -> bool:
-        return any(self.whole.models[index].hand is not None for index in self.kept)
-
     def take(self, pose: Array) -> Array:
         """The part (d,) of a pose (D,)."""
         return np.concatenate([np.zeros(0), *(pose[self.whole.scene.pose_slices[index]] for index in self.kept)])

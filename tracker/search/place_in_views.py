@@ -10,7 +10,6 @@ import numpy.typing as npt
 from tracker.capture.triangulation import triangulate
 from tracker.fitting.finger_search import curl_fingers
 from tracker.fitting.view_hands import HOLDS, ViewHands
-from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import Scene
 from tracker.search.joint_descent import BENDS, FEW_STEPS, JointDescent
@@ -106,11 +105,11 @@ def _place_by_size(model: ArticulatedModel, name: str, seen: ViewHands, view: in
     larger = own / max(_measure_bones(hand.points_3d), 1e-9)
     depth = larger * camera.K[0, 0] / max(hand.pixels_per_metre, 1e-9)
     depths = depth + larger * (hand.points_3d[:, 2] - hand.points_3d[:, 2].mean())
-    places = camera.unproject(hand.points) * depths[:, None]
+    places = camera.lift(hand.points, depths)
     known = np.asarray(np.isfinite(places).all(axis=1)) & (depths > 0.0)
     if known.sum() < FEW_JOINTS:
         return None
-    return _descend_from(model, name, seen, se3.transform(camera.T_world_camera, np.nan_to_num(places)), known)
+    return _descend_from(model, name, seen, np.nan_to_num(places), known)
 
 
 def _measure_bones(joints: Array) -> float:

@@ -14,7 +14,6 @@ from tracker.fitting.finger_search import curl_fingers
 from tracker.fitting.frame_fit import draw
 from tracker.fitting.measure_quality import measure_quality
 from tracker.fitting.objective import Objective
-from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import Scene
 from tracker.observation import HAND, Observation
@@ -107,15 +106,11 @@ def _lift(
             depths[joint] = float(np.median(values)) + FLESH
             seen[joint] = True
     everywhere = observation.depth[(observation.labels & HAND) > 0]
-    fallback = (
-        float(np.median(depths[seen] - relative[seen]))
-        if seen.any()
-        else float(np.median(everywhere))
-        if everywhere.size
-        else 0.5
-    )
+    fallback = float(np.median(everywhere)) if everywhere.size else 0.5
+    if seen.any():
+        fallback = float(np.median(depths[seen] - relative[seen]))
     depths[~seen] = fallback + relative[~seen]
-    return _at_depths(points, camera, depths), seen
+    return camera.lift(points[:, :2], depths), seen
 
 
 def _lift_by_size(points: Array, camera: Camera, rest: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
@@ -130,11 +125,4 @@ def _lift_by_size(points: Array, camera: Camera, rest: Array) -> tuple[Array, np
     lengths = np.linalg.norm(rest[first] - rest[second], axis=1)
     apart = np.linalg.norm((points[first, :2] - points[second, :2]) / camera.K[[0, 1], [0, 1]], axis=1)
     depth = float(np.percentile(lengths / np.maximum(apart, 1e-4), 20)) if len(first) else 0.5
-    return _at_depths(points, camera, np.full(21, depth)), np.zeros(21, dtype=bool)
-
-
-def _at_depths(points: Array, camera: Camera, depths: Array) -> Array:
-    """(21, 3) world, m, of pixels at depths (21,) m."""
-    x = (points[:, 0] - camera.K[0, 2]) / camera.K[0, 0] * depths
-    y = (points[:, 1] - camera.K[1, 2]) / camera.K[1, 1] * depths
-    return se3.transform(camera.T_world_camera, np.stack([x, y, depths], axis=1))
+    return camera.lift(points[:, :2], np.full(21, depth)), np.zeros(21, dtype=bool)

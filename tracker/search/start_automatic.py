@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.fitting.finger_search import curl_fingers, measure_curl, search_fingers
-from tracker.fitting.frame_fit import FitOptions, draw, fit_frame
+from tracker.fitting.frame_fit import draw, fit_from_afar
 from tracker.fitting.measure_quality import measure_quality
 from tracker.fitting.objective import Objective
 from tracker.fitting.quality import Quality
@@ -21,11 +21,6 @@ from tracker.model.joints import HAND_JOINTS
 from tracker.model.scene import Scene
 from tracker.observation import Observation, Preprocessing, Region, observe
 from tracker.search.palm_candidates import PalmCandidate, find_palm_candidates
-from tracker.terms.data_to_model import DataToModel
-from tracker.terms.data_to_surface import DataToSurface
-from tracker.terms.joint_prior import Regularization
-from tracker.terms.model_to_data import ModelToData
-from tracker.terms.silhouette import Silhouette
 
 Array = npt.NDArray[np.float64]
 
@@ -37,6 +32,10 @@ MIN_PIXELS = 50
 
 SCORED_PIXELS = 1200
 """About so many hand pixels are enough to compare bends of a finger by."""
+
+
+SOFT = 0.01
+"""Weight of the regularization once a hypothesis is aligned: half of what a followed hand has."""
 
 
 @dataclass(frozen=True)
@@ -127,8 +126,10 @@ def find_hand(
         return None
     least = max(merit for merit, _, _ in hypotheses) - search.likely
     likely = sorted((one for one in hypotheses if one[0] > least), key=lambda one: -one[0])[: search.rigid]
-    rigid = [(place, _align(scene, place, pose)) for _, place, pose in likely]
-    settled = [(place, _settle(scene, place, pose)) for place, pose in judge.rank(rigid)[: search.rough]]
+    stiff, soft = Objective.wide(0.04, 2.0), Objective.wide(0.04, SOFT)
+    rigid = [(place, fit_from_afar(scene, place, pose, stiff, 7)) for _, place, pose in likely]
+    ranked = judge.rank(rigid)[: search.rough]
+    settled = [(place, fit_from_afar(scene, place, pose, soft, 8)) for place, pose in ranked]
     best = judge.rank(settled)[: search.bent or search.fine]
     for _ in range(2 if search.bent else 0):
         best = [(seen, _bend(scene, judge, seen, pose)) for seen, pose in best]
@@ -142,7 +143,7 @@ def find_hand(
         if fine.hand_count < MIN_PIXELS:
             continue
         pose = _bend(scene, judge, fine, pose) if search.bent else pose
-        pose = _refine(scene, fine, pose, Objective(), 20)
+        pose = fit_from_afar(scene, fine, pose, Objective(), 20)
         merit = judge.merit(fine, pose)
         if merit > found_merit:
             found = Found(pose, measure_quality(draw(scene.pose_at(pose), fine), fine))
@@ -179,8 +180,7 @@ class _Judge:
 
     def rank(self, poses: list[tuple[Observation, Array]]) -> list[tuple[Observation, Array]]:
         """Poses, each with what it is to be compared with, by falling merit; the earlier of equals first."""
-        merits = np.array([self.merit(seen, pose) for seen, pose in poses])
-        return [poses[i] for i in np.argsort(-merits, kind="stable")]
+        return sorted(poses, key=lambda one: -self.merit(*one))
 
 
 def propose_poses(scene: Scene, candidate: PalmCandidate, camera: Camera, search: Search) -> list[Array]:
@@ -221,40 +221,11 @@ def _palm_frame(model: ArticulatedModel) -> tuple[Array, Array]:
     return np.stack([forward, np.cross(out, forward), out], axis=1), 0.45 * wrist + 0.55 * middle
 
 
-def _wide_objective(reach: float) -> Objective:
-    """The objective with matches as far as `reach`, m, for poses that are far off."""
-    return Objective(
-        terms={
-            "model_to_data": ModelToData(max_distance=reach, max_angle=60.0),
-            "data_to_surface": DataToSurface(max_distance=reach, stride=2),
-            "data_to_model": DataToModel(max_pixels=6),
-            "silhouette": Silhouette(weight=0.5, stride=1),
-        },
-        regularization=replace(Objective().regularization, weight=0.01),
-    )
-
-
-def _align(scene: Scene, seen: Observation, pose: Array) -> Array:
-    """Fit a hypothesis nearly rigidly."""
-    stiff = replace(_wide_objective(0.04), regularization=Regularization(2.0))
-    return _refine(scene, seen, pose, stiff, 7)
-
-
-def _settle(scene: Scene, seen: Observation, pose: Array) -> Array:
-    """Fit an aligned hypothesis with its fingers."""
-    return _refine(scene, seen, pose, _wide_objective(0.04), 8)
-
-
 def _bend(scene: Scene, judge: _Judge, seen: Observation, pose: Array) -> Array:
     """Search single fingers, then fit."""
     thin = seen.thin(max(1, round((seen.hand_count / SCORED_PIXELS) ** 0.5)))
     pose = search_fingers(pose, 0, scene.models[0], lambda trial: judge.merit(thin, trial))
-    return _refine(scene, seen, pose, _wide_objective(0.03), 8)
-
-
-def _refine(scene: Scene, observation: Observation, pose: Array, objective: Objective, iterations: int) -> Array:
-    options = FitOptions(iterations=iterations, damping=3e-2, max_turn=0.25, max_shift=0.02)
-    return fit_frame(scene, observation, pose, pose, objective, options).pose
+    return fit_from_afar(scene, seen, pose, Objective.wide(0.03, SOFT), 8)
 
 
 def _around(candidate: PalmCandidate, camera: Camera, near: float, far: float) -> Region:

@@ -12,14 +12,13 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.capture.recorded_object import RecordedObject
 from tracker.errors import TrackingError
+from tracker.fitting.frame_fit import FitOptions, fit_frame
 from tracker.fitting.objective import Objective
 from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import Scene
 from tracker.observation import Preprocessing
-from tracker.search.find_object import FoundObject
-from tracker.search.look_for_object import look_for_object
-from tracker.solver.damped_step import compute_damped_step
+from tracker.search.find_object import FoundObject, find_object
 from tracker.terms.joint_prior import AnatomicalLimits, Regularization
 from tracker.terms.point_point import PointToPoint
 
@@ -62,7 +61,7 @@ def start_object(
     looked_at = []
     for frame, camera in frames:
         # Hands are left out where they were in the first frame; later they have moved away from there.
-        found = look_for_object(model, frame, camera, how, [] if looked_at else others)
+        found = find_object(model, frame, camera, how, [] if looked_at else others)
         looked_at.append(frame.index)
         if found is None:
             continue
@@ -110,14 +109,6 @@ def place_object(model: ArticulatedModel, item: RecordedObject) -> Array:
     if not bones:
         raise TrackingError(f"{item.name}: bones {list(item.joints)[:3]}... are not the model's.")
     ids = scene.landmark_slices[0].start + np.array([model.skeleton.bone_names.index(bone) for bone in bones])
-    corners = np.repeat(ids[:, None], 3, axis=1).astype(np.int32)
-    shares = np.tile([1.0, 0.0, 0.0], (len(bones), 1))
-    targets = np.array([item.joints[bone] for bone in bones])
-    meet = PointToPoint(corners, shares, targets, np.ones(len(bones)))
-    objective = Objective(terms={}, anatomy=AnatomicalLimits(1e-4), regularization=Regularization(1e-3))
-    limits = np.full(scene.num_dofs, 0.3)
-    for _ in range(ITERATIONS):
-        posed = scene.pose_at(pose)
-        JtJ, Jtr, _ = objective.linearize(posed, {"bones": meet}, pose)
-        pose = scene.retract(pose, compute_damped_step(JtJ, Jtr, 1e-3, limits))
-    return pose
+    meet = PointToPoint.of_vertices(ids, np.array([item.joints[bone] for bone in bones]))
+    objective = Objective({"bones": meet}, AnatomicalLimits(1e-4), Regularization(1e-6))
+    return fit_frame(scene, None, pose, pose, objective, FitOptions(ITERATIONS, max_turn=0.3)).pose

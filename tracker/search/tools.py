@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -54,10 +54,7 @@ def make_tools(setup: TrackSetup, T_world_camera: npt.NDArray[np.float64]) -> It
     terms = {} if setup.view_ids else dict(Objective().terms)
     if "C" in letters:
         terms["collision"] = Collision()
-    has_object = any(not model.hand for model in setup.models)
     detector = setup.fingertip_detector if "S" in letters and not setup.view_ids else None
-    if "P" not in letters or not has_object:
-        yield Tools(Objective(terms=terms), detector, None)
-        return
-    with setup.make_world(T_world_camera) as world:
+    has_physics = "P" in letters and bool(setup.objects)
+    with setup.make_world(T_world_camera) if has_physics else nullcontext() as world:
         yield Tools(Objective(terms=terms), detector, world)

@@ -31,9 +31,24 @@ class PointToPoint:
     targets: Array
     weights: Array
 
+    @classmethod
+    def of_vertices(cls, vertices: npt.NDArray[np.integer], targets: Array, weight: float = 1.0) -> PointToPoint:
+        """Vertices (N,) that should meet targets (N, 3) world, m."""
+        ids = np.repeat(np.asarray(vertices, dtype=np.int32)[:, None], 3, axis=1)
+        return cls(ids, np.tile([1.0, 0.0, 0.0], (len(ids), 1)), targets, np.full(len(ids), weight))
+
+    @property
+    def weight(self) -> float:
+        """Each correspondence has its own."""
+        return 1.0
+
     @property
     def count(self) -> int:
         return len(self.ids)
+
+    def find(self, posed: PosedScene, context: object = None) -> PointToPoint:
+        """As a term: these correspondences, at every pose."""
+        return self
 
     def as_planes(self) -> PointToPlane:
         """The same sum of squares as planes across x, y and z."""

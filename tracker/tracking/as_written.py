@@ -31,7 +31,6 @@ from tracker.terms.physics import Supported
 from tracker.terms.residual import Term
 from tracker.terms.salient import Salient
 from tracker.tracking.frame_result import FrameResult
-from tracker.tracking.recovery import list_hands
 from tracker.tracking.state import TrackState
 from tracker.tracking.watch_objects import watch_objects
 
@@ -87,18 +86,10 @@ def follow_as_written(
         stages |= attempt.fit.stages
         pose = attempt.pose if np.all(np.isfinite(attempt.pose)) else state.pose
     _, objects = watch_objects(frame, camera, setup, pose, None if attempt is None else attempt.objects, recover=False)
-    lost = list_hands(setup) if attempt is None else attempt.lost
-    result = FrameResult(
-        state.next_frame,
-        pose,
-        "lost" if lost else "ok",
-        perf_counter() - started,
-        attempt.quality if attempt is not None and attempt.qualities else None,
-        () if attempt is None else attempt.fit.costs,
-        stages,
-        tuple(objects),
-        tuple("lost" if hand in lost else "ok" for hand in list_hands(setup)),
-    )
+    lost = setup.hands if attempt is None else attempt.lost
+    hand_status = tuple("lost" if hand in lost else "ok" for hand in setup.hands)
+    seconds = perf_counter() - started
+    result = FrameResult.of(state.next_frame, pose, hand_status, seconds, attempt, stages, objects)
     return TrackState(state.next_frame + 1, pose, state.pose), result
 
 

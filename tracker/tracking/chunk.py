@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from collections.abc import Sequence as Several
-from dataclasses import dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from tracker.fitting.quality import Quality
 from tracker.tracking.arrays_file import load_arrays, save_arrays
 from tracker.tracking.frame_result import STATUSES, FrameResult
 from tracker.tracking.watch_objects import OBJECT_STATUSES
@@ -65,33 +68,35 @@ class TrackChunk:
     def of(cls, results: Several[FrameResult]) -> TrackChunk:
         """Columns from at least one result."""
         assert results, "a chunk has at least one frame"
-        cost_names = _names([costs for result in results for costs in result.costs])
-        stage_names = _names([result.stages for result in results])
-        qualities = [result.quality for result in results]
-        nan = float("nan")
+        cost_names = sorted({name for result in results for costs in result.costs for name in costs})
+        stage_names = sorted({name for result in results for name in result.stages})
+
+        def column(read: Callable[[FrameResult], Any], dtype: npt.DTypeLike = np.float64) -> np.ndarray:
+            return np.array([read(result) for result in results], dtype=dtype)
+
+        def table(read: Callable[[FrameResult], Any], dtype: npt.DTypeLike = np.int8) -> np.ndarray:
+            return column(read, dtype).reshape(len(results), -1)  # also where a frame has no columns
+
+        def judge(read: Callable[[Quality], float]) -> Array:
+            return column(lambda result: read(result.quality) if result.quality else np.nan)
+
         return cls(
-            frame=np.array([result.frame for result in results], dtype=np.int64),
-            pose=np.stack([result.pose for result in results]),
-            status=np.array([STATUSES.index(result.status) for result in results], dtype=np.int8),
-            seconds=np.array([result.seconds for result in results]),
-            depth_residual_mm=np.array([1000.0 * q.depth_residual if q else nan for q in qualities]),
-            silhouette_iou=np.array([q.silhouette_iou if q else nan for q in qualities]),
-            score=np.array([q.score if q else nan for q in qualities]),
-            iterations=np.array([len(result.costs) for result in results], dtype=np.int64),
+            frame=column(lambda result: result.frame, np.int64),
+            pose=column(lambda result: result.pose),
+            status=column(lambda result: STATUSES.index(result.status), np.int8),
+            seconds=column(lambda result: result.seconds),
+            depth_residual_mm=judge(lambda quality: 1000.0 * quality.depth_residual),
+            silhouette_iou=judge(lambda quality: quality.silhouette_iou),
+            score=judge(lambda quality: quality.score),
+            iterations=column(lambda result: len(result.costs), np.int64),
             cost_names=np.array(cost_names, dtype=np.str_),
-            costs=_table([result.costs[-1] if result.costs else {} for result in results], cost_names),
+            costs=_tabulate([result.costs[-1:] for result in results], cost_names, 0.0)[:, 0],
             stage_names=np.array(stage_names, dtype=np.str_),
-            stages=_table([result.stages for result in results], stage_names),
-            iteration_costs=_tabulate_iterations([result.costs for result in results], cost_names),
-            object_status=np.array(
-                [[OBJECT_STATUSES.index(one.status) for one in result.objects] for result in results], dtype=np.int8
-            ).reshape(len(results), -1),
-            hand_status=np.array(
-                [[STATUSES.index(status) for status in result.hand_status] for result in results], dtype=np.int8
-            ).reshape(len(results), -1),
-            object_score=np.array([[one.quality.score for one in result.objects] for result in results]).reshape(
-                len(results), -1
-            ),
+            stages=_tabulate([(result.stages,) for result in results], stage_names, 0.0)[:, 0],
+            iteration_costs=_tabulate([result.costs for result in results], cost_names, np.nan).astype(np.float32),
+            object_status=table(lambda result: [OBJECT_STATUSES.index(one.status) for one in result.objects]),
+            hand_status=table(lambda result: [STATUSES.index(status) for status in result.hand_status]),
+            object_score=table(lambda result: [one.quality.score for one in result.objects], np.float64),
             seen=np.stack([result.seen for result in results]),
         )
 
@@ -99,18 +104,17 @@ class TrackChunk:
     def join(cls, chunks: Several[TrackChunk]) -> TrackChunk:
         """Consecutive chunks as one."""
         assert chunks, "at least one chunk"
-        cost_names = sorted({str(name) for chunk in chunks for name in chunk.cost_names})
-        stage_names = sorted({str(name) for chunk in chunks for name in chunk.stage_names})
-        plain = ("frame", "pose", "status", "seconds", "depth_residual_mm", "silhouette_iou", "score", "iterations")
-        plain = (*plain, "object_status", "object_score", "hand_status", "seen")
-        return cls(
-            **{name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in plain},
-            cost_names=np.array(cost_names, dtype=np.str_),
-            costs=np.concatenate([_widen(chunk.costs, chunk.cost_names, cost_names) for chunk in chunks]),
-            stage_names=np.array(stage_names, dtype=np.str_),
-            stages=np.concatenate([_widen(chunk.stages, chunk.stage_names, stage_names) for chunk in chunks]),
-            iteration_costs=_join_iterations(chunks, cost_names),
-        )
+        costs = sorted({str(name) for chunk in chunks for name in chunk.cost_names})
+        stages = sorted({str(name) for chunk in chunks for name in chunk.stage_names})
+        joined = {
+            "cost_names": np.array(costs, dtype=np.str_),
+            "costs": _join([(chunk.costs[:, None], chunk.cost_names) for chunk in chunks], costs, 0.0)[:, 0],
+            "stage_names": np.array(stages, dtype=np.str_),
+            "stages": _join([(chunk.stages[:, None], chunk.stage_names) for chunk in chunks], stages, 0.0)[:, 0],
+            "iteration_costs": _join([(one.iteration_costs, one.cost_names) for one in chunks], costs, float("nan")),
+        }
+        rest = [f.name for f in fields(cls) if f.name not in joined]
+        return cls(**joined, **{name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in rest})
 
     def save(self, path: Path) -> None:
         """Write to an npz file, whole or not at all."""
@@ -119,53 +123,32 @@ class TrackChunk:
     @classmethod
     def load(cls, path: Path) -> TrackChunk:
         """Read what `save` wrote, or what it wrote before the costs of iterations and the objects were recorded."""
-        later = ("iteration_costs", "object_status", "object_score", "hand_status", "seen")
-        arrays = load_arrays(path, tuple(f.name for f in fields(cls) if f.name not in later), optional=later)
+        later = {f.name: f.default_factory() for f in fields(cls) if f.default_factory is not MISSING}
+        arrays = load_arrays(path, tuple(f.name for f in fields(cls) if f.name not in later), optional=tuple(later))
         frames = len(arrays["frame"])
-        nothing = {
-            "iteration_costs": np.zeros((frames, 0, len(arrays["cost_names"])), dtype=np.float32),
-            "object_status": np.zeros((frames, 0), dtype=np.int8),
-            "object_score": np.zeros((frames, 0)),
-            "hand_status": np.zeros((frames, 0), dtype=np.int8),
-            "seen": np.zeros((frames, 0, 0, 21, 2), dtype=np.float32),
+        nothing: dict[str, np.ndarray] = {
+            name: np.zeros((frames, *column.shape[1:]), column.dtype) for name, column in later.items()
         }
+        nothing["iteration_costs"] = np.zeros((frames, 0, len(arrays["cost_names"])), dtype=np.float32)
         return cls(**{**nothing, **arrays})
 
 
-def _names(rows: Several[dict[str, float]]) -> list[str]:
-    return sorted({name for row in rows for name in row})
-
-
-def _table(rows: Several[dict[str, float]], names: list[str]) -> Array:
-    return np.array([[row.get(name, 0.0) for name in names] for row in rows]).reshape(len(rows), len(names))
-
-
-def _widen(table: Array, have: npt.NDArray[np.str_], want: list[str]) -> Array:
-    wide = np.zeros((len(table), len(want)))
-    for column, name in enumerate(have):
-        wide[:, want.index(str(name))] = table[:, column]
-    return wide
-
-
-def _tabulate_iterations(frames: Several[tuple[dict[str, float], ...]], names: list[str]) -> npt.NDArray[np.float32]:
-    """(T, I, N) costs of each frame's iterations, NaN where there are none."""
-    most = max(1, *(len(costs) for costs in frames))
-    table = np.full((len(frames), most, len(names)), np.nan, dtype=np.float32)
-    for row, costs in enumerate(frames):
-        for iteration, values in enumerate(costs):
-            for column, name in enumerate(names):
-                table[row, iteration, column] = values.get(name, np.nan)
+def _tabulate(frames: Several[Several[dict[str, float]]], names: list[str], fill: float) -> Array:
+    """(T, I, N) named values of each frame's iterations, I at least 1; `fill` where there are none."""
+    table = np.full((len(frames), max(1, *(len(rows) for rows in frames)), len(names)), fill)
+    for place, rows in enumerate(frames):
+        for iteration, values in enumerate(rows):
+            table[place, iteration] = [values.get(name, fill) for name in names]
     return table
 
 
-def _join_iterations(chunks: Several[TrackChunk], names: list[str]) -> npt.NDArray[np.float32]:
-    most = max(chunk.iteration_costs.shape[1] for chunk in chunks)
-    joined = np.full((sum(len(chunk.frame) for chunk in chunks), most, len(names)), np.nan, dtype=np.float32)
+def _join(parts: Several[tuple[np.ndarray, npt.NDArray[np.str_]]], names: list[str], fill: float) -> np.ndarray:
+    """(T, I, N) tables with the names of their last axes, one after the other; `fill` where one has nothing."""
+    most = max(table.shape[1] for table, _ in parts)
+    joined = np.full((sum(len(table) for table, _ in parts), most, len(names)), fill, dtype=parts[0][0].dtype)
     row = 0
-    for chunk in chunks:
-        columns = [names.index(str(name)) for name in chunk.cost_names]
-        iterations = chunk.iteration_costs.shape[1]
-        if iterations:
-            joined[row : row + len(chunk.frame), :iterations, columns] = chunk.iteration_costs
-        row += len(chunk.frame)
+    for table, own in parts:
+        if table.size:
+            joined[row : row + len(table), : table.shape[1], [names.index(str(name)) for name in own]] = table
+        row += len(table)
     return joined

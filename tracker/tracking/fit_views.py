@@ -29,7 +29,6 @@ from tracker.terms.contours import Contours
 from tracker.terms.joint_prior import Regularization
 from tracker.terms.marked_joints import MarkedJoints
 from tracker.terms.residual import Term
-from tracker.tracking.recovery import list_hands
 from tracker.tracking.view_edges import EDGE_MARGIN, find_edges
 from tracker.tracking.view_objects import find_object_contours
 
@@ -76,7 +75,7 @@ def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene
         gone: Hands that nobody knows the place of.
     """
     names, threads = setup.hand_names, setup.options.threads
-    known = [hand for hand in list_hands(setup) if hand not in gone]
+    known = [hand for hand in setup.hands if hand not in gone]
     looked_at = [view for view in views if view.frame.color is not None]
 
     def follow(number: int) -> dict[str, DetectedHand]:
@@ -204,8 +203,7 @@ def _expect(posed: PosedScene, hand: int, name: str, camera: Camera) -> Detected
     """A hand as its pose says that an image shows it; None where most of it is outside."""
     if not _is_inside(posed, hand, camera):
         return None
-    right = 1.0 if name == "right" else 0.0
-    return DetectedHand(camera.project(posed.landmarks(hand)), np.zeros((21, 3)), 1.0, right)
+    return DetectedHand.expected(camera.project(posed.landmarks(hand)), name)
 
 
 def _is_inside(posed: PosedScene, hand: int, camera: Camera) -> bool:

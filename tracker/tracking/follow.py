@@ -20,8 +20,8 @@ from tracker.tracking.as_written import follow_as_written
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow_part import follow_part
 from tracker.tracking.follow_views import follow_views
-from tracker.tracking.frame_result import FrameResult
-from tracker.tracking.recovery import Recovery, list_hands, recover_hands
+from tracker.tracking.frame_result import FrameResult, sum_up
+from tracker.tracking.recovery import Recovery, recover_hands
 from tracker.tracking.state import TrackState
 from tracker.tracking.watch_objects import stop_unseen, watch_objects
 
@@ -80,7 +80,6 @@ def follow_frame(
     stages["searching the image"] = perf_counter() - searched_at
     attempt, gone = recovery.attempt, recovery.gone
     hand_status = _judge(setup, recovery)
-    status = _sum_up(hand_status)
     pose = state.pose if attempt is None else attempt.pose
     # Before a hand that is lost nobody can tell a hidden object from a lost one: it is followed on, not looked for.
     known = None if attempt is None or gone else attempt.objects
@@ -89,7 +88,7 @@ def follow_frame(
         next_frame=state.next_frame + 1,
         pose=pose,
         earlier_pose=stop_unseen(setup, pose, _earlier(setup, state, pose, recovery), objects),
-        score=_running_score(state, attempt, status),
+        score=_running_score(state, attempt, sum_up(hand_status)),
         is_lost=bool(gone),
         second_try=followed.second_try,
         image=recovery.image,
@@ -97,17 +96,8 @@ def follow_frame(
         lost_hands=gone,
         detected=sightings.followed,
     )
-    return next_state, FrameResult(
-        state.next_frame,
-        pose,
-        status,
-        perf_counter() - started,
-        attempt.quality if attempt is not None and attempt.qualities else None,
-        () if attempt is None else attempt.fit.costs,
-        stages,
-        tuple(objects),
-        hand_status,
-    )
+    seconds = perf_counter() - started
+    return next_state, FrameResult.of(state.next_frame, pose, hand_status, seconds, attempt, stages, objects)
 
 
 def _expect(setup: TrackSetup, state: TrackState, camera: Camera) -> dict[str, Array]:
@@ -125,14 +115,7 @@ def _expect(setup: TrackSetup, state: TrackState, camera: Camera) -> dict[str, A
 def _judge(setup: TrackSetup, recovery: Recovery) -> tuple[str, ...]:
     """Status of each hand; one that is in its place with some finger elsewhere is followed on, not to be believed."""
     lost = set(recovery.gone) | set(() if recovery.attempt is None else recovery.attempt.lost)
-    return tuple(
-        "lost" if hand in lost else "recovered" if hand in recovery.found else "ok" for hand in list_hands(setup)
-    )
-
-
-def _sum_up(hand_status: tuple[str, ...]) -> str:
-    """Status of a frame: of the hand that is worst off."""
-    return next((status for status in ("lost", "recovered") if status in hand_status), "ok")
+    return tuple("lost" if hand in lost else "recovered" if hand in recovery.found else "ok" for hand in setup.hands)
 
 
 def _earlier(setup: TrackSetup, state: TrackState, pose: Array, recovery: Recovery) -> Array:

@@ -75,7 +75,7 @@ def follow_part(sightings: Sightings, part: Part, tools: Tools, state: TrackStat
     setup, previous = part.setup, part.take(state.pose)
     predicted = replace(state, pose=previous, earlier_pose=part.take(state.earlier_pose)).predict(setup.scene)
     started = perf_counter()
-    seen = look(sightings.frame, sightings.camera, setup, predicted, MIN_PIXELS if part.has_hand else 0)
+    seen = look(sightings.frame, sightings.camera, setup, predicted, MIN_PIXELS if setup.hands else 0)
     stages["observing"] = perf_counter() - started
     if seen is None:
         return Followed(None, second_try, tips, stages)

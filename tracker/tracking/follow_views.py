@@ -12,8 +12,7 @@ from tracker.search.part import Part
 from tracker.search.place_in_views import place_in_views
 from tracker.search.tools import Tools
 from tracker.tracking.fit_views import fit_views, judge_hand, see_hands
-from tracker.tracking.frame_result import FrameResult
-from tracker.tracking.recovery import list_hands
+from tracker.tracking.frame_result import FrameResult, sum_up
 from tracker.tracking.state import TrackState
 from tracker.tracking.view_objects import judge_objects
 from tracker.tracking.watch_objects import stop_unseen
@@ -26,7 +25,7 @@ def follow_views(
     read_at = perf_counter()
     views = setup.read_views(sequence, state.next_frame)
     started = perf_counter()
-    scene, hands, gone = setup.scene, list_hands(setup), set(state.gone_hands(setup))
+    scene, hands, gone = setup.scene, setup.hands, set(state.gone_hands(setup))
     pose = state.predict(scene)
     seen = see_hands(setup, views, scene.pose_at(pose), gone)
     stages = {"reading": started - read_at, "detecting hands": perf_counter() - started}
@@ -57,7 +56,7 @@ def follow_views(
     result = FrameResult(
         state.next_frame,
         pose,
-        next((status for status in ("lost", "recovered") if status in statuses), "ok"),
+        sum_up(statuses),
         perf_counter() - started,
         None,
         fit.costs,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from tracker.fitting.attempt import Attempt
 from tracker.fitting.quality import Quality
 from tracker.tracking.watch_objects import WatchedObject
 
@@ -41,3 +42,25 @@ class FrameResult:
     objects: tuple[WatchedObject, ...] = ()
     hand_status: tuple[str, ...] = ()
     seen: npt.NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 0, 21, 2), dtype=np.float32))
+
+    @classmethod
+    def of(
+        cls,
+        frame: int,
+        pose: npt.NDArray[np.float64],
+        hand_status: tuple[str, ...],
+        seconds: float,
+        attempt: Attempt | None,
+        stages: dict[str, float],
+        objects: list[WatchedObject],
+    ) -> FrameResult:
+        """Of a frame with depth, in which `attempt` was fitted; None where nothing was in sight."""
+        quality = attempt.quality if attempt is not None and attempt.qualities else None
+        costs = () if attempt is None else attempt.fit.costs
+        status = sum_up(hand_status)
+        return cls(frame, pose, status, seconds, quality, costs, stages, tuple(objects), hand_status)
+
+
+def sum_up(hand_status: tuple[str, ...]) -> str:
+    """Status of a frame: of the hand that is worst off."""
+    return next((status for status in ("lost", "recovered") if status in hand_status), "ok")

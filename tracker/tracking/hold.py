@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from tracker.fitting.attempt import Attempt, attempt_fit
 from tracker.fitting.frame_fit import FitOptions
 from tracker.fitting.objective import Objective
 from tracker.fitting.setup import TrackSetup
 from tracker.observation import Observation
-from tracker.physics import Support, SupportOptions, find_settled_displacement, find_support
+from tracker.physics import Support, find_settled_displacement, find_support
 from tracker.search.tools import Tools
 from tracker.terms.physics import Physics
 from tracker.tracking.state import TrackState
@@ -24,14 +24,12 @@ class HoldOptions:
         weight: γ_ph of Eq. 16; the paper's 10 leaves most of a gap of 2 mm open where depth says that there is one.
         score_drop: A held pose may explain any hand worse by this much, no more.
         gain: It must move the object less than this share of what the fitted one does.
-        support: How contacts are looked for.
     """
 
     iterations: int = 3
     weight: float = 50.0
     score_drop: float = 0.01
     gain: float = 0.5
-    support: SupportOptions = field(default_factory=SupportOptions)
 
 
 def hold_object(
@@ -62,7 +60,7 @@ def hold_object(
     world, hold = tools.world, hold or HoldOptions()
     if world is None or fitted.quality.is_lost:
         return fitted
-    support = find_support(world, setup.scene.pose_at(fitted.pose), hold.support)
+    support = find_support(world, setup.scene.pose_at(fitted.pose))
     enough = hold.gain * support.displacement
     if support.is_stable or not support.contacts or support.held_displacement > enough:
         return fitted
@@ -71,7 +69,7 @@ def hold_object(
     for hand, quality in held.qualities.items():
         if quality.score < fitted.qualities[hand].score - hold.score_drop:
             return fitted
-    displacement = find_settled_displacement(world, setup.scene.pose_at(held.pose), hold.support)
+    displacement = find_settled_displacement(world, setup.scene.pose_at(held.pose))
     if displacement > enough:
         return fitted
     return replace(held, fit=replace(held.fit, costs=fitted.fit.costs + held.fit.costs))

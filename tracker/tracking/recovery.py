@@ -39,11 +39,6 @@ class Recovery:
     image: Patience
 
 
-def list_hands(setup: TrackSetup) -> tuple[int, ...]:
-    """Indices of the hands."""
-    return tuple(index for index, model in enumerate(setup.models) if model.hand is not None)
-
-
 def recover_hands(
     sightings: Sightings, setup: TrackSetup, tools: Tools, state: TrackState, attempt: Attempt | None, recover: bool
 ) -> Recovery:
@@ -58,7 +53,7 @@ def recover_hands(
         recover: Whether to look for hands at all.
     """
     image = state.image.pass_frame()
-    gone = list_hands(setup) if attempt is None else tuple(sorted({*state.gone_hands(setup), *attempt.gone}))
+    gone = setup.hands if attempt is None else tuple(sorted({*state.gone_hands(setup), *attempt.gone}))
     if attempt is not None and not gone:
         may_search = recover and not sightings.is_looked_at and image.is_over
         if may_search and _is_doubtful(attempt.quality, state):
@@ -66,7 +61,7 @@ def recover_hands(
         return Recovery(attempt, (), (), image)
     if attempt is not None and attempt.gone:  # a hand that is not there has pulled at the others
         attempt = follow_part(sightings, Part.without(setup, gone), tools, state).attempt
-        gone = list_hands(setup) if attempt is None else tuple(sorted({*gone, *attempt.gone}))
+        gone = setup.hands if attempt is None else tuple(sorted({*gone, *attempt.gone}))
     if not recover:
         return Recovery(attempt, gone, (), image)
     pose = state.pose if attempt is None else attempt.pose

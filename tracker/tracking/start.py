@@ -13,12 +13,13 @@ from tracker.capture.recorded_object import RecordedObject
 from tracker.capture.sequence import Sequence
 from tracker.detection import OwnDetector
 from tracker.errors import TrackingError
+from tracker.fitting.attempt import look
 from tracker.fitting.calibration import propose_shapes
 from tracker.fitting.frame_fit import FitOptions, draw, fit_frame
 from tracker.fitting.measure_quality import measure_quality
 from tracker.fitting.objective import Objective
 from tracker.fitting.options import TrackOptions
-from tracker.fitting.region import choose_stride, region_around, whole_image
+from tracker.fitting.region import depth_range, whole_image
 from tracker.fitting.setup import TrackSetup, choose_cameras
 from tracker.fitting.sighting import Sightings, find_sightings
 from tracker.fitting.tracking_faults import find_detector_faults
@@ -28,7 +29,6 @@ from tracker.model.files import load_model
 from tracker.model.scene import Scene
 from tracker.model.shape import with_shape
 from tracker.observation import observe
-from tracker.search.depth_range import depth_range
 from tracker.search.leave_out import leave_out
 from tracker.search.seen_hands import place_where_seen
 from tracker.search.start_annotated import start_hand, undistort_points, with_marks
@@ -179,10 +179,9 @@ def _calibrate(
 def _settle(sightings: Sightings, setup: TrackSetup, pose: Array) -> tuple[float, Array]:
     """Merit and pose of one hand, fitted from a pose to the depth and to the joints that were marked or seen."""
     camera = sightings.camera
-    region = region_around(setup.scene.pose_at(pose).vertices, camera)
-    if region is None:
+    seen = look(sightings.frame, camera, setup, pose, min_pixels=0)
+    if seen is None:
         return -1.0, pose
-    seen = observe(sightings.frame, camera, region, setup.preprocessing, choose_stride(region, camera))
     options = FitOptions(iterations=setup.options.first_iterations, damping=1e-2)
     objective = sightings.add_to(Objective(), setup.scene, setup.names)
     objective = with_marks(objective, setup.scene, setup.names, setup.marks, camera)

@@ -55,7 +55,7 @@ class TrackState:
         """Indices of the hands that were nowhere in the last frame."""
         if not self.is_lost:
             return ()
-        return self.lost_hands or tuple(index for index, model in enumerate(setup.models) if model.hand is not None)
+        return self.lost_hands or setup.hands
 
     def predict(self, scene: Scene) -> Array:
         """(D,) the pose if roots go on as they moved last; joint angles are kept.

@@ -10,7 +10,6 @@ from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
 from tracker.capture.static_plane import StaticPlane
 from tracker.fitting.setup import TrackSetup
-from tracker.geometry import se3
 from tracker.physics import StaticScene, choose_down, find_plane
 
 Array = npt.NDArray[np.float64]
@@ -57,9 +56,7 @@ def find_plane_behind(setup: TrackSetup, frame: Frame, camera: Camera, pose: Arr
     depth = frame.depth[::STRIDE, ::STRIDE].astype(np.float64)
     rows, columns = np.nonzero((depth > 0.0) & (depth < FARTHEST))
     z = depth[rows, columns]
-    x = (STRIDE * columns - camera.K[0, 2]) / camera.K[0, 0] * z
-    y = (STRIDE * rows - camera.K[1, 2]) / camera.K[1, 1] * z
-    points = se3.transform(camera.T_world_camera, np.stack([x, y, z], axis=1))
+    points = camera.lift(STRIDE * np.stack([columns, rows], axis=1), z)
     vertices = setup.scene.pose_at(pose).vertices
     low, high = vertices.min(axis=0) - AROUND, vertices.max(axis=0) + AROUND
     outside = points[np.any((points < low) | (points > high), axis=1)]

@@ -60,7 +60,7 @@ def warm_up(progress: Callable[[str, float], None] | None = None) -> None:
     find_hand(frame, camera, model, Preprocessing(), 0.1, 1.0, Search(candidates=1, turns=4, rough=1, bent=1, fine=1))
     ball = make_ball()
     few = ObjectSearch(places=2, rotations=2, hypotheses=2, rough=1, fine=1)
-    find_object(frame, camera, ball, Preprocessing(objects=True), 0.1, 1.0, search=few)
+    find_object(ball, frame, camera, Preprocessing(), [], search=few)
     tell("compiling the calibration", 0.6)
     joints = camera.project(scene.pose_at(start).landmarks(0))
     marks = mark_joints(scene, 0, np.column_stack([joints, np.full(len(joints), 2.0)]), camera)

@@ -15,11 +15,10 @@ from tracker.fitting.frame_fit import draw
 from tracker.fitting.object_quality import ObjectQuality, measure_object_quality
 from tracker.fitting.region import region_around
 from tracker.fitting.setup import TrackSetup
-from tracker.model.scene import Scene
 from tracker.observation import observe
-from tracker.search.find_object import ObjectSearch
-from tracker.search.forearm import is_in_forearm
-from tracker.search.look_for_object import look_for_object
+from tracker.search.find_object import ObjectSearch, find_object
+from tracker.search.leave_out import is_in_forearm
+from tracker.search.part import Part
 
 Array = npt.NDArray[np.float64]
 
@@ -63,21 +62,21 @@ def watch_objects(
         known: Of each object at that pose; None where the hands are lost, so that their part of the pose means nothing.
         recover: Look for what is lost.
     """
-    objects = [index for index, model in enumerate(setup.models) if not model.hand]
+    objects = setup.objects
     if not objects or frame.depth is None:
         return pose, []
     pose, slices = pose.copy(), setup.scene.pose_slices
-    hands = [index for index in range(len(setup.models)) if index not in objects and np.any(pose[slices[index]])]
+    hands = [index for index in setup.hands if np.any(pose[slices[index]])]
     watched = []
     for index in objects:
-        quality = _measure(frame, camera, setup, pose, objects, index) if known is None else known[index]
+        quality = _measure(frame, camera, setup, pose, index) if known is None else known[index]
         is_arm = known is not None and _is_in_forearm(setup, pose, index, hands)
         status = "lost" if quality.is_lost or is_arm else "hidden" if quality.is_hidden else "ok"
         if status != "ok" and recover and frame.index % NEAR_EVERY == 0:
             search = ObjectSearch() if frame.index % FAR_EVERY == 0 else NEARBY
             others = [(setup.models[i], pose[slices[i]]) for i in (*hands, *objects) if i != index]
             last = pose[slices[index]]
-            found = look_for_object(setup.models[index], frame, camera, setup.preprocessing, others, last, search)
+            found = find_object(setup.models[index], frame, camera, setup.preprocessing, others, last, search)
             least = 0.0 if is_arm else quality.score + GAIN
             if found is not None and found.is_believable and found.merit > least:
                 pose[slices[index]] = found.pose
@@ -96,21 +95,17 @@ def _is_in_forearm(setup: TrackSetup, pose: Array, index: int, hands: list[int])
 def stop_unseen(setup: TrackSetup, pose: Array, earlier: Array, watched: Sequence[WatchedObject]) -> Array:
     """The pose before (D,), to predict from, with objects that were not followed from there at rest."""
     earlier = earlier.copy()
-    objects = [index for index, model in enumerate(setup.models) if not model.hand]
-    for index, one in zip(objects, watched, strict=False):
+    for index, one in zip(setup.objects, watched, strict=False):
         if one.status != "ok":
             earlier[setup.scene.pose_slices[index]] = pose[setup.scene.pose_slices[index]]
     return earlier
 
 
-def _measure(
-    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, objects: list[int], index: int
-) -> ObjectQuality:
+def _measure(frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, index: int) -> ObjectQuality:
     """Quality of an object in a scene without hands."""
-    pose = np.concatenate([pose[setup.scene.pose_slices[other]] for other in objects])
-    scene = Scene(tuple(setup.models[other] for other in objects))
-    place = objects.index(index)
-    posed = scene.pose_at(pose)
+    part = Part.without(setup, setup.hands)
+    scene, place = part.setup.scene, setup.objects.index(index)
+    posed = scene.pose_at(part.take(pose))
     region = region_around(posed.vertices[scene.vertex_slices[place]], camera)
     if region is None:
         return ObjectQuality.of_nothing()

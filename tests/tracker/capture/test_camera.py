@@ -34,6 +34,12 @@ def test_a_ray_leads_to_the_pixel_it_comes_from(camera, rng):
     assert camera.can_see(points).all()
 
 
+def test_a_pixel_at_a_depth_is_lifted_to_the_point_that_is_seen_there(camera, rng):
+    seen = rng.uniform([-0.2, -0.2, 0.6], [0.2, 0.2, 2.0], (50, 3))
+    points = se3.transform(camera.T_world_camera, seen)
+    np.testing.assert_allclose(camera.lift(camera.project(points), seen[:, 2]), points, atol=1e-6)
+
+
 def test_pixels_are_those_of_opencv(camera, rng):
     points = se3.transform(camera.T_world_camera, rng.uniform([-0.2, -0.2, 0.6], [0.2, 0.2, 2.0], (50, 3)))
     T = camera.T_camera_world

@@ -11,8 +11,7 @@ from tracker.errors import TrackingError
 from tracker.geometry import se3
 from tracker.model.scene import Scene
 from tracker.observation import Preprocessing
-from tracker.search.find_scale import ScaleView, find_scale
-from tracker.search.look_for_object import look_for_object
+from tracker.search.find_object import find_object
 from tracker.search.start_object import start_object
 from tracker.search.start_rotations import propose_rotations, sample_surface, spread_rotations
 
@@ -34,7 +33,7 @@ def test_a_mesh_is_found_beside_a_hand_within_two_millimetres(tmp_path, name, co
         true = place(model, rng.normal(size=3), PLACE + 0.01 * rng.normal(size=3))
         drawn = draw_frame(model, true, coloured)
         others = [(drawn.hand, drawn.hand_pose)]
-        found = look_for_object(model, drawn.frame, CAMERA, Preprocessing(), others)
+        found = find_object(model, drawn.frame, CAMERA, Preprocessing(), others)
         assert found is not None and found.is_believable
         assert surface_error(model, found.pose, true) < 2e-3  # m
 
@@ -43,7 +42,7 @@ def test_an_object_on_a_table_is_found(tmp_path):
     model = load_mesh(tmp_path, "bracket")
     true = place(model, np.array([0.3, 0.4, 0.2]))
     drawn = draw_frame(model, true, coloured=True, table=0.60)
-    found = look_for_object(model, drawn.frame, CAMERA, Preprocessing(), [(drawn.hand, drawn.hand_pose)])
+    found = find_object(model, drawn.frame, CAMERA, Preprocessing(), [(drawn.hand, drawn.hand_pose)])
     assert found is not None and found.is_believable
     assert surface_error(model, found.pose, true) < 2e-3  # m
 
@@ -93,20 +92,6 @@ def test_an_object_seen_later_starts_from_a_guess(tmp_path):
     views = [(away.frame, CAMERA), (there.frame, CAMERA)]
     pose = start_object(model, RecordedObject("box", "b"), views, Preprocessing(), [(away.hand, away.hand_pose)])
     assert surface_error(model, pose, true) < 2e-3  # m
-
-
-@pytest.mark.slow
-def test_the_size_of_a_mesh_is_measured_within_three_percent(tmp_path):
-    from tracker.model.object_scale import with_scale
-
-    for name, scale in (("ball", 1.15), ("bracket", 0.85)):
-        model = load_mesh(tmp_path, name)
-        true = with_scale(model, scale)
-        views = []
-        for turn in ([0.3, 0.4, 0.2], [-0.5, 0.2, 1.0]):
-            drawn = draw_frame(true, place(true, np.array(turn)), coloured=True)
-            views.append(ScaleView(drawn.frame, CAMERA, [(drawn.hand, drawn.hand_pose)]))
-        assert abs(find_scale(model, views, Preprocessing()) / scale - 1.0) < 0.03
 
 
 def test_a_sphere_needs_one_rotation_and_a_lopsided_thing_many(tmp_path):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,10 +12,8 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
 from tracker.errors import TrackingError
 from tracker.model.articulated import ArticulatedModel
-from tracker.model.object_scale import with_scale
 from tracker.observation import Preprocessing
-from tracker.search.find_object import ObjectSearch
-from tracker.search.look_for_object import look_for_object
+from tracker.search.find_object import ObjectSearch, find_object
 
 Array = npt.NDArray[np.float64]
 
@@ -39,6 +37,20 @@ class ScaleView:
     others: list[tuple[ArticulatedModel, Array]]
 
 
+def with_scale(model: ArticulatedModel, scale: float) -> ArticulatedModel:
+    """The model with all its lengths times `scale`, about the origin of its file's coordinates."""
+    assert model.hand is None, "hands have a shape, not a scale"
+    assert scale > 0.0
+    Ts = model.skeleton.Ts_model_bone.copy()
+    Ts[:, :3, 3] *= scale
+    return replace(
+        model,
+        vertices=model.vertices * scale,
+        skeleton=replace(model.skeleton, Ts_model_bone=Ts),
+        provenance={**model.provenance, "scale": f"{scale:.4g}"},
+    )
+
+
 def find_scale(
     model: ArticulatedModel, views: Sequence[ScaleView], how: Preprocessing, scales: Sequence[float] = SCALES
 ) -> float:
@@ -60,12 +72,12 @@ def find_scale(
     assert len(scales) >= 3 and views
     scores = np.zeros((len(views), len(scales)))
     for row, view in zip(scores, views, strict=True):
-        place = look_for_object(model, view.frame, view.camera, how, view.others)
+        place = find_object(model, view.frame, view.camera, how, view.others)
         if place is None:
             continue
         for column, scale in enumerate(scales):
             sized = with_scale(model, float(scale))
-            found = look_for_object(sized, view.frame, view.camera, how, view.others, place.pose, NEARBY)
+            found = find_object(sized, view.frame, view.camera, how, view.others, place.pose, NEARBY)
             row[column] = 0.0 if found is None else found.quality.score
     scores = scores.mean(axis=0)
     best = int(np.argmax(scores))

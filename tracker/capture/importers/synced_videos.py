@@ -122,7 +122,7 @@ def _propose_shifts(
         return
     found = f"The calibration found videos out of step: a moment is later in {', '.join(told)}."
     if options.camera_shifts is None:
-        warnings.append(f"{found} They are imported as they are unless camera_shifts says {','.join(shifts)}.")
+        warnings.append(f"{found} They come in as they are unless they are shifted: camera_shifts {','.join(shifts)}.")
     choices = (
         ImportChoice(",".join(shifts), f"Shift by whole frames: {', '.join(shifts)}"),
         ImportChoice(NO_SHIFT, "Leave the videos as they are"),

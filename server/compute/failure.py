@@ -7,8 +7,8 @@ from typing import Any
 
 
 class Failure:
-    """Carries an error through pickle, which by itself would call its class with the message alone. Many errors of
-    ours are made from other things. An error that knows how to be pickled (SQLAlchemy's, OSError) does it its way.
+    """Carries an error through pickle. By itself pickle makes an error anew from its message alone, which fails for
+    errors of ours whose classes take other arguments. SQLAlchemy's errors and OSError know how to be pickled.
 
     Args:
         error: What was raised.

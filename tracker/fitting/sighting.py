@@ -137,13 +137,14 @@ def find_sightings(
         names: Of the hands, `right` or `left`.
         before: The hands that were seen in the frame before.
         expected: Joints (21, 2) px of hands that are followed, where they should be now. They tell the pixels of a hand
-            that the detector does not see; the only hand of a recording is looked for there, too.
+            that the detector does not see; the only hand of a recording is looked for there, too. None where nothing
+            was followed yet: palms are then looked for in all four turns of the image, else in two.
     """
-    expected = expected or {}
     depth = frame.depth
     if detector is None or frame.color is None or depth is None or not names:
         return Sightings(frame, camera, {}, is_looked_at=False)
-    turns = (0, 1 + frame.index % 3) if before else (0, 1, 2, 3)
+    turns = (0, 1, 2, 3) if expected is None else (0, 1 + frame.index % 3)
+    expected = expected or {}
     followed = [before[name] for name in names if name in before]
     has_size = partial(_has_size_of, depth=depth, camera=camera)
     hands = name_hands(detector.find(frame.color, len(names), followed, turns, has_size), names)

@@ -138,3 +138,11 @@ def _compute_squared_distance_to_side(px, py, pz, ex, ey, ez):
         share = min(max((px * ex + py * ey + pz * ez) / length, 0.0), 1.0)
     rx, ry, rz = px - share * ex, py - share * ey, pz - share * ez
     return rx * rx + ry * ry + rz * rz
+
+
+def is_watertight(faces: npt.NDArray[np.int64]) -> bool:
+    """Whether every edge is run through once in each direction."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
+    count = edges.max(initial=0) + 1
+    forward = np.unique(edges[:, 0] * count + edges[:, 1])
+    return len(forward) == len(edges) and np.array_equal(forward, np.unique(edges[:, 1] * count + edges[:, 0]))

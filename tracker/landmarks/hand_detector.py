@@ -81,7 +81,7 @@ class HandDetector:
             if len(found) < hands:
                 with self._lock:
                     squares = find_palms(self._palms, image, turn)
-                for square in squares:
+                for square in squares[: hands + 1]:
                     if len(found) < hands and not any(square.is_near(hand.next_square) for hand in found):
                         add(self._look_twice(image, square))
         return found

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from tracker.geometry.triangles import is_watertight
 from tracker.model.pose_blend import PoseBlend
 from tracker.model.skeleton import Array, Skeleton
 
@@ -91,6 +93,11 @@ class ArticulatedModel:
     @property
     def num_dofs(self) -> int:
         return self.skeleton.num_dofs
+
+    @cached_property
+    def is_closed(self) -> bool:
+        """Whether the mesh has no hole, so that its inside is never seen."""
+        return is_watertight(self.faces)
 
 
 MAX_WEIGHTS = 4

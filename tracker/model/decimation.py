@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy.spatial import KDTree
 
 from tracker.errors import ModelFileError, TrackerError
+from tracker.geometry.triangles import is_watertight
 from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
 from tracker.model.pose_blend import PoseBlend
 from tracker.model.skeleton import Array
@@ -165,13 +166,6 @@ def compute_volume(vertices: Array, faces: Faces) -> float:
     """Signed volume inside a closed mesh, m^3; positive when the faces look outwards."""
     a, b, c = vertices[faces[:, 0]], vertices[faces[:, 1]], vertices[faces[:, 2]]
     return float(np.einsum("fx,fx->", a, np.cross(b, c)) / 6.0)
-
-
-def is_watertight(faces: Faces) -> bool:
-    """Whether every edge is run through once in each direction."""
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    forward = {(int(a), int(b)) for a, b in edges}
-    return len(forward) == len(edges) and all((b, a) in forward for a, b in forward)
 
 
 def restore_volume(vertices: Array, faces: Faces, volume: float) -> Array:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
-from tracker.model.decimation import is_watertight
+from tracker.geometry.triangles import is_watertight
 
 Array = npt.NDArray[np.float64]
 Faces = npt.NDArray[np.int64]

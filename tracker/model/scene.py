@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from tracker.geometry import se3
 from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel
-from tracker.model.decimation import is_watertight
 from tracker.model.kinematics import SceneArrays, move_bones_into, normals_into, skin_into
 from tracker.model.pose_blend import PoseBlendArrays, add_pose_blend, join_pose_blends, stack_pose_blend
 
@@ -55,7 +54,7 @@ class Scene:
     @cached_property
     def open_faces(self) -> npt.NDArray[np.bool_]:
         """(F,) whether a face belongs to a mesh with holes, so that its inside can be seen."""
-        has_holes = [not is_watertight(model.faces) for model in self.models]
+        has_holes = [not model.is_closed for model in self.models]
         return np.repeat(np.array(has_holes, dtype=np.bool_), [len(model.faces) for model in self.models])
 
     @cached_property

@@ -100,13 +100,13 @@ def follow_frame(
     return next_state, FrameResult.of(state.next_frame, pose, hand_status, seconds, attempt, stages, objects)
 
 
-def _expect(setup: TrackSetup, state: TrackState, camera: Camera) -> dict[str, Array]:
+def _expect(setup: TrackSetup, state: TrackState, camera: Camera) -> dict[str, Array] | None:
     """Joints (21, 2) px of the hands that are followed, where they should be in the next frame; none before the first.
 
     A detector that overlooks a hand for some frames leaves its pixels to be told by these.
     """
     if state.next_frame == setup.options.first_frame:
-        return {}
+        return None
     gone = {setup.names[hand] for hand in state.gone_hands(setup)}
     expected = setup.project_hands(state.predict(setup.scene), camera)
     return {name: joints for name, joints in expected.items() if name not in gone}

@@ -18,7 +18,8 @@ from tracker.model.blend_files import save_blend_model
 from tracker.model.blend_limits import CHAINS
 from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.blend_model import BlendModel
-from tracker.model.decimation import compute_volume, is_watertight
+from tracker.geometry.triangles import is_watertight
+from tracker.model.decimation import compute_volume
 from tracker.model.default_hand import default_hand
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.model.mano_files import save_mano

@@ -9,11 +9,11 @@ import pytest
 
 from tracker.errors import TrackerError
 from tracker.model import MAX_WEIGHTS, ArticulatedModel, Scene, decimate, load_t16_model, with_shape
+from tracker.geometry.triangles import is_watertight
 from tracker.model.decimation import (
     closest_on_triangles,
     compute_volume,
     find_surface_points,
-    is_watertight,
     limit_weights,
     simplify,
 )

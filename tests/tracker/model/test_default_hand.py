@@ -7,7 +7,8 @@ import pytest
 
 from tracker.geometry import se3
 from tracker.model import MAX_WEIGHTS, ArticulatedModel, Scene, mirror, mirror_pose, with_shape
-from tracker.model.decimation import compute_volume, is_watertight
+from tracker.geometry.triangles import is_watertight
+from tracker.model.decimation import compute_volume
 from tracker.model.default_hand import DATA, default_hand
 from tracker.model.joints import FINGERS
 

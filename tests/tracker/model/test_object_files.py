@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 from tracker.errors import ModelFileError
 from tracker.geometry import se3
 from tracker.model import Scene, load_model, save_model
-from tracker.model.decimation import compute_volume, is_watertight
+from tracker.geometry.triangles import is_watertight
+from tracker.model.decimation import compute_volume
 from tracker.model.object_files import load_object
 
 KINDS = ["obj", "ply", "stl", "off", "glb", "gltf"]

@@ -114,7 +114,7 @@ def calibrate_shapes(
         options: How.
         progress: Told the share done.
     """
-    options = options or CalibrationOptions()
+    options, tell = options or CalibrationOptions(), progress or (lambda share: None)
     marked = {model for frame in frames for model in frame.marks}
     own = tuple(_directions(model, index in marked) for index, model in enumerate(scene.models))
     directions = SceneDirections.stack(scene, own)
@@ -126,34 +126,38 @@ def calibrate_shapes(
     for turn in range(options.rounds):
         current = _shaped(scene, own, directions, values)
         poses = _refit(current, frames, poses, options.iterations)
-        equations = [
-            reduce_equations(
-                current,
-                directions,
-                frame.observation,
-                pose,
-                _with_marks(current.pose_at(pose), frame, options, weight * options.mark_share),
-            )
-            for frame, pose in zip(frames, poses, strict=True)
-        ]
+        equations = _reduce(current, directions, frames, poses, options, weight * options.mark_share)
         mean_cost = sum(each.cost for each in equations) / len(frames)
         weight = options.prior * mean_cost * max(1.0, FEW / len(frames)) ** 2
-        free = is_coarse if turn < options.coarse_rounds else np.ones(len(names), dtype=bool)
+        free = is_coarse | (turn >= options.coarse_rounds)
         step = _step(equations, np.where(is_mark, options.mark_share * weight, weight), values, free, options)
         values = np.clip(values + step, -options.largest, options.largest)
         poses = [
             current.retract(pose, np.clip(each.settle - each.follow @ step, -0.1, 0.1))
             for pose, each in zip(poses, equations, strict=True)
         ]
-        if progress:
-            progress((turn + 1) / options.rounds)
+        tell((turn + 1) / options.rounds)
     current = _shaped(scene, own, directions, values)
     poses = _refit(current, frames, poses, 4 * options.iterations)
-    found = [
-        dict(zip(() if part is None else part.names, values[where].tolist(), strict=True))
-        for part, where in zip(own, directions.slices, strict=True)
-    ]
+    found = [dict(zip(names[where], values[where].tolist(), strict=True)) for where in directions.slices]
     return Calibrated(current.models, tuple(found), poses)
+
+
+def _reduce(
+    scene: Scene,
+    directions: SceneDirections,
+    frames: list[CalibrationFrame],
+    poses: list[Array],
+    options: CalibrationOptions,
+    mark_weight: float,
+) -> list[ShapeEquations]:
+    """The equations of the shape in each frame, its pose (D,) eliminated."""
+    pairs = list(zip(frames, poses, strict=True))
+    objectives = [_with_marks(scene.pose_at(pose), frame, options, mark_weight) for frame, pose in pairs]
+    return [
+        reduce_equations(scene, directions, frame.observation, pose, objective)
+        for (frame, pose), objective in zip(pairs, objectives, strict=True)
+    ]
 
 
 def _refit(scene: Scene, frames: list[CalibrationFrame], poses: list[Array], iterations: int) -> list[Array]:

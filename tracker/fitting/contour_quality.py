@@ -44,6 +44,11 @@ class ContourQuality:
         """Whether no one should believe this pose, by what is in sight of it."""
         return not self.is_hidden and self.score < LEAST
 
+    @property
+    def status(self) -> str:
+        """`ok`, `lost` or `hidden`."""
+        return "lost" if self.is_lost else "hidden" if self.is_hidden else "ok"
+
 
 def measure_contour_quality(posed: PosedScene, views: Sequence[Contours], model: int) -> ContourQuality:
     """Compare one model of a scene with the edges of all views around it."""

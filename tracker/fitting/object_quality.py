@@ -64,6 +64,11 @@ class ObjectQuality:
         """Whether no one should believe this pose, by what is in sight of it."""
         return not self.is_hidden and (self.inside < 0.6 or self.score < 0.35 or self.depth_residual > 0.012)
 
+    @property
+    def status(self) -> str:
+        """`ok`, `lost` or `hidden`."""
+        return "lost" if self.is_lost else "hidden" if self.is_hidden else "ok"
+
 
 def measure_object_quality(view: View, observation: Observation, model: int) -> ObjectQuality:
     """Compare one object (its index in the drawn scene) with the observation.

@@ -127,6 +127,7 @@ def find_sightings(
     names: tuple[str, ...],
     before: Mapping[str, DetectedHand],
     expected: Mapping[str, Array] | None = None,
+    turns: tuple[int, ...] = (0, 1, 2, 3),
 ) -> Sightings:
     """Look for the hands of a recording in the colour image of a frame; without colour or detector nothing is seen.
 
@@ -137,30 +138,21 @@ def find_sightings(
         names: Of the hands, `right` or `left`.
         before: The hands that were seen in the frame before.
         expected: Joints (21, 2) px of hands that are followed, where they should be now. They tell the pixels of a hand
-            that the detector does not see; the only hand of a recording is looked for there, too. None where nothing
-            was followed yet: palms are then looked for in all four turns of the image, else in two.
+            that the detector does not see; the only hand of a recording is looked for there, too.
+        turns: In which the image is looked through for palms, quarters.
     """
-    depth = frame.depth
-    if detector is None or frame.color is None or depth is None or not names:
+    color, depth = frame.color, frame.depth
+    if detector is None or color is None or depth is None or not names:
         return Sightings(frame, camera, {}, is_looked_at=False)
-    turns = (0, 1, 2, 3) if expected is None else (0, 1 + frame.index % 3)
     expected = expected or {}
-    followed = [before[name] for name in names if name in before]
-    has_size = partial(_has_size_of, depth=depth, camera=camera)
-    hands = name_hands(detector.find(frame.color, len(names), followed, turns, has_size), names)
-    is_led = not hands and len(names) == 1 and bool(expected)
-    if is_led:
-        there = DetectedHand.expected(expected[names[0]], names[0])
-        found = detector.find(frame.color, 1, [there], (), lambda hand: has_size(hand) and hand.is_same(there))
-        hands = name_hands(found, names)
+    hands, is_led = _find_hands(detector, frame, camera, names, before, expected, turns)
     joints = {**expected, **{name: hand.points for name, hand in hands.items()}}
     if not joints:
         return Sightings(frame, camera, {})
     is_hand = find_hand_pixels(frame, camera, joints)
     if len(joints) == len(names):  # of a hand that nobody knows where to look for nobody knows the pixels
         frame = replace(frame, is_hand=is_hand)
-    assert frame.color is not None
-    tells_color = not is_grey(frame.color)
+    tells_color = not is_grey(color)
     islands = find_islands(is_hand, depth, camera.K) if tells_color else []
     focal = float(camera.K[0, 0])
     sightings = {
@@ -168,6 +160,28 @@ def find_sightings(
         for name, hand in hands.items()
     }
     return Sightings(frame, camera, sightings, tells_color=tells_color)
+
+
+def _find_hands(
+    detector: HandDetector,
+    frame: Frame,
+    camera: Camera,
+    names: tuple[str, ...],
+    before: Mapping[str, DetectedHand],
+    expected: Mapping[str, Array],
+    turns: tuple[int, ...],
+) -> tuple[dict[str, DetectedHand], bool]:
+    """The hands that the detector sees, by name, and whether it had to be told where to look."""
+    assert frame.color is not None and frame.depth is not None
+    followed = [before[name] for name in names if name in before]
+    has_size = partial(_has_size_of, depth=frame.depth, camera=camera)
+    hands = name_hands(detector.find(frame.color, len(names), followed, turns, has_size), names)
+    if hands or len(names) > 1 or not expected:
+        return hands, False
+    name, joints = next(iter(expected.items()))
+    there = DetectedHand.expected(joints, name)
+    found = detector.find(frame.color, 1, [there], (), lambda hand: has_size(hand) and hand.is_same(there))
+    return name_hands(found, names), True
 
 
 def find_hand_pixels(frame: Frame, camera: Camera, hands: Mapping[str, Array]) -> npt.NDArray[np.bool_]:

@@ -68,6 +68,10 @@ class Search:
     nearness: float = 0.5
     openness: float = 0.2
 
+    def stride(self, camera: Camera) -> int:
+        """Every so many pixels of a camera are of the coarse image."""
+        return max(1, camera.width // self.width)
+
 
 STEP = Search(rigid=3, rough=2, bent=0, fine=1)
 """What a frame that follows another has time for, of a part of all hypotheses."""
@@ -113,7 +117,7 @@ def find_hand(
     """
     search = search or Search()
     scene = Scene((model,))
-    stride = max(1, camera.width // search.width)
+    stride = search.stride(camera)
     coarse = observe(frame, camera, whole_image(camera, near, far), how, stride)
     judge = _Judge(scene, camera, search)
     hypotheses: list[tuple[float, Observation, Array]] = []
@@ -133,22 +137,8 @@ def find_hand(
     best = judge.rank(settled)[: search.bent or search.fine]
     for _ in range(2 if search.bent else 0):
         best = [(seen, _bend(scene, judge, seen, pose)) for seen, pose in best]
-    found: Found | None = None
-    found_merit = -np.inf
-    for _, pose in judge.rank(best)[: search.fine]:
-        region = region_around(scene.pose_at(pose).vertices, camera)
-        if region is None:
-            continue
-        fine = observe(frame, camera, region, how, max(1, stride // 2))
-        if fine.hand_count < MIN_PIXELS:
-            continue
-        pose = _bend(scene, judge, fine, pose) if search.bent else pose
-        pose = fit_from_afar(scene, fine, pose, Objective(), 20)
-        merit = judge.merit(fine, pose)
-        if merit > found_merit:
-            found = Found(pose, measure_quality(draw(scene.pose_at(pose), fine), fine))
-            found_merit = merit
-    return found
+    fine = [_fit_fine(frame, judge, how, pose) for _, pose in judge.rank(best)[: search.fine]]
+    return max((one for one in fine if one), key=lambda one: one[0], default=(0.0, None))[1]
 
 
 @dataclass(frozen=True)
@@ -219,6 +209,20 @@ def _palm_frame(model: ArticulatedModel) -> tuple[Array, Array]:
     out = np.cross(forward, index - little)
     out /= np.linalg.norm(out)
     return np.stack([forward, np.cross(out, forward), out], axis=1), 0.45 * wrist + 0.55 * middle
+
+
+def _fit_fine(frame: Frame, judge: _Judge, how: Preprocessing, pose: Array) -> tuple[float, Found] | None:
+    """Merit and hand, fitted from a pose (D,) on the fine image; None where too little of it is seen."""
+    scene, camera = judge.scene, judge.camera
+    region = region_around(scene.pose_at(pose).vertices, camera)
+    if region is None:
+        return None
+    fine = observe(frame, camera, region, how, max(1, judge.search.stride(camera) // 2))
+    if fine.hand_count < MIN_PIXELS:
+        return None
+    pose = _bend(scene, judge, fine, pose) if judge.search.bent else pose
+    pose = fit_from_afar(scene, fine, pose, Objective(), 20)
+    return judge.merit(fine, pose), Found(pose, measure_quality(draw(scene.pose_at(pose), fine), fine))
 
 
 def _bend(scene: Scene, judge: _Judge, seen: Observation, pose: Array) -> Array:

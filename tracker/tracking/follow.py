@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.sequence import Sequence
-from tracker.fitting.attempt import Attempt
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import find_sightings
 from tracker.search.part import Part
@@ -20,15 +19,12 @@ from tracker.tracking.as_written import follow_as_written
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow_part import follow_part
 from tracker.tracking.follow_views import follow_views
-from tracker.tracking.frame_result import FrameResult, sum_up
+from tracker.tracking.frame_result import FrameResult, tell_statuses
 from tracker.tracking.recovery import Recovery, recover_hands
 from tracker.tracking.state import TrackState
 from tracker.tracking.watch_objects import stop_unseen, watch_objects
 
 Array = npt.NDArray[np.float64]
-
-SCORE_MEMORY = 0.9
-"""Share of the running score kept from frame to frame."""
 
 
 def track_frames(
@@ -71,7 +67,8 @@ def follow_frame(
     frame, camera = setup.read(sequence, state.next_frame)
     started = perf_counter()
     expected = _expect(setup, state, camera)
-    sightings = find_sightings(setup.hand_detector, frame, camera, setup.hand_names, state.detected, expected)
+    turns = (0, 1 + frame.index % 3) if expected else (0, 1, 2, 3)
+    sightings = find_sightings(setup.hand_detector, frame, camera, setup.hand_names, state.detected, expected, turns)
     detected_at = perf_counter()
     followed = follow_part(sightings, Part.without(setup, state.gone_hands(setup)), tools, state)
     searched_at = perf_counter()
@@ -88,10 +85,8 @@ def follow_frame(
         next_frame=state.next_frame + 1,
         pose=pose,
         earlier_pose=stop_unseen(setup, pose, _earlier(setup, state, pose, recovery), objects),
-        score=_running_score(state, attempt, sum_up(hand_status)),
         is_lost=bool(gone),
         second_try=followed.second_try,
-        image=recovery.image,
         tips=followed.tips,
         lost_hands=gone,
         detected=sightings.followed,
@@ -100,13 +95,13 @@ def follow_frame(
     return next_state, FrameResult.of(state.next_frame, pose, hand_status, seconds, attempt, stages, objects)
 
 
-def _expect(setup: TrackSetup, state: TrackState, camera: Camera) -> dict[str, Array] | None:
+def _expect(setup: TrackSetup, state: TrackState, camera: Camera) -> dict[str, Array]:
     """Joints (21, 2) px of the hands that are followed, where they should be in the next frame; none before the first.
 
     A detector that overlooks a hand for some frames leaves its pixels to be told by these.
     """
     if state.next_frame == setup.options.first_frame:
-        return None
+        return {}
     gone = {setup.names[hand] for hand in state.gone_hands(setup)}
     expected = setup.project_hands(state.predict(setup.scene), camera)
     return {name: joints for name, joints in expected.items() if name not in gone}
@@ -115,7 +110,7 @@ def _expect(setup: TrackSetup, state: TrackState, camera: Camera) -> dict[str, A
 def _judge(setup: TrackSetup, recovery: Recovery) -> tuple[str, ...]:
     """Status of each hand; one that is in its place with some finger elsewhere is followed on, not to be believed."""
     lost = set(recovery.gone) | set(() if recovery.attempt is None else recovery.attempt.lost)
-    return tuple("lost" if hand in lost else "recovered" if hand in recovery.found else "ok" for hand in setup.hands)
+    return tell_statuses(setup.hands, lost, recovery.found)
 
 
 def _earlier(setup: TrackSetup, state: TrackState, pose: Array, recovery: Recovery) -> Array:
@@ -124,11 +119,3 @@ def _earlier(setup: TrackSetup, state: TrackState, pose: Array, recovery: Recove
     for index in {*state.gone_hands(setup), *recovery.gone}:
         earlier[setup.scene.pose_slices[index]] = pose[setup.scene.pose_slices[index]]
     return earlier
-
-
-def _running_score(state: TrackState, attempt: Attempt | None, status: str) -> float:
-    if attempt is None or status == "lost":
-        return state.score
-    if status == "recovered" or state.score == 0.0:
-        return attempt.quality.score
-    return SCORE_MEMORY * state.score + (1.0 - SCORE_MEMORY) * attempt.quality.score

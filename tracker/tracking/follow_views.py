@@ -12,7 +12,7 @@ from tracker.search.part import Part
 from tracker.search.place_in_views import place_in_views
 from tracker.search.tools import Tools
 from tracker.tracking.fit_views import fit_views, judge_hand, see_hands
-from tracker.tracking.frame_result import FrameResult, sum_up
+from tracker.tracking.frame_result import FrameResult, sum_up, tell_statuses
 from tracker.tracking.state import TrackState
 from tracker.tracking.view_objects import judge_objects
 from tracker.tracking.watch_objects import stop_unseen
@@ -51,7 +51,7 @@ def follow_views(
         if hand in left:
             pose[where] = state.pose[where]
         earlier[where] = pose[where]
-    statuses = tuple("lost" if hand in lost else "recovered" if hand in found else "ok" for hand in hands)
+    statuses = tell_statuses(hands, lost, found)
     objects = judge_objects(part.setup, views, part.setup.scene.pose_at(fit.pose)) if part.kept else []
     result = FrameResult(
         state.next_frame,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container, Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -64,3 +65,8 @@ class FrameResult:
 def sum_up(hand_status: tuple[str, ...]) -> str:
     """Status of a frame: of the hand that is worst off."""
     return next((status for status in ("lost", "recovered") if status in hand_status), "ok")
+
+
+def tell_statuses(hands: Iterable[int], lost: Container[int], found: Container[int]) -> tuple[str, ...]:
+    """Status of each hand, by which of them are lost and which were found again."""
+    return tuple("lost" if hand in lost else "recovered" if hand in found else "ok" for hand in hands)

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.annotations import Annotations
-from tracker.capture.recorded_object import RecordedObject
 from tracker.capture.sequence import Sequence
 from tracker.detection import OwnDetector
 from tracker.errors import TrackingError
@@ -42,6 +41,8 @@ from tracker.tracking.static_scene import see_static_scene
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
+Placed = tuple[ArticulatedModel, Array]
+"""A model and its pose (D,) in the first frame; zeros where it was not found."""
 
 MIN_MARKED = 6
 """With fewer marked joints a hand is looked for in the depth alone."""
@@ -73,56 +74,80 @@ def start_tracking(
     """
     camera_id, view_ids = choose_cameras(sequence, options)
     if detector is not None:
-        with_color = [camera.id for camera in sequence.cameras if camera.has_color]
-        faults = find_detector_faults(detector.forest.kind, None if view_ids else camera_id, with_color, options)
-        if faults:
-            raise TrackingError(f"{detector.name}: {' '.join(faults)}")
+        _check_detector(detector, sequence, None if view_ids else camera_id, options)
+    tell = progress or (lambda stage, share: None)
+    hands, objects = _load_models(sequence, models or {}, options)
+    models = hands | objects
     frames = options.frame_range(sequence.frame_count)
-    names = tuple(sequence.hands)
-    given = models or {}
-    hands = {name: given.get(name) or default_hand(name) for name in names}
     if view_ids:
-        objects = {item.name: _load_object(sequence, item, given, options) for item in sequence.objects}
-        everything = hands | objects
-        setup = TrackSetup(tuple(everything), tuple(everything.values()), camera_id, options, view_ids=view_ids)
-        return start_views(sequence, setup, frames, progress or (lambda stage, share: None))
+        setup = TrackSetup(tuple(models), tuple(models.values()), camera_id, options, view_ids=view_ids)
+        return start_views(sequence, setup, frames, tell)
     marks = _find_marks(sequence, annotations, frames[0], camera_id)
-    placed: dict[str, tuple[ArticulatedModel, Array]] = {}
     bare = TrackSetup((), (), camera_id, options, marks)
     frame, camera = bare.read(sequence, frames[0])
-    sightings = find_sightings(bare.hand_detector, frame, camera, names, {})
-    first = sorted(names, key=lambda hand: hand not in marks)  # those that somebody marked come first
-    tell = plan_start(sequence, options, first).share(progress or (lambda stage, share: None))
-    for name in first:
+    first = sorted(hands, key=lambda hand: hand not in marks)  # those that somebody marked come first
+    tell = plan_start(sequence, options, first).share(tell)
+    sightings = find_sightings(bare.hand_detector, frame, camera, tuple(hands), {})
+    placed = _place_hands(sightings, bare, {name: hands[name] for name in first}, tell)
+    placed |= _place_objects(sequence, bare, objects, placed, tell)
+    there = tuple(name for name in models if name in objects or np.any(placed[name][1]))
+    if options.calibrate:
+        placed |= _calibrate(sequence, there, placed, bare, frames, tell)
+    setup = TrackSetup(tuple(models), tuple(placed[name][0] for name in models), camera_id, options, marks, detector)
+    pose = np.concatenate([placed[name][1] for name in models])
+    if objects:
+        setup = replace(setup, static_scene=see_static_scene(sequence, setup, frame, camera, pose))
+    return setup, TrackState(frames[0], pose, pose, is_lost=len(there) < len(models))
+
+
+def _check_detector(detector: OwnDetector, sequence: Sequence, depth_camera: str | None, options: TrackOptions) -> None:
+    """Refuse a lab's own detector that does not serve; `depth_camera` is None in colour views."""
+    with_color = [camera.id for camera in sequence.cameras if camera.has_color]
+    faults = find_detector_faults(detector.forest.kind, depth_camera, with_color, options)
+    if faults:
+        raise TrackingError(f"{detector.name}: {' '.join(faults)}")
+
+
+def _place_hands(
+    sightings: Sightings, bare: TrackSetup, hands: dict[str, ArticulatedModel], tell: Progress
+) -> dict[str, Placed]:
+    """Hands, in this order, in the first frame; `bare` is the setup without any models."""
+    placed: dict[str, Placed] = {}
+    for name, model in hands.items():
         tell(f"placing the {name} hand", 0.0)
-        own = {name: marks[name]} if name in marks else {}
-        setup = TrackSetup((name,), (hands[name],), camera_id, options, own)
+        own = {name: bare.marks[name]} if name in bare.marks else {}
+        setup = replace(bare, names=(name,), models=(model,), marks=own)
         placed[name] = _begin(sightings, setup, list(placed.values()))
+    return placed
+
+
+def _place_objects(
+    sequence: Sequence, bare: TrackSetup, objects: dict[str, ArticulatedModel], hands: dict[str, Placed], tell: Progress
+) -> dict[str, Placed]:
+    """Objects in the first frame, each looked for in what the hands and those before leave over."""
+    placed = dict(hands)
+    frames = bare.options.frame_range(sequence.frame_count)
+    first_second = frames[: max(1, round(sequence.fps)) : max(1, round(sequence.fps / 6))]
     for item in sequence.objects:
         tell(f"placing {item.name}", 0.0)
-        model = _load_object(sequence, item, given, options)
         others = [(other, pose) for other, pose in placed.values() if np.any(pose)]
-        first_second = frames[: max(1, round(sequence.fps)) : max(1, round(sequence.fps / 6))]
-        views = (setup.read(sequence, index) for index in first_second)
-        placed[item.name] = model, start_object(model, item, views, setup.preprocessing, others)
-    order = (*names, *(item.name for item in sequence.objects))
-    is_lost = any(not np.any(placed[name][1]) for name in names)
-    if options.calibrate:
-        there = tuple(name for name in order if name not in names or np.any(placed[name][1]))
-        placed |= _calibrate(sequence, there, placed, bare, frames, tell)
-    setup = TrackSetup(order, tuple(placed[name][0] for name in order), camera_id, options, marks, detector)
-    pose = np.concatenate([placed[name][1] for name in order])
-    if sequence.objects:
-        setup = replace(setup, static_scene=see_static_scene(sequence, setup, frame, camera, pose))
-    return setup, TrackState(frames[0], pose, pose, is_lost=is_lost)
+        views = (bare.read(sequence, index) for index in first_second)
+        model = objects[item.name]
+        placed[item.name] = model, start_object(model, item, views, bare.preprocessing, others)
+    return placed
 
 
-def _load_object(
-    sequence: Sequence, item: RecordedObject, given: dict[str, ArticulatedModel], options: TrackOptions
-) -> ArticulatedModel:
-    """The model that was given for an object, else the recording's own."""
-    path = sequence.object_path(item.name)
-    return given.get(item.name) or load_model(path, options.max_faces, item.metres_per_unit)
+def _load_models(
+    sequence: Sequence, given: dict[str, ArticulatedModel], options: TrackOptions
+) -> tuple[dict[str, ArticulatedModel], dict[str, ArticulatedModel]]:
+    """Hands and objects by name: those that were given, else the default hands and the recording's own objects."""
+    hands = {name: given.get(name) or default_hand(name) for name in sequence.hands}
+    objects = {
+        item.name: given.get(item.name)
+        or load_model(sequence.object_path(item.name), options.max_faces, item.metres_per_unit)
+        for item in sequence.objects
+    }
+    return hands, objects
 
 
 def _find_marks(sequence: Sequence, annotations: Annotations | None, index: int, camera_id: str) -> dict[str, Array]:
@@ -135,9 +160,7 @@ def _find_marks(sequence: Sequence, annotations: Annotations | None, index: int,
     return marks
 
 
-def _begin(
-    sightings: Sightings, setup: TrackSetup, others: list[tuple[ArticulatedModel, Array]]
-) -> tuple[ArticulatedModel, Array]:
+def _begin(sightings: Sightings, setup: TrackSetup, others: list[Placed]) -> Placed:
     """One hand of about the right size, and its pose in the first frame: zeros if nothing like a hand is there.
 
     `others` are hands that were placed before, with their poses; what they explain is not looked at.
@@ -160,11 +183,11 @@ def _begin(
 def _calibrate(
     sequence: Sequence,
     there: tuple[str, ...],
-    placed: dict[str, tuple[ArticulatedModel, Array]],
+    placed: dict[str, Placed],
     bare: TrackSetup,
     frames: range,
     tell: Progress,
-) -> dict[str, tuple[ArticulatedModel, Array]]:
+) -> dict[str, Placed]:
     """Fitted model and first pose of everything that was found, by name; `bare` is the setup without any models."""
     if not any(placed[name][0].hand and placed[name][0].shape for name in there):
         return {}
@@ -189,9 +212,7 @@ def _settle(sightings: Sightings, setup: TrackSetup, pose: Array) -> tuple[float
     return measure_quality(draw(setup.scene.pose_at(pose), seen), seen).merit, pose
 
 
-def _place(
-    sightings: Sightings, setup: TrackSetup, others: list[tuple[ArticulatedModel, Array]]
-) -> tuple[float, Array | None]:
+def _place(sightings: Sightings, setup: TrackSetup, others: list[Placed]) -> tuple[float, Array | None]:
     """Merit and pose of one hand in the first frame; no pose if nothing like a hand is there."""
     frame, camera, name = sightings.frame, sightings.camera, setup.names[0]
     depths = depth_range(frame)

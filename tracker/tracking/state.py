@@ -19,7 +19,7 @@ from tracker.tracking.patience import Patience
 
 Array = npt.NDArray[np.float64]
 
-PATIENCE = ("second_try", "image", "tips")
+PATIENCE = ("second_try", "tips")
 """When what was tried in vain may be tried again; a state that was stored before one of them was kept tries at once."""
 
 
@@ -31,11 +31,9 @@ class TrackState:
         next_frame: Frame to track next.
         pose: (D,) of the last frame.
         earlier_pose: (D,) of the frame before; equal to `pose` where there is none.
-        score: Running quality score of good frames.
         is_lost: Whether a hand was nowhere in the last frame.
         lost_hands: Which, indices of the scene's models; none though one is lost means all.
         second_try: When there is another second try after one in vain.
-        image: When the whole image is.
         tips: When a finger may be taken to a tip that shows again.
         detected: Hands that the detector saw in the last frame, by name.
     """
@@ -43,10 +41,8 @@ class TrackState:
     next_frame: int
     pose: Array
     earlier_pose: Array
-    score: float = 0.0
     is_lost: bool = False
     second_try: Patience = field(default_factory=Patience)
-    image: Patience = field(default_factory=Patience)
     tips: Patience = field(default_factory=Patience)
     lost_hands: tuple[int, ...] = ()
     detected: Mapping[str, DetectedHand] = field(default_factory=dict)
@@ -85,7 +81,6 @@ class TrackState:
                 "next_frame": np.array(self.next_frame),
                 "pose": self.pose,
                 "earlier_pose": self.earlier_pose,
-                "score": np.array(self.score),
                 "is_lost": np.array(self.is_lost),
                 **{name: np.array([patience.wait, patience.last]) for name, patience in self._patience.items()},
                 "lost_hands": np.array(self.lost_hands, dtype=np.int64),
@@ -97,13 +92,12 @@ class TrackState:
     @classmethod
     def load(cls, path: Path) -> TrackState:
         """Read what `save` wrote."""
-        names = ("next_frame", "pose", "earlier_pose", "score", "is_lost")
+        names = ("next_frame", "pose", "earlier_pose", "is_lost")
         arrays = load_arrays(path, names, optional=(*PATIENCE, "lost_hands", "detected_names", "detected"))
         return cls(
             int(arrays["next_frame"]),
             arrays["pose"],
             arrays["earlier_pose"],
-            float(arrays["score"]),
             bool(arrays["is_lost"]),
             lost_hands=tuple(int(hand) for hand in arrays.get("lost_hands", ())),
             detected={

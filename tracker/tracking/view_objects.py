@@ -43,6 +43,5 @@ def judge_objects(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedS
     watched = []
     for index in list_objects(setup):
         quality = measure_contour_quality(posed, contours, index)
-        status = "lost" if quality.is_lost else "hidden" if quality.is_hidden else "ok"
-        watched.append(WatchedObject(status, quality))
+        watched.append(WatchedObject(quality.status, quality))
     return watched

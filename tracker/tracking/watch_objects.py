@@ -16,7 +16,7 @@ from tracker.fitting.object_quality import ObjectQuality, measure_object_quality
 from tracker.fitting.region import region_around
 from tracker.fitting.setup import TrackSetup
 from tracker.observation import observe
-from tracker.search.find_object import ObjectSearch, find_object
+from tracker.search.find_object import FoundObject, ObjectSearch, find_object
 from tracker.search.leave_out import is_in_forearm
 from tracker.search.part import Part
 
@@ -62,27 +62,33 @@ def watch_objects(
         known: Of each object at that pose; None where the hands are lost, so that their part of the pose means nothing.
         recover: Look for what is lost.
     """
-    objects = setup.objects
-    if not objects or frame.depth is None:
+    if not setup.objects or frame.depth is None:
         return pose, []
-    pose, slices = pose.copy(), setup.scene.pose_slices
-    hands = [index for index in setup.hands if np.any(pose[slices[index]])]
-    watched = []
-    for index in objects:
+    pose, watched = pose.copy(), []
+    hands = [index for index in setup.hands if np.any(pose[setup.scene.pose_slices[index]])]
+    for index in setup.objects:
         quality = _measure(frame, camera, setup, pose, index) if known is None else known[index]
         is_arm = known is not None and _is_in_forearm(setup, pose, index, hands)
-        status = "lost" if quality.is_lost or is_arm else "hidden" if quality.is_hidden else "ok"
+        status = "lost" if is_arm else quality.status
         if status != "ok" and recover and frame.index % NEAR_EVERY == 0:
-            search = ObjectSearch() if frame.index % FAR_EVERY == 0 else NEARBY
-            others = [(setup.models[i], pose[slices[i]]) for i in (*hands, *objects) if i != index]
-            last = pose[slices[index]]
-            found = find_object(setup.models[index], frame, camera, setup.preprocessing, others, last, search)
+            found = _look_for(frame, camera, setup, pose, index, hands)
             least = 0.0 if is_arm else quality.score + GAIN
-            if found is not None and found.is_believable and found.merit > least:
-                pose[slices[index]] = found.pose
+            if found is not None and found.merit > least:
+                pose[setup.scene.pose_slices[index]] = found.pose
                 status, quality = "recovered", found.quality
         watched.append(WatchedObject(status, quality))
     return pose, watched
+
+
+def _look_for(
+    frame: Frame, camera: Camera, setup: TrackSetup, pose: Array, index: int, hands: list[int]
+) -> FoundObject | None:
+    """An object where it is to be believed: near its last place, or now and then in the whole image."""
+    search = ObjectSearch() if frame.index % FAR_EVERY == 0 else NEARBY
+    slices = setup.scene.pose_slices
+    others = [(setup.models[i], pose[slices[i]]) for i in (*hands, *setup.objects) if i != index]
+    found = find_object(setup.models[index], frame, camera, setup.preprocessing, others, pose[slices[index]], search)
+    return found if found is not None and found.is_believable else None
 
 
 def _is_in_forearm(setup: TrackSetup, pose: Array, index: int, hands: list[int]) -> bool:

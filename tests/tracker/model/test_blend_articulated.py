@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from tests.tracker.model.test_npz_files import assert_same
 from tests.tracker.random_blend import random_blend
 from tracker.errors import ModelFileError
+from tracker.geometry.triangles import is_watertight
 from tracker.model import Scene, decimate, load_model, mirror, mirror_pose, save_model, with_shape
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.blend_articulated import articulated_of, close_wrist
@@ -18,7 +19,6 @@ from tracker.model.blend_files import save_blend_model
 from tracker.model.blend_limits import CHAINS
 from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.blend_model import BlendModel
-from tracker.geometry.triangles import is_watertight
 from tracker.model.decimation import compute_volume
 from tracker.model.default_hand import default_hand
 from tracker.model.joints import FINGERS, HAND_JOINTS

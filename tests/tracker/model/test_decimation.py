@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tracker.errors import TrackerError
-from tracker.model import MAX_WEIGHTS, ArticulatedModel, Scene, decimate, load_t16_model, with_shape
 from tracker.geometry.triangles import is_watertight
+from tracker.model import MAX_WEIGHTS, ArticulatedModel, Scene, decimate, load_t16_model, with_shape
 from tracker.model.decimation import (
     closest_on_triangles,
     compute_volume,

@@ -16,8 +16,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tracker.errors import ModelFileError
-from tracker.model import ArticulatedModel, Scene, load_model
 from tracker.geometry.triangles import is_watertight
+from tracker.model import ArticulatedModel, Scene, load_model
 from tracker.model.default_hand import default_hand
 from tracker.model.joints import FINGERS
 

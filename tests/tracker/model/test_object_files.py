@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from tracker.errors import ModelFileError
 from tracker.geometry import se3
-from tracker.model import Scene, load_model, save_model
 from tracker.geometry.triangles import is_watertight
+from tracker.model import Scene, load_model, save_model
 from tracker.model.decimation import compute_volume
 from tracker.model.object_files import load_object
 

@@ -9,8 +9,8 @@ import pytest
 from scipy.optimize import least_squares
 
 from tracker.geometry import se3
-from tracker.model.articulated import ArticulatedModel
 from tracker.geometry.triangles import is_watertight
+from tracker.model.articulated import ArticulatedModel
 from tracker.model.scene import Scene
 from tracker.model.t16_files import load_t16_model, load_t16_motion
 

@@ -85,7 +85,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--stop-below", type=float, metavar="MM", help="stop iterating when the mean joint moves less than this (never)"
     )
-    parser.add_argument("--threads", type=int, metavar="N", help="threads of the image preparation (1)")
+    parser.add_argument("--threads", type=int, metavar="N", help="threads; the second prepares the next frame (1)")
     add_json(parser)
     parser.set_defaults(run=run_guarded(track, show))
 

@@ -135,7 +135,7 @@ class TrackOptions:
     )
     threads: int = _option(
         1,
-        "Threads; with two, every other term is worked out in the second.",
+        "Threads; with two, the next frame is read and looked at while this one is fitted.",
         label="Threads",
         low=1,
         high=64,

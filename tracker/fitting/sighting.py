@@ -76,6 +76,25 @@ class Sighting:
         worst = np.max(fingers[beliefs >= 2.0] / beliefs[beliefs >= 2.0], initial=0.0)
         return float(apart.sum() / self.beliefs.sum()), float(worst)
 
+    def with_tips(self, islands: tuple[Island, ...], expected: Array | None, focal: float) -> Sighting:
+        """This with fingertips that the detector overlooks where they show beyond a thing and were expected.
+
+        Where a thing hides a finger but for its tip, the network bends that finger to what shows of its root.
+        """
+        if expected is None:
+            return self
+        points, beliefs = self.hand.points.copy(), self.beliefs.copy()
+        for island in islands:
+            room = TIP_ROOM * focal / island.depth
+            if np.min(np.linalg.norm(points - island.middle, axis=1)) < room:
+                continue
+            apart = np.linalg.norm(expected[4::4] - island.middle, axis=1)
+            tip = 4 + 4 * int(np.argmin(apart))
+            if apart.min() < room:
+                points[tip], beliefs[tip] = island.middle, SEEN
+                beliefs[tip - 2 : tip] = COVERED
+        return replace(self, hand=replace(self.hand, points=points), beliefs=beliefs)
+
 
 @dataclass(frozen=True)
 class Sightings:
@@ -87,6 +106,7 @@ class Sightings:
         hands: By the name of the hand; those that were not seen are missing.
         is_looked_at: Whether a detector looked at the frame; without colour or without a detector none does.
         tells_color: Whether the pixels of the hands are told by their colour, and not by where their bones are.
+        islands: Pieces of hand that show beyond a thing.
     """
 
     frame: Frame
@@ -94,6 +114,7 @@ class Sightings:
     hands: Mapping[str, Sighting]
     is_looked_at: bool = True
     tells_color: bool = False
+    islands: tuple[Island, ...] = ()
 
     @property
     def followed(self) -> dict[str, DetectedHand]:
@@ -104,6 +125,12 @@ class Sightings:
     def is_covered(self) -> bool:
         """Whether something stands before a hand."""
         return any(np.count_nonzero(hand.beliefs == COVERED) >= FEW for hand in self.hands.values())
+
+    def with_tips(self, expected: Mapping[str, Array]) -> Sightings:
+        """These with the fingertips that show where joints (21, 2) px are expected."""
+        focal = float(self.camera.K[0, 0])
+        hands = {name: hand.with_tips(self.islands, expected.get(name), focal) for name, hand in self.hands.items()}
+        return replace(self, hands=hands)
 
     def add_to(self, objective: Objective, scene: Scene, names: tuple[str, ...]) -> Objective:
         """The objective with the joints that were seen, the S of [T16] Eq. 5.
@@ -153,13 +180,9 @@ def find_sightings(
     if len(joints) == len(names):  # of a hand that nobody knows where to look for nobody knows the pixels
         frame = replace(frame, is_hand=is_hand)
     tells_color = not is_grey(color)
-    islands = find_islands(is_hand, depth, camera.K) if tells_color else []
-    focal = float(camera.K[0, 0])
-    sightings = {
-        name: _give_tips(Sighting(hand, _believe(hand, depth, is_hand), is_led), islands, expected.get(name), focal)
-        for name, hand in hands.items()
-    }
-    return Sightings(frame, camera, sightings, tells_color=tells_color)
+    islands = tuple(find_islands(is_hand, depth, camera.K)) if tells_color else ()
+    sightings = {name: Sighting(hand, _believe(hand, depth, is_hand), is_led) for name, hand in hands.items()}
+    return Sightings(frame, camera, sightings, tells_color=tells_color, islands=islands).with_tips(expected)
 
 
 def _find_hands(
@@ -189,26 +212,6 @@ def find_hand_pixels(frame: Frame, camera: Camera, hands: Mapping[str, Array]) -
     assert frame.color is not None and frame.depth is not None
     focal = float(camera.K[0, 0])
     return np.logical_or.reduce([find_own_color(frame.color, frame.depth, joints, focal) for joints in hands.values()])
-
-
-def _give_tips(sighting: Sighting, islands: list[Island], expected: Array | None, focal: float) -> Sighting:
-    """The sighting with fingertips that the detector overlooks where they show beyond a thing and were expected.
-
-    Where a thing hides a finger but for its tip, the network bends that finger to what shows of its root.
-    """
-    if expected is None:
-        return sighting
-    points, beliefs = sighting.hand.points.copy(), sighting.beliefs.copy()
-    for island in islands:
-        room = TIP_ROOM * focal / island.depth
-        if np.min(np.linalg.norm(points - island.middle, axis=1)) < room:
-            continue
-        apart = np.linalg.norm(expected[4::4] - island.middle, axis=1)
-        tip = 4 + 4 * int(np.argmin(apart))
-        if apart.min() < room:
-            points[tip], beliefs[tip] = island.middle, SEEN
-            beliefs[tip - 2 : tip] = COVERED
-    return replace(sighting, hand=replace(sighting.hand, points=points), beliefs=beliefs)
 
 
 def _has_size_of(hand: DetectedHand, depth: npt.NDArray[np.float32], camera: Camera) -> bool:

@@ -57,12 +57,12 @@ class PartFits:
 
     @cached_property
     def options(self) -> FitOptions:
-        """Of the first fit."""
+        """Of the first fit; where a detector looks, the second thread looks at the next frame meanwhile."""
         chosen = self.setup.options
         return FitOptions(
             iterations=chosen.first_iterations if self.is_first else chosen.iterations,
             stop_below=0.001 * chosen.stop_below_mm,
-            threads=min(chosen.threads, 2),
+            threads=1 if self.sightings.is_looked_at else min(chosen.threads, 2),
         )
 
     def predict(self) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -68,3 +69,11 @@ def test_a_broken_off_run_goes_on_as_if_nothing_had_been(box: Sequence, run, tmp
     _, chunk = track_frames(box, setup, type(state).load(tmp_path / "state.npz"), range(5, 9))
     for place, result in enumerate(results[5:9]):
         np.testing.assert_array_equal(chunk.pose[place], result.pose)
+
+
+def test_two_threads_give_the_bits_of_one_beside_the_detector(box: Sequence, run) -> None:
+    setup, results = run
+    _, state = start_tracking(box, setup.options)
+    two = replace(setup, options=replace(setup.options, threads=2))
+    _, chunk = track_frames(box, two, state, range(9))
+    np.testing.assert_array_equal(chunk.pose, [result.pose for result in results[:9]])

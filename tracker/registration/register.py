@@ -23,6 +23,7 @@ from tracker.registration.model_fit import Evaluation, ModelFit
 from tracker.registration.options import RegistrationOptions
 from tracker.registration.pose_prior import PosePrior
 from tracker.registration.registration import Registration, RegistrationStart, digest_model, digest_scan
+from tracker.registration.scan_frame import ScanFrame, find_scan_frame
 from tracker.registration.scan_points import ScanPoints, arrange_points, find_hand_points
 from tracker.registration.start import Start, StartSearch, find_apart
 from tracker.registration.verdict import Verdict, judge, refuse
@@ -94,26 +95,29 @@ def register_scan(
         points = arrange_points(scan, keep, options.max_points) if fault is None else None
     if points is None or fault is not None:
         return refuse(scan, tools.model, tools.model_digest, (fault or "", *notes), time.perf_counter() - began)
+    frame = find_scan_frame(points.points)
+    points, inside = frame.enter_points(points), frame.enter_scan(scan)
     tell("start", 0.0)
     with clock.measure("start"):
-        evaluation, side, scans = _begin(tools, points, options, start, tell)
+        evaluation, side, scans = _begin(tools, points, options, _enter(tools, frame, start), tell)
     tell("model", 0.6)
-    best = _settle(tools, evaluation, side, scans[side], scan, keep, options, clock)
+    best = _settle(tools, evaluation, side, scans[side], inside, keep, options, clock)
     if start is None and best.verdict.name != "good":
         tell("second look", 0.8)
         for again in _look_again(tools, scans, clock):
-            other = _settle(tools, again.evaluation, again.side, scans[again.side], scan, keep, options, clock)
+            other = _settle(tools, again.evaluation, again.side, scans[again.side], inside, keep, options, clock)
             if best.verdict.name == "doubtful" or other.verdict.name == "good":
                 best = min(best, other, key=_misfit)
     tell("done", 1.0)
     flip = _flip(best.side)
+    state = frame.leave_state(tools.model, best.model.state, best.side)
     return Registration(
-        vertices=best.vertices * flip,
-        model_vertices=best.model.posed.vertices * flip,
+        vertices=frame.leave(best.vertices * flip),
+        model_vertices=frame.leave(best.model.posed.vertices * flip),
         faces=np.asarray(tools.model.faces if best.side == "right" else tools.model.faces[:, ::-1], dtype=np.int64),
-        pose=best.model.state.pose,
-        shape=best.model.state.shape,
-        translation=best.model.state.translation,
+        pose=state.pose,
+        shape=state.shape,
+        translation=state.translation,
         side=best.side,
         verdict=best.verdict.name,
         score=best.verdict.score,
@@ -190,15 +194,25 @@ def _flip(side: str) -> Array:
     return np.array([1.0 if side == "right" else -1.0, 1.0, 1.0])
 
 
+def _enter(tools: Tools, frame: ScanFrame, start: RegistrationStart | None) -> RegistrationStart | None:
+    """A start with the model's shape, brought into the frame in which the scan is registered."""
+    if start is None:
+        return None
+    shape = np.zeros(tools.model.num_shape)
+    shape[: len(start.shape)] = start.shape[: len(shape)]
+    state = HandState(np.array(start.pose, dtype=np.float64), shape, np.array(start.translation, dtype=np.float64))
+    state = frame.enter_state(tools.model, state, start.side)
+    vertices = None if start.vertices is None else frame.enter(start.vertices)
+    return RegistrationStart(start.side, state.pose, state.translation, state.shape, vertices)
+
+
 def _begin(
     tools: Tools, points: ScanPoints, options: RegistrationOptions, start: RegistrationStart | None, tell: Progress
 ) -> tuple[Evaluation, str, dict[str, ScanPoints]]:
     """A state to fit from, its side, and the points of either side."""
     if start is not None:
         scans = {start.side: points if start.side == "right" else points.mirrored()}
-        shape = np.zeros(tools.model.num_shape)
-        shape[: len(start.shape)] = start.shape[: len(shape)]
-        state = HandState(np.array(start.pose, dtype=np.float64), shape, np.array(start.translation, dtype=np.float64))
+        state = HandState(start.pose, start.shape, start.translation)
         if start.vertices is not None:
             state = fit_to_vertices(tools.fit, state, start.vertices * _flip(start.side))
         count, settings = options.model_stages[0]

@@ -12,6 +12,7 @@ from tracker.capture.document import Node
 from tracker.capture.frame_pattern import FramePattern, find_pattern_fault, parse_pattern
 from tracker.capture.image_file import COLOR_SUFFIXES, DEPTH_SUFFIXES
 from tracker.capture.relative_path import find_path_fault
+from tracker.capture.video_file import VIDEO_SUFFIXES
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,6 +21,7 @@ class RecordedCamera(Camera):
 
     Attributes:
         color: Pattern of its colour images, or None.
+        film: Relative path of the video that its colour images are decoded from, or None; never beside `color`.
         depth: Pattern of its depth images, registered to the same pixels, or None.
         depth_scale: m per unit of the depth images.
     """
@@ -27,10 +29,11 @@ class RecordedCamera(Camera):
     color: FramePattern | None = None
     depth: FramePattern | None = None
     depth_scale: float = 0.001
+    film: str | None = None
 
     @property
     def has_color(self) -> bool:
-        return self.color is not None
+        return self.color is not None or self.film is not None
 
     @property
     def has_depth(self) -> bool:
@@ -48,6 +51,8 @@ class RecordedCamera(Camera):
         }
         if self.color is not None:
             entry["color"] = str(self.color)
+        if self.film is not None:
+            entry["film"] = self.film
         if self.depth is not None:
             entry["depth"] = str(self.depth)
             entry["depth_scale"] = float(self.depth_scale)
@@ -67,12 +72,17 @@ def parse_camera(node: Node) -> RecordedCamera:
     check_rigid(f"{what}.T_world_camera", T)
     color = _parse_images(node.get("color"), COLOR_SUFFIXES) if node.has("color") else None
     depth = _parse_images(node.get("depth"), DEPTH_SUFFIXES) if node.has("depth") else None
-    if color is None and depth is None:
-        raise node.error(f"{what} has neither 'color' nor 'depth'; needed at least one pattern of image files.")
+    film = _parse_film(node.get("film")) if node.has("film") else None
+    if color is None and depth is None and film is None:
+        raise node.error(
+            f"{what} has neither 'color' nor 'depth' nor 'film'; needed a pattern of image files, or a video."
+        )
+    if color is not None and film is not None:
+        raise node.error(f"{what} has both 'color' and 'film'; leave out one of them.")
     if color is not None and color == depth:
         raise node.error(f"{what}: 'color' and 'depth' are the same files ({color}).")
     depth_scale = node.get("depth_scale").number(1e-7, 1.0) if depth is not None else 0.001
-    return RecordedCamera(_parse_id(node.get("id")), width, height, K, distortion, T, color, depth, depth_scale)
+    return RecordedCamera(_parse_id(node.get("id")), width, height, K, distortion, T, color, depth, depth_scale, film)
 
 
 def _parse_id(node: Node) -> str:
@@ -83,6 +93,16 @@ def _parse_id(node: Node) -> str:
     if find_path_fault(name):
         node.fail("a name that can be a folder")
     return name
+
+
+def _parse_film(node: Node) -> str:
+    text = node.text(1024)
+    fault = find_path_fault(text)
+    if fault:
+        raise node.error(f"{node.file}: {node.where} {text!r} {fault}.")
+    if not text.lower().endswith(VIDEO_SUFFIXES):
+        node.fail(f"a video ({', '.join(VIDEO_SUFFIXES)})")
+    return text
 
 
 def _parse_images(node: Node, suffixes: tuple[str, ...]) -> FramePattern:

@@ -1,9 +1,10 @@
-"""A recording on disk: `sequence.json` and the image files it names."""
+"""A recording on disk: `sequence.json` and the image files or videos it names."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,14 @@ import numpy.typing as npt
 
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.document import Node, load_json, read_regular_file
+from tracker.capture.film import Film
 from tracker.capture.frame import Frame
 from tracker.capture.image_file import MAX_IMAGE_BYTES, decode_color, decode_depth
 from tracker.capture.recorded_camera import RecordedCamera, parse_camera
 from tracker.capture.recorded_object import RecordedObject, parse_object
 from tracker.capture.relative_path import find_path_fault, is_inside
 from tracker.capture.static_plane import MAX_PLANES, StaticPlane, parse_direction, parse_plane
+from tracker.capture.video_file import VideoFile
 from tracker.errors import FrameError, SequenceError
 
 SEQUENCE_FILE = "sequence.json"
@@ -72,14 +75,16 @@ class Sequence:
         raise SequenceError(f"{self.name}: has no camera {camera_id!r}; it has {[c.id for c in self.cameras]}.")
 
     def image_path(self, kind: str, index: int, camera_id: str) -> Path:
-        """File of the `color` or `depth` image of a frame; it need not exist, but lies inside the recording."""
+        """File of the `color` or `depth` image of a frame; it need not exist, but lies inside the recording.
+
+        A camera's film has none of its own for a frame: FrameError.
+        """
         assert kind in ("color", "depth"), kind
         camera = self.camera(camera_id)
         pattern = camera.color if kind == "color" else camera.depth
         if pattern is None:
-            raise FrameError(f"{self.name}: camera {camera_id} has no {kind} images.")
-        if not 0 <= index < self.frame_count:
-            raise FrameError(f"{self.name}: there is no frame {index}; frames go from 0 to {self.frame_count - 1}.")
+            raise FrameError(f"{self.name}: camera {camera_id} has no files of {kind} images.")
+        self._check_index(index)
         return self._inside(pattern.path(index), FrameError)
 
     def frame(self, index: int, camera_id: str) -> Frame:
@@ -92,7 +97,15 @@ class Sequence:
         return Frame(index, camera_id, self.color(index, camera_id) if camera.has_color else None, depth)
 
     def color(self, index: int, camera_id: str) -> npt.NDArray[np.uint8]:
-        """(H, W, 3) uint8 RGB."""
+        """(H, W, 3) uint8 RGB; not to be written to."""
+        if (film := self.camera(camera_id).film) is not None:
+            self._check_index(index)
+            path = self._inside(film, FrameError)
+            try:
+                image = self.films[camera_id].frame(index)
+            except FrameError as fault:
+                raise FrameError(f"Camera {camera_id}: {fault}") from fault
+            return self._checked(image, path, camera_id)
         path = self.image_path("color", index, camera_id)
         image = decode_color(read_regular_file(path, MAX_IMAGE_BYTES, FrameError), str(path))
         return self._checked(image, path, camera_id)
@@ -102,6 +115,16 @@ class Sequence:
         path = self.image_path("depth", index, camera_id)
         image = decode_depth(read_regular_file(path, MAX_IMAGE_BYTES, FrameError), str(path))
         return self._checked(image, path, camera_id)
+
+    @cached_property
+    def films(self) -> dict[str, Film]:
+        """The films by camera, each opened when a frame of it is asked for."""
+        films = {camera.id: camera.film for camera in self.cameras if camera.film is not None}
+        return {name: Film(VideoFile(self.folder, film), self.frame_count) for name, film in films.items()}
+
+    def _check_index(self, index: int) -> None:
+        if not 0 <= index < self.frame_count:
+            raise FrameError(f"{self.name}: there is no frame {index}; frames go from 0 to {self.frame_count - 1}.")
 
     def _checked(self, image: np.ndarray, path: Path, camera_id: str) -> np.ndarray:
         camera = self.camera(camera_id)

@@ -44,7 +44,7 @@ class VideoFile:
 
     def probe(self, samples: int) -> StreamProbe:
         """Decode the whole video: the count in its header may be wrong. Pixels are looked at about `samples` times."""
-        with self._open() as capture:
+        with self.open() as capture:
             fps = float(capture.get(cv2.CAP_PROP_FPS))
             promised = int(min(max(capture.get(cv2.CAP_PROP_FRAME_COUNT), 0), MAX_VIDEO_FRAMES))
             every = max(1, promised // max(1, samples))
@@ -52,7 +52,7 @@ class VideoFile:
             sizes: Counter[tuple[int, int]] = Counter()
             while capture.grab():
                 if len(times) % every == 0:
-                    image = self._retrieve(capture, len(times))
+                    image = self.retrieve(capture, len(times))
                     sizes[(image.shape[1], image.shape[0])] += 1
                 times.append(float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000)
                 if len(times) > MAX_VIDEO_FRAMES:
@@ -78,13 +78,30 @@ class VideoFile:
             fps=fps if np.isfinite(fps) and 0.001 <= fps <= 100_000 else None,
         )
 
+    def look(self) -> StreamProbe:
+        """What its header, its first and its last frame tell, without decoding the rest; else as `probe`.
+
+        A video whose header promises nothing, or whose last promised frame is not there, is decoded whole.
+        """
+        fps, promised = self.read_header()
+        with self.open() as capture:
+            size = None
+            if promised and capture.grab():
+                image = self.retrieve(capture, 0)
+                size = image.shape[1], image.shape[0]
+                is_whole = capture.set(cv2.CAP_PROP_POS_FRAMES, promised - 1) and capture.grab()
+                size = size if promised == 1 or is_whole else None
+        if size is None:
+            return self.probe(2)
+        return StreamProbe(promised, size, {"video frame, decoded when asked for": promised}, fps=fps or None)
+
     def read(self) -> Iterator[SourceImage]:
         """Every frame in order, encoded to be stored."""
         flags = [] if self.lossless else [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
-        with self._open() as capture:
+        with self.open() as capture:
             index = 0
             while capture.grab():
-                image = self._retrieve(capture, index)
+                image = self.retrieve(capture, index)
                 done, data = cv2.imencode(self.suffix, image, flags)
                 if not done:
                     raise FrameError(f"{self.name}, frame {index}: cannot be stored as {self.suffix}.")
@@ -93,36 +110,37 @@ class VideoFile:
 
     def images(self) -> Iterator[tuple[float, npt.NDArray[np.uint8]]]:
         """Every frame in order as it is decoded: its time in the video, s, and its pixels (H, W, 3) BGR."""
-        with self._open() as capture:
+        with self.open() as capture:
             index = 0
             while capture.grab():
                 time_s = float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000
-                yield time_s, self._retrieve(capture, index)
+                yield time_s, self.retrieve(capture, index)
                 index += 1
 
     def read_header(self) -> tuple[float, int]:
         """Frames a second and the number of frames that the header promises; 0 where it does not say."""
-        with self._open() as capture:
+        with self.open() as capture:
             fps, count = (float(capture.get(what)) for what in (cv2.CAP_PROP_FPS, cv2.CAP_PROP_FRAME_COUNT))
         is_told = np.isfinite(fps) and 0.001 <= fps <= 100_000
         return fps if is_told else 0.0, int(min(max(count, 0), MAX_VIDEO_FRAMES))
 
     def read_frame(self, index: int) -> npt.NDArray[np.uint8]:
         """One frame (H, W, 3) RGB, near enough for people to look at: seeking is exact in most videos, not in all."""
-        with self._open() as capture:
+        with self.open() as capture:
             capture.set(cv2.CAP_PROP_POS_FRAMES, index)
             if not capture.grab():
                 raise FrameError(f"{self.name}, frame {index}: cannot be decoded.")
-            return np.ascontiguousarray(self._retrieve(capture, index)[..., ::-1])
+            return np.ascontiguousarray(self.retrieve(capture, index)[..., ::-1])
 
-    def _retrieve(self, capture: cv2.VideoCapture, index: int) -> np.ndarray:
+    def retrieve(self, capture: cv2.VideoCapture, index: int) -> np.ndarray:
+        """(H, W, 3) uint8 BGR, the frame that was grabbed; `index` is for the message of a FrameError."""
         done, image = capture.retrieve()
         if not done or image is None or image.ndim != 3 or image.dtype != np.uint8:
             raise FrameError(f"{self.name}, frame {index}: cannot be decoded.")
         return image
 
     @contextmanager
-    def _open(self) -> Iterator[cv2.VideoCapture]:
+    def open(self) -> Iterator[cv2.VideoCapture]:
         """The decoder, for a file that begins like a video: playlists and other texts would make it open more files."""
         path = (self.root / self.name).resolve()
         if not path.is_file():

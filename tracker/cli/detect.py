@@ -8,6 +8,7 @@ from typing import Any
 
 from tracker.cli.command import add_json, choose_frames, parse_range, run_guarded
 from tracker.cli.progress import ProgressLine
+from tracker.cli.recording import add_recording, load_recording
 from tracker.errors import TrackerError, say_count
 
 DEFAULT_FILE = "detections.json"
@@ -20,7 +21,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         description="Find the hands in the colour, grey and infrared images of a recording, followed from frame to "
         "frame, and write their joints as an annotations.json whose items have a score besides.",
     )
-    parser.add_argument("recording", type=Path, metavar="RECORDING", help="a recording folder, with its sequence.json")
+    add_recording(parser, "RECORDING")
     parser.add_argument(
         "--view", action="append", default=[], metavar="ID", help="a camera to look at; several times for several (all)"
     )
@@ -37,14 +38,13 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 def detect(args: argparse.Namespace) -> dict[str, Any]:
     import numpy as np
 
-    from tracker.capture.sequence import load_sequence
     from tracker.detection.recorded_hands import choose_views, detect_hands
     from tracker.landmarks import default_hand_detector
 
-    recording = load_sequence(args.recording)
+    recording = load_recording(args)
     views = choose_views(recording, args.view)
     frames = choose_frames(args.frames, recording.frame_count)
-    out = args.out or args.recording / DEFAULT_FILE
+    out = args.out or recording.folder / DEFAULT_FILE
     if out.is_dir():
         raise TrackerError(f"{out}: is a folder; --out needs the name of a file.")
     if recording.annotations_path is not None and out.resolve() == recording.annotations_path.resolve():

@@ -10,6 +10,7 @@ from typing import Any
 from tracker.cli.command import add_json, choose_frames, parse_hand, parse_named_file, parse_range, run_guarded
 from tracker.cli.hands import load_hands, load_objects
 from tracker.cli.progress import ProgressLine
+from tracker.cli.recording import add_recording, load_recording
 from tracker.errors import TrackerError, say_count
 from tracker.fitting.presets import PRESETS, find_preset
 
@@ -23,7 +24,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "without colour the depth image is searched. Recordings of colour cameras alone, one to sixteen, start and go "
         "on by what the hand detector sees in every view.",
     )
-    parser.add_argument("recording", type=Path, metavar="PATH", help="a recording folder, with its sequence.json")
+    add_recording(parser, "PATH")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the track goes")
     parser.add_argument(
         "--hand",
@@ -92,14 +93,13 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 def track(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.capture.annotations import load_annotations
-    from tracker.capture.sequence import load_sequence
     from tracker.detection import load_detector
     from tracker.fitting.options import TrackOptions
     from tracker.tracking.follow import track_frames
     from tracker.tracking.start import start_tracking
     from tracker.tracking.track import join_chunks
 
-    sequence = load_sequence(args.recording)
+    sequence = load_recording(args)
     frames = choose_frames(args.frames, sequence.frame_count)
     given = {
         "terms": args.terms,

@@ -64,7 +64,8 @@ def list_image_names(sequence: Sequence) -> ImageNames:
     stored: dict[Place, str] = {}
     for camera in sequence.cameras:
         pattern = camera.color or camera.depth
-        assert pattern is not None
+        if pattern is None:
+            continue  # a film has no images with names
         for frame in range(sequence.frame_count):
             stored[camera.id, frame] = pattern.path(frame)
     return ImageNames(_read_originals(sequence), stored)

@@ -11,6 +11,7 @@ from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.sequence import SEQUENCE_FILE, Sequence, load_sequence
+from tracker.capture.video_file import VideoFile
 from tracker.errors import AnnotationError, TrackerError, say_count
 
 TRUTH_FILE = "truth.npz"
@@ -37,6 +38,11 @@ class RecordingFolder:
             if item.model not in beside:
                 problems.append(f"{item.model}: the model of object {item.name!r} is missing.")
             copies |= {name: name for name in beside}
+        problems += [
+            f"{camera.film}: the film of camera {camera.id} is missing."
+            for camera in sequence.cameras
+            if camera.film is not None and camera.film not in files.names
+        ]
         annotations, faults = _load_annotations(sequence)
         cameras = tuple(
             PlannedCamera(
@@ -44,7 +50,8 @@ class RecordingFolder:
                 K=camera.K,
                 distortion=camera.distortion,
                 T_world_camera=camera.T_world_camera,
-                color=_list_frames(files, camera.color, sequence.frame_count, False, used),
+                color=_find_film(files, camera.film, options, used)
+                or _list_frames(files, camera.color, sequence.frame_count, False, used),
                 depth=_list_frames(files, camera.depth, sequence.frame_count, True, used),
                 depth_scale=camera.depth_scale if camera.depth else None,
                 calibrated_size=(camera.width, camera.height),
@@ -91,6 +98,13 @@ def _list_frames(
     names = tuple(pattern.path(index) for index in range(count))
     used.update(names)
     return ImageFiles(files.root, names, is_depth)
+
+
+def _find_film(files: ListedFiles, film: str | None, options: ImportOptions, used: set[str]) -> VideoFile | None:
+    if film is None or film not in files.names:
+        return None
+    used.add(film)
+    return VideoFile(files.root, film, options.color_format == "png")
 
 
 def _load_annotations(sequence: Sequence) -> tuple[Annotations | None, list[str]]:

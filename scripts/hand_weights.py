@@ -55,7 +55,7 @@ def diffuse(vertices: Array, faces: npt.NDArray[np.int64], groups: list[Array]) 
     distances = np.stack([distance_to_lines(vertices, lines) for lines in groups], axis=1)
     nearest = np.argmin(distances, axis=1)
     heat = HEAT / np.maximum(distances.min(axis=1), 1e-4) ** 2
-    laplacian, areas = _laplacian(vertices, faces)
+    laplacian, areas = surface_laplacian(vertices, faces)
     system = splu((diags(heat * areas) + laplacian).tocsc())
     sources = np.eye(len(groups))[nearest] * (heat * areas)[:, None]
     return np.clip(system.solve(sources), 0.0, 1.0)
@@ -69,7 +69,7 @@ def distance_to_lines(points: Array, lines: Array) -> Array:
     return np.linalg.norm(points[:, None] - closest, axis=2).min(axis=1)
 
 
-def _laplacian(vertices: Array, faces: npt.NDArray[np.int64]) -> tuple[coo_matrix, Array]:
+def surface_laplacian(vertices: Array, faces: npt.NDArray[np.int64]) -> tuple[coo_matrix, Array]:
     """Positive cotangent Laplacian (V, V) and the area of each vertex (V,)."""
     rows, columns, values = [], [], []
     areas = np.zeros(len(vertices))

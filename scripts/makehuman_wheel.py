@@ -138,7 +138,8 @@ class MacroTargets:
                 chosen = [value for value in values if value in words]
                 if chosen:
                     share *= shares[axis].get(chosen[0], 0.0)
-            total += share * offsets
+            if share:
+                total += share * offsets
         return total
 
 

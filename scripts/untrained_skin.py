@@ -43,7 +43,9 @@ def find_landmark(name: str) -> str:
     return f"{finger}_{(THUMB_PLACES if finger == 'thumb' else PLACES)[number]}"
 
 
-def fit_joint_regressor(vertices: Array, joints: Array, directions: Array, joint_directions: Array) -> sparse.csr_array:
+def fit_joint_regressor(
+    vertices: Array, joints: Array, directions: Array, joint_directions: Array, ring: int = RING
+) -> sparse.csr_array:
     """(B, V) weights >= 0 that sum to one and follow the joints in every shape.
 
     Args:
@@ -51,14 +53,15 @@ def fit_joint_regressor(vertices: Array, joints: Array, directions: Array, joint
         joints: (B, 3) m.
         directions: (V, 3, S) m.
         joint_directions: (B, 3, S) m.
+        ring: So many of the vertices nearest to a joint may be used.
     """
     rows, columns, values = [], [], []
     for b, joint in enumerate(joints):
-        near = np.argsort(np.linalg.norm(vertices - joint, axis=1))[:RING]
+        near = np.argsort(np.linalg.norm(vertices - joint, axis=1))[:ring]
         system = np.concatenate(
-            [vertices[near].T, directions[near].reshape(RING, -1).T, np.ones((1, RING)), REGRESSOR_RIDGE * np.eye(RING)]
+            [vertices[near].T, directions[near].reshape(ring, -1).T, np.ones((1, ring)), REGRESSOR_RIDGE * np.eye(ring)]
         )
-        wanted = np.concatenate([joint, joint_directions[b].ravel(), [1.0], np.zeros(RING)])
+        wanted = np.concatenate([joint, joint_directions[b].ravel(), [1.0], np.zeros(ring)])
         found, _ = nnls(system, wanted)
         used = np.flatnonzero(found > 1e-4)
         rows += [b] * len(used)

@@ -18,30 +18,32 @@ BLEND_FORMAT = ("handloom-blend-model", "1")
 
 def save_blend_model(model: BlendModel, path: Path) -> None:
     """Write a model; the file appears whole or not at all. Equal models give equal bytes."""
+    write_npz_arrays(Path(path), blend_arrays(model))
+
+
+def blend_arrays(model: BlendModel) -> dict[str, np.ndarray]:
+    """What is in the file of a model."""
     regressor = sparse.coo_array(model.joint_regressor)
     order = np.lexsort((regressor.col, regressor.row))
-    write_npz_arrays(
-        Path(path),
-        {
-            "format": np.array(BLEND_FORMAT),
-            "name": np.array([model.name]),
-            "side": np.array([model.side]),
-            "provenance": np.array([json.dumps(model.provenance, ensure_ascii=False)]),
-            "template": model.template,
-            "faces": model.faces,
-            "shape_directions": model.shape_directions,
-            "pose_directions": model.pose_directions,
-            "skinning_weights": model.skinning_weights,
-            "regressor_rows": regressor.row[order],
-            "regressor_columns": regressor.col[order],
-            "regressor_values": regressor.data[order],
-            "parents": model.parents,
-            "joint_names": np.array(model.joint_names),
-            "pose_mean": model.pose_mean,
-            "pose_components": model.pose_components,
-            "tips": model.tips,
-        },
-    )
+    return {
+        "format": np.array(BLEND_FORMAT),
+        "name": np.array([model.name]),
+        "side": np.array([model.side]),
+        "provenance": np.array([json.dumps(model.provenance, ensure_ascii=False)]),
+        "template": model.template,
+        "faces": model.faces,
+        "shape_directions": model.shape_directions,
+        "pose_directions": model.pose_directions,
+        "skinning_weights": model.skinning_weights,
+        "regressor_rows": regressor.row[order],
+        "regressor_columns": regressor.col[order],
+        "regressor_values": regressor.data[order],
+        "parents": model.parents,
+        "joint_names": np.array(model.joint_names),
+        "pose_mean": model.pose_mean,
+        "pose_components": model.pose_components,
+        "tips": model.tips,
+    }
 
 
 @reads(ModelFileError, "a trained hand model as Handloom writes it")
@@ -62,8 +64,8 @@ def read_blend_fields(fields: NpzFields) -> BlendModel:
     if form != BLEND_FORMAT:
         raise ModelFileError(path, f"format {' '.join(form)[:60]}", " ".join(BLEND_FORMAT))
     side = fields.texts("side", 1)[0]
-    if side not in ("right", "left"):
-        raise ModelFileError(path, f"side {side[:40]!r}", "right or left")
+    if side not in ("right", "left", "body"):
+        raise ModelFileError(path, f"side {side[:40]!r}", "right, left or body")
     template = fields.floats("template", (-1, 3), MAX_COORDINATE)
     names = fields.texts("joint_names", -1)
     vertices, bones = len(template), len(names)
@@ -91,6 +93,6 @@ def read_blend_fields(fields: NpzFields) -> BlendModel:
         joint_names=names,
         pose_mean=fields.floats("pose_mean", (3 * (bones - 1),), MAX_ANGLE),
         pose_components=fields.floats("pose_components", (-1, 3 * (bones - 1)), MAX_ANGLE),
-        tips=fields.integers("tips", (5,), 0, vertices),
+        tips=fields.integers("tips", (10 if side == "body" else 5,), 0, vertices),
         provenance=read_provenance(fields),
     )

@@ -1,0 +1,204 @@
+"""What the body with hands is worth: seams at the wrists, its hands beside the hand model, people's measurements.
+
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.body_model [--poses 100] [--people 2000] [--json]
+
+Bars (`docs/body_model.md`): the step at the seam below 0.5 mm, the hands within 0.3 mm of the hand model, means and
+deviations of stature and hand length within 3 % of ANSUR II's, their correlation within 0.05. Exit code 1 when one is
+missed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections import Counter
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy import sparse
+
+from tracker.model.blend_model import BLEND_JOINTS, BlendModel
+from tracker.model.body_hands import BodyHand, body_hand
+from tracker.model.body_model import SEXES, body_model
+
+Array = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+ANSUR = {
+    "male": ((1.75621, 0.19328), (0.06855, 0.00995), 0.6732),
+    "female": ((1.62847, 0.18108), (0.06420, 0.01006), 0.6462),
+}
+"""Mean and deviation of stature and hand length, m, and their correlation: 4,082 men and 1,986 women, ANSUR II."""
+
+WRIST_BEND = 0.5
+"""Largest turn of a wrist in the poses compared, rad."""
+
+
+def measure_seam(model: BlendModel, poses: int, seed: int = 0) -> dict[str, float]:
+    """How high the step is where the hands are sewn on, mm, over random people, finger poses and turns of the wrist.
+
+    Each vertex of the ring between hand and forearm is taken out and put back where a quadratic through its neighbours
+    on both sides has the surface. Were one side higher than the other by a step, it would be half a step away: twice
+    its distance along the normal is the step. "control" is the same at vertices of the hand 8 to 18 mm past the wrist,
+    where nothing is sewn: what the surface's own curvature makes of it.
+    """
+    rng = np.random.default_rng(seed)
+    around = _neighbourhoods(model.faces, len(model.template))
+    steps: dict[str, list[float]] = {"": [], "control_": []}
+    for _ in range(poses):
+        pose = _hand_pose(model, rng)
+        hands = [body_hand(model, side) for side in ("right", "left")]
+        for hand in hands:
+            pose[hand.wrist] = rng.uniform(-1.0, 1.0, 3) * WRIST_BEND / np.sqrt(3.0)
+        posed = model.pose_at(pose, rng.standard_normal(model.num_shape))
+        for hand in hands:
+            past = ((model.template - posed.joints_rest[hand.wrist]) * hand.outwards)[hand.vertices, 0]
+            beside = hand.vertices[(past > 0.008) & (past < 0.018)]
+            for kind, chosen in (("", seam_ring(model, hand)), ("control_", beside)):
+                steps[kind] += [_step(posed.vertices, int(vertex), around[int(vertex)]) for vertex in chosen]
+    found = {}
+    for kind, values in steps.items():
+        found[f"{kind}mean_mm"] = 1e3 * float(np.mean(values))
+        found[f"{kind}p95_mm"] = 1e3 * float(np.percentile(values, 95))
+        found[f"{kind}max_mm"] = 1e3 * float(np.max(values))
+    return found
+
+
+def seam_ring(model: BlendModel, hand: BodyHand) -> Ints:
+    """Vertices of a hand that share a face with the forearm."""
+    own = np.isin(model.faces, hand.vertices)
+    across = own.any(axis=1) & ~own.all(axis=1)
+    return np.unique(model.faces[across][own[across]])
+
+
+def _neighbourhoods(faces: Ints, count: int) -> list[Ints]:
+    """For each vertex those at most two edges away."""
+    edges = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    matrix = sparse.csr_array(
+        (np.ones(2 * len(edges)), np.concatenate([edges, edges[:, ::-1]]).T), shape=(count, count)
+    )
+    both = sparse.csr_array(matrix + matrix @ matrix)
+    return [both.indices[both.indptr[v] : both.indptr[v + 1]] for v in range(count)]
+
+
+def _step(vertices: Array, vertex: int, around: Ints) -> float:
+    """Twice the height of a vertex over the quadratic through its neighbours, m."""
+    offsets = vertices[around[around != vertex]] - vertices[vertex]
+    centred = offsets - offsets.mean(axis=0)
+    frame = np.linalg.svd(centred, full_matrices=False)[2]
+    x, y, height = (offsets @ frame.T).T
+    reach = np.sqrt(np.mean(x * x + y * y))
+    u, v = x / reach, y / reach
+    matrix = np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=1)
+    weights = np.exp(-0.5 * (u * u + v * v))[:, None]
+    return 2.0 * abs(float(np.linalg.lstsq(matrix * weights, height * weights[:, 0], rcond=None)[0][0]))
+
+
+def compare_hands(model: BlendModel, hands: dict[str, BlendModel], poses: int, seed: int = 1) -> dict[str, float]:
+    """The largest distance between the body's hands and the hand model's, mm, over random people and poses.
+
+    Body and fingers are turned at random; the hand model is given the person's hand as its own template and turned and
+    placed as the body's wrist is. "straight": all vertices of the hand, the wrist not turned; "bent": those beyond the
+    band where the skin goes over to the forearm, the wrist turned, too.
+    """
+    rng = np.random.default_rng(seed)
+    worst: dict[str, list[float]] = {"straight": [], "bent": []}
+    for number in range(poses):
+        pose = _hand_pose(model, rng)
+        pose[:22] = 0.4 * rng.standard_normal((22, 3))
+        kind = "straight" if number % 2 else "bent"
+        if kind == "straight":
+            pose[[body_hand(model, side).wrist for side in hands]] = 0.0
+        posed = model.pose_at(pose, rng.standard_normal(model.num_shape), rng.standard_normal(3))
+        for side, hand_model in hands.items():
+            hand = body_hand(model, side)
+            R = hand.R_body_hand
+            rest = model.shaped(posed.shape)[hand.vertices]
+            origin = posed.joints_rest[hand.wrist]
+            turned = np.concatenate([np.zeros((1, 3)), pose[hand.fingers]]) @ R
+            alone = hand_model.pose_at(turned, rest=(rest - origin) @ R)
+            placed = (alone.vertices - alone.joints[0]) @ R.T @ posed.Ts[hand.wrist][:, :3].T
+            placed += posed.joints[hand.wrist]
+            apart = np.linalg.norm(placed - posed.vertices[hand.vertices], axis=1)
+            if kind == "bent":
+                apart = apart[model.skinning_weights[hand.vertices, hand.elbow] == 0.0]
+            worst[kind].append(float(apart.max()))
+    return {f"{kind}_max_mm": 1e3 * max(found) for kind, found in worst.items()}
+
+
+def measure_people(model: BlendModel, people: int, seed: int = 2) -> dict[str, Any]:
+    """Stature and hand length (m) of random people of the model's population."""
+    rng = np.random.default_rng(seed)
+    hand = body_hand(model, "right")
+    rows = []
+    for shape in rng.standard_normal((people, model.num_shape)):
+        shaped = model.shaped(shape)
+        joints = model.joints_of(shaped)
+        chain = [hand.wrist, *(hand.fingers[BLEND_JOINTS.index(f"middle{k}") - 1] for k in (1, 2, 3))]
+        points = np.concatenate([joints[chain], shaped[model.tips[2]][None]])
+        rows.append((np.ptp(shaped[:, 1]), np.linalg.norm(np.diff(points, axis=0), axis=1).sum()))
+    found = np.array(rows)
+    return {
+        "mean": found.mean(axis=0).tolist(),
+        "deviation": found.std(axis=0, ddof=1).tolist(),
+        "correlation": float(np.corrcoef(found.T)[0, 1]),
+    }
+
+
+def count_open_edges(faces: Ints) -> int:
+    """Edges that do not have exactly one face on either side; none in a closed surface."""
+    edges = Counter(tuple(sorted(edge)) for edge in faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist())
+    return sum(count != 2 for count in edges.values())
+
+
+def _hand_pose(model: BlendModel, rng: np.random.Generator) -> Array:
+    """(52, 3) a body at rest with both hands anywhere within their pose space, six components each."""
+    half = len(model.pose_components) // 2
+    coefficients = np.zeros(len(model.pose_components))
+    for first in (0, half):
+        coefficients[first : first + 6] = 0.8 * rng.standard_normal(6)
+    return np.concatenate([np.zeros((1, 3)), model.pose_of(coefficients)])
+
+
+def find_misses(report: dict[str, Any]) -> list[str]:
+    """Bars that the report misses, in words."""
+    missed = []
+    if report["seam"]["max_mm"] >= 0.5:
+        missed.append("the step at the seam")
+    if max(report["hands"].values()) >= 0.3:
+        missed.append("the hands")
+    for sex, (mean, deviation, correlation) in ANSUR.items():
+        found = report[sex]
+        for name, wanted in (("mean", mean), ("deviation", deviation)):
+            if np.abs(np.array(found[name]) / wanted - 1.0).max() > 0.03:
+                missed.append(f"{name} of {sex} people")
+        if abs(found["correlation"] - correlation) > 0.05:
+            missed.append(f"correlation of {sex} people")
+    return missed
+
+
+def main() -> int:
+    from tracker.model.trained_hand import trained_hand
+
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--poses", type=int, default=100)
+    parser.add_argument("--people", type=int, default=2000, help="of each sex")
+    parser.add_argument("--json", action="store_true")
+    arguments = parser.parse_args()
+    model = body_model()
+    hands = {side: trained_hand(side) for side in ("right", "left")}
+    report: dict[str, Any] = {
+        "seam": measure_seam(model, arguments.poses),
+        "hands": compare_hands(model, hands, arguments.poses),
+        "open_edges": count_open_edges(model.faces),
+    }
+    report |= {sex: measure_people(body_model(sex), arguments.people) for sex in SEXES}
+    report["missed"] = find_misses(report)
+    print(json.dumps(report, indent=None if arguments.json else 1))
+    return int(bool(report["missed"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

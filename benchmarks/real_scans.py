@@ -1,7 +1,9 @@
 """Register the real scans beside the project, print distances, and draw the registered meshes from four sides.
 
     python -m benchmarks.real_scans FOLDER [--write]
+    python -m benchmarks.real_scans FOLDER --rotations 8 [--out FILE]
 
+The second registers each scan in so many rotations, with others beside them (`scan_rotations`).
 FOLDER holds 2_spread.obj, 4_rest.obj and 5_fist.obj, 28.5 mm a unit. The pictures for docs/pictures show our meshes
 only: above by finger, below by the mean distance of the scan from each triangle (dark 0, yellow 1 mm and more, grey
 no scan).
@@ -15,6 +17,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from benchmarks.scan_rotations import METRES_PER_UNIT, study
 from tracker.capture.scan import Scan, load_scan
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.register import register_scan
@@ -24,7 +27,6 @@ from tracker.registration.vertex_normals import find_unit_normals
 from tracker.rendering.zbuffer import render_depth
 
 SCANS = ("2_spread", "4_rest", "5_fist")
-METRES_PER_UNIT = 0.0285
 PICTURES = Path("docs/pictures")
 SIZE, FOCAL = 420, 1500.0
 PALM, FINGERS = (200, 200, 200), ((90, 90, 230), (90, 200, 90), (220, 180, 60), (220, 90, 160), (60, 170, 240))
@@ -79,7 +81,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--write", action="store_true", help="write the pictures of docs/registration.md")
+    parser.add_argument("--rotations", type=int, default=0, metavar="N", help="register each scan in N rotations")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="keeps every rotation's figures as JSON")
     args = parser.parse_args()
+    if args.rotations:
+        study(args.folder, args.rotations, args.out)
+        return
     for name in SCANS:
         scan = load_scan(args.folder / f"{name}.obj", METRES_PER_UNIT)
         registration = register_scan(scan, untrained_hand())

@@ -13,7 +13,7 @@ from tracker.registration.register import register_scan
 from tracker.registration.scan_frame import find_scan_frame
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan
 
-ROTATIONS = Rotation.random(8, random_state=3).as_matrix()
+ROTATIONS = Rotation.random(8, rng=np.random.default_rng(3)).as_matrix()
 SHIFT = np.array([0.4, -0.2, 0.9])
 
 

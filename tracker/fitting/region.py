@@ -108,7 +108,7 @@ def depth_range(frame: Frame) -> tuple[float, float]:
     """
     assert frame.depth is not None
     values = frame.depth[(frame.depth > 0.1) & (frame.depth < 3.0)]
-    return (0.1, float(np.partition(values, 200)[200]) + 0.6) if values.size >= 200 else (0.1, 3.0)
+    return (0.1, float(np.partition(values, 200)[200]) + 0.6) if values.size > 200 else (0.1, 3.0)
 
 
 def whole_image(camera: Camera, near: float, far: float) -> Region:

@@ -56,7 +56,10 @@ def _find_view_faults(depth_cameras: Sequence[str], color_cameras: Sequence[str]
     views = options.view_ids or tuple(color_cameras)
     faults = []
     if not set(views) & set(color_cameras):
-        faults.append(f"{' and '.join(views)} have no colour images, and hands are found in colour. Add one that has.")
+        have = "have" if len(views) > 1 else "has"
+        faults.append(
+            f"{' and '.join(views)} {have} no colour images, and hands are found in colour. Add one that has."
+        )
     if len(set(views)) < len(views):
         faults.append(f"Cameras were chosen twice ({options.cameras}). Name each once.")
     if len(views) > MAX_VIEWS:

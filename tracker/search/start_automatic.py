@@ -33,6 +33,8 @@ MIN_PIXELS = 50
 SCORED_PIXELS = 1200
 """About so many hand pixels are enough to compare bends of a finger by."""
 
+EDGE_ON = 1.0 - 1e-9
+"""Cosine above which a surface faces aside, and turns of a palm on it are counted from the image's other axis."""
 
 SOFT = 0.01
 """Weight of the regularization once a hypothesis is aligned: half of what a followed hand has."""
@@ -179,7 +181,9 @@ def propose_poses(scene: Scene, candidate: PalmCandidate, camera: Camera, search
     R_model_palm, palm = _palm_frame(model)
     view = candidate.point - camera.T_world_camera[:3, 3]
     normal = candidate.normal
-    across = camera.T_world_camera[:3, 0] - normal * (camera.T_world_camera[:3, 0] @ normal)
+    right, down = camera.T_world_camera[:3, 0], camera.T_world_camera[:3, 1]
+    aside = right if abs(right @ normal) < EDGE_ON else down
+    across = aside - normal * (aside @ normal)
     across /= np.linalg.norm(across)
     upward = np.cross(normal, across)
     poses = []

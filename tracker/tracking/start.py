@@ -85,9 +85,10 @@ def start_tracking(
     marks = _find_marks(sequence, annotations, frames[0], camera_id)
     bare = TrackSetup((), (), camera_id, options, marks)
     frame, camera = bare.read(sequence, frames[0])
-    first = sorted(hands, key=lambda hand: hand not in marks)  # those that somebody marked come first
-    tell = plan_start(sequence, options, first).share(tell)
     sightings = find_sightings(bare.hand_detector, frame, camera, tuple(hands), {})
+    # A hand that is looked for in the depth may not take the pixels of one that somebody marked or the detector sees.
+    first = sorted(hands, key=lambda hand: (hand not in marks, hand not in sightings.hands))
+    tell = plan_start(sequence, options, first).share(tell)
     placed = _place_hands(sightings, bare, {name: hands[name] for name in first}, tell)
     placed |= _place_objects(sequence, bare, objects, placed, tell)
     there = tuple(name for name in models if name in objects or np.any(placed[name][1]))

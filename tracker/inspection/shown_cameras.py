@@ -52,8 +52,8 @@ def show_cameras(
 
 def _show(camera: Camera, middle: Array, hands: Mapping[str, Array], seen: Mapping[str, DetectedHand]) -> ShownCamera:
     origin = camera.T_world_camera[:3, 3]
-    width, height = float(camera.width), float(camera.height)
-    corners = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
+    right, bottom = camera.width - 0.5, camera.height - 0.5  # the image's rim: pixel centres are integers
+    corners = np.array([[-0.5, -0.5], [right, -0.5], [right, bottom], [-0.5, bottom]])
     ends = se3.transform(camera.T_world_camera, LENGTH * np.linalg.norm(middle - origin) * camera.unproject(corners))
     outline = [*((origin, end) for end in ends), *zip(ends, np.roll(ends, -1, axis=0), strict=True)]
     rays, joints = [np.zeros((0, 2, 3))], [np.zeros(0, dtype=np.int64)]

@@ -112,8 +112,8 @@ def test_rays_go_from_each_camera_to_beside_the_joints_that_it_saw(run, views):
     for camera, known in zip(shown, views[0].cameras, strict=True):
         np.testing.assert_allclose(camera.outline[:4, 0], np.tile(known.T_world_camera[:3, 3], (4, 1)), atol=1e-6)
         corners = known.project(camera.outline[:4, 1].astype(float))
-        expected = [[0, 0], [known.width, 0], [known.width, known.height], [0, known.height]]
-        np.testing.assert_allclose(corners, expected, atol=0.01)
+        right, bottom = known.width - 0.5, known.height - 0.5
+        np.testing.assert_allclose(corners, [[-0.5, -0.5], [right, -0.5], [right, bottom], [-0.5, bottom]], atol=0.01)
         assert camera.joints.tolist() == list(range(21))
         np.testing.assert_allclose(camera.rays[:, 0], np.tile(known.T_world_camera[:3, 3], (21, 1)), atol=1e-6)
         ends = camera.rays[:, 1].astype(float)

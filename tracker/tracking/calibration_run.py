@@ -112,13 +112,13 @@ def _follow(
     for place in range(len(frames)):
         state, result = follow_frame(sequence, setup, tools, state, recover=setup.hand_detector is not None)
         first = state.pose if place == 0 else first
-        if _tells_shape(setup, result) or (place == 0 and setup.marks):
+        if _tells_shape(result) or (place == 0 and setup.marks):
             poses[place] = state.pose
         tell((place + 1) / len(frames))
     return first, poses
 
 
-def _tells_shape(setup: TrackSetup, result: FrameResult) -> bool:
+def _tells_shape(result: FrameResult) -> bool:
     """Whether every hand is in its place and explained; a finger that is elsewhere would bend the shape."""
     quality = result.quality
     if result.status == "lost" or quality is None or quality.explained < WELL_EXPLAINED:

@@ -96,6 +96,18 @@ def test_frames_that_follow_each_other_try_every_hypothesis_once(monkeypatch):
     np.testing.assert_array_equal(np.sort(np.concatenate([every[part] for part in parts])), every)
 
 
+def test_of_frames_that_follow_each_other_one_finds_both_hands_that_nobody_knows_the_place_of():
+    def is_found(step: int) -> bool:
+        found = find_again(sightings(BOTH), SETUP, TOOLS, np.zeros_like(POSE), (0, 1), step)
+        if found is None:
+            return False
+        attempt, still = found
+        assert not set(attempt.gone) - set(still)
+        return still == () and max(joint_errors(attempt.pose, hand) for hand in (0, 1)) < 0.02
+
+    assert any(is_found(step) for step in range(3, 3 + STEPS))
+
+
 def test_a_hand_is_put_where_the_detector_sees_it_and_one_that_it_overlooks_stays_lost():
     away = POSE.copy()
     away[FIRST.start : FIRST.start + 3] += (0.3, 0.2, 0.1)

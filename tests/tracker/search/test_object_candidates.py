@@ -100,11 +100,10 @@ def test_without_colour_the_rims_that_a_hand_leaves_are_no_place():
     assert not len(find_object_candidates(see(rim), SIZE, 0.02, NOWHERE, 40))
 
 
-@pytest.mark.parametrize("pixels", [0, 1, FEWEST - 1])
-def test_noise_and_an_empty_image_have_no_place(pixels):
+@pytest.mark.parametrize(("pixels", "is_place"), [(0, False), (1, False), (FEWEST - 1, False), (FEWEST, True)])
+def test_a_speck_is_noise_up_to_a_size_and_a_place_from_there_on(pixels, is_place):
     depth = np.zeros((240, 320))
-    depth[100:104, 100:105].flat[:pixels] = 0.5
-    speck = depth.copy()
-    speck[100:104, 100:105] = np.where(np.arange(20).reshape(4, 5) < pixels, 0.5, 0.0)
-    for image in (depth, speck):
-        assert find_object_candidates(see(image), SIZE, 0.02, NOWHERE, 40).shape == (0, 3)
+    depth[100:104, 100:105] = np.where(np.arange(20).reshape(4, 5) < pixels, 0.5, 0.0)
+    no_hand = np.zeros((240, 320), dtype=np.bool_)
+    places = find_object_candidates(see(depth, is_hand=no_hand), SIZE, 0.02, NOWHERE, 40)
+    assert places.shape == (int(is_place), 3)

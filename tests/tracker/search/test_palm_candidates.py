@@ -74,6 +74,15 @@ def test_nearer_places_come_first_and_all_keep_their_distance():
     assert [place.point.tolist() for place in fewer] == points[:2].tolist()
 
 
+@pytest.mark.parametrize(("apart", "count"), [(0.8 * APART, 1), (1.4 * APART, 2)])
+def test_two_middles_closer_than_a_palm_is_wide_are_one_place_the_nearer_one(apart, count):
+    column = 100 + round(apart * FOCAL / 0.5)
+    both = np.max([disc(100, 120, 0.017, 0.5), disc(column, 120, 0.017, 0.49)], axis=0)
+    places = find_palm_candidates(see(both), 8)
+    assert len(places) == count
+    assert places[0].point[2] == pytest.approx(0.49, abs=1e-4)
+
+
 def test_camera_and_scene_moved_together_have_the_same_places():
     depth = np.max([disc(60, 60, 0.03, 0.6), disc(240, 120, 0.03, 0.4)], axis=0)
     T = se3.exp(np.array([0.3, -1.0, 0.5, 0.4, 2.0, -1.0]))

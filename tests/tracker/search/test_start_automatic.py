@@ -67,6 +67,15 @@ def test_each_hand_is_explained_best_by_its_own_side():
         assert wrong is None or own.quality.merit > wrong.quality.merit
 
 
+def test_of_two_hands_the_nearer_one_is_taken_whichever_side_of_the_image_it_is_on():
+    scene = Scene((HAND, HAND))
+    for aside in (-0.1, 0.1):
+        near, far = palm_to_camera(HAND, (aside, 0.0, 0.45)), palm_to_camera(HAND, (-1.3 * aside, 0.0, 0.6))
+        found = find(photograph(scene, np.r_[far, near]), HAND)
+        assert found is not None
+        assert np.linalg.norm(joints_of(HAND, found.pose) - joints_of(HAND, near), axis=1).mean() < 0.01
+
+
 def test_in_an_empty_image_there_is_no_hand_and_on_a_bare_wall_none_to_believe():
     empty = replace(photograph(SCENE, palm_to_camera(HAND, PLACE)), depth=np.zeros((240, 320), np.float32))
     assert find(empty, HAND) is None

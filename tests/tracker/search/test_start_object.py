@@ -17,6 +17,7 @@ from tracker.errors import TrackingError
 from tracker.geometry import se3
 from tracker.model.scene import Scene
 from tracker.observation import Preprocessing
+from tracker.search.find_object import find_object
 from tracker.search.start_object import place_object, start_object
 
 BALL, CUBE, ROPE = ball(0.03), cube(), tube(4)
@@ -92,6 +93,28 @@ def test_an_object_that_nobody_placed_is_found_in_the_first_frame_that_shows_it(
     assert np.linalg.norm(se3.exp(pose)[:3, 3] - PLACE[:3]) < 2e-3
     assert "ball: found in frame 1" in caplog.text
     assert [frame.index for frame, _ in rest] == [2], "frames behind it are not read"
+
+
+def test_an_object_that_the_first_frame_shows_badly_and_a_later_one_well_starts_from_the_guess_in_the_first(caplog):
+    whole = photograph(Scene((BALL,)), PLACE)
+    assert whole.depth is not None
+    shown = whole.depth.copy()
+    shown[70:190, 57:177] = 0.3  # a thing before most of it
+    hidden = replace(whole, depth=shown, is_hand=None)
+    guess = find_object(BALL, hidden, CAMERA, HOW, [])
+    assert guess is not None and not guess.is_believable
+    views = ((hidden, CAMERA), (replace(whole, index=1), CAMERA))
+    pose = start_object(BALL, RecordedObject("ball", "ball.ply"), views, HOW, [])
+    np.testing.assert_array_equal(pose, guess.pose)
+    assert "frame 0 shows it too badly" in caplog.text
+
+
+def test_what_stood_in_the_first_frame_where_the_object_is_later_hides_it_only_then():
+    item, place = RecordedObject("ball", "ball.ply"), PLACE + np.r_[0.0, 0.0, 0.01, np.zeros(3)]
+    first = photograph(Scene((CUBE,)), PLACE)
+    views = ((first, CAMERA), (replace(photograph(Scene((BALL,)), place), index=1), CAMERA))
+    pose = start_object(BALL, item, views, HOW, [(CUBE, PLACE)])
+    assert np.linalg.norm(se3.exp(pose)[:3, 3] - place[:3]) < 2e-3
 
 
 def test_an_object_that_no_frame_shows_is_refused_with_the_frames_and_what_to_do():

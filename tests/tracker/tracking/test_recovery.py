@@ -18,7 +18,6 @@ from tracker.fitting.options import TrackOptions
 from tracker.fitting.quality import MISFIT
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
-from tracker.search.part import Part
 from tracker.search.tools import Tools
 from tracker.synthesis.motion import perform
 from tracker.synthesis.recording import RecordingOptions, write_recording
@@ -83,16 +82,6 @@ def test_swapped_fingers_are_put_right(recorded, run, pair: int):
     error = np.linalg.norm(posed.landmarks(0) - recorded.truth.joints_3d[3], axis=1).mean()
     assert best.misfit < UNSETTLED
     assert error < 2e-3  # m
-
-
-def test_a_part_of_a_scene_goes_back_into_its_place(two_hands):
-    _, _, setup, state = two_hands
-    part = Part.without(setup, (0,))
-    assert part.setup.names == setup.names[1:]
-    own = part.take(state.pose)
-    assert np.array_equal(part.put(own, np.zeros_like(state.pose))[setup.scene.pose_slices[1]], own)
-    assert np.array_equal(part.put(own, state.pose), state.pose)
-    assert Part.without(setup, ()).setup is setup
 
 
 @pytest.mark.parametrize("gone", [0, 1])

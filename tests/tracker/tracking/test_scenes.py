@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from tests.tracker.toys import tube
 from tracker.capture.annotations import load_annotations
 from tracker.capture.frame import Frame
 from tracker.capture.recorded_object import RecordedObject
 from tracker.capture.truth import load_truth
-from tracker.errors import TrackingError
 from tracker.fitting.options import TrackOptions
 from tracker.geometry import se3
 from tracker.model.default_hand import default_hand
@@ -71,22 +69,6 @@ def test_what_a_model_explains_is_left_out_and_the_rest_is_kept(two_hands):
     assert shares[0] < 0.1
     assert shares[1] > 0.99
     assert isinstance(rest, Frame)
-
-
-def test_an_articulated_object_is_placed_at_its_bones():
-    model = tube(4)
-    scene = Scene((model,))
-    pose = np.r_[0.02, -0.01, 0.5, 0.3, 0.2, -0.4, 0.3, -0.2, 0.1, 0.4, -0.3, 0.2]
-    posed = scene.pose_at(pose)
-    joints = dict(zip(model.skeleton.bone_names, posed.landmarks(0), strict=True))
-    placed = place_object(model, RecordedObject("tube", "tube.npz", se3.exp(pose[:6]), joints))
-    errors = np.linalg.norm(scene.pose_at(placed).landmarks(0) - posed.landmarks(0), axis=1)
-    assert errors.max() < 1e-3  # m
-
-
-def test_an_object_that_nobody_placed_is_refused():
-    with pytest.raises(TrackingError, match="nobody placed it"):
-        place_object(tube(1), RecordedObject("ball", "ball.ply"))
 
 
 def test_a_mesh_keeps_its_coordinates_when_it_is_placed(tmp_path):

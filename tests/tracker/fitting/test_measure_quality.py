@@ -166,3 +166,48 @@ def test_an_empty_image_and_a_hand_out_of_sight_are_gone_with_plain_numbers():
         assert quality.is_gone and quality.is_lost
         assert quality.score <= 0.0 or pose is aside
         assert quality.depth_residual == float("inf")
+
+
+def test_a_short_stub_behind_the_wrist_is_no_forearm_and_one_that_the_border_cuts_off_may_go_on():
+    whole = photograph(SCENE, POSE)
+    column, row = np.rint(CAMERA.project(SCENE.pose_at(POSE).landmarks(0)[:1]))[0].astype(int)
+
+    def explained(first: int, last: int) -> float:
+        return judge(paint(whole, np.s_[first:last, column - 15 : column + 16], 0.45, True)).explained
+
+    assert explained(row + 5, row + 50) < 0.85 < 0.95 < explained(row + 5, 240)
+
+
+def test_what_of_the_hand_is_drawn_behind_the_wrist_and_not_seen_is_no_misfit():
+    whole = photograph(SCENE, POSE)
+    row = round(float(CAMERA.project(SCENE.pose_at(POSE).landmarks(0)[:1])[0, 1]))
+    assert judge(paint(whole, np.s_[row:, :], 0.0, False)).misfit == 0.0
+    assert judge(paint(whole, np.s_[row - 8 :, :], 0.0, False)).misfit > MISFIT
+
+
+def test_what_is_only_drawn_and_what_is_only_seen_beside_it_are_two_areas_with_a_rim_each():
+    whole = photograph(SCENE, POSE)
+    assert whole.depth is not None
+    rows, columns = np.mgrid[:240, :320]
+    band = (rows >= 125) & (rows < 155)
+    only_drawn = band & (columns < 150) & (whole.depth > 0)
+    only_seen = band & (columns < 150) & (columns > 95) & (whole.depth == 0)
+    one, other = paint(whole, only_drawn, 0.0, False), paint(whole, only_seen, 0.45, True)
+    both = paint(one, only_seen, 0.45, True)
+    areas = [judge(frame).misfit for frame in (one, other, both)]
+    assert min(areas) > MISFIT
+    assert areas[2] == pytest.approx(areas[0] + areas[1], rel=1e-6)
+
+
+def test_skin_without_depth_in_the_shadow_of_the_hand_is_a_finger_for_who_draws_one_there_and_for_who_does_not():
+    whole, images = photograph(SCENE, POSE), []
+    assert whole.depth is not None
+    for looks_like_skin in (True, False):
+        is_hand = whole.depth > 0
+        is_hand[:70] &= looks_like_skin
+        color = np.where(is_hand[..., None], np.uint8([196, 140, 120]), np.uint8(20))
+        images.append(replace(paint(whole, np.s_[:70, :], 0.0, False), color=color, is_hand=None))
+    drawn, bent = POSE, np.r_[POSE[:6], curl_fingers(RIGHT, 0.9)]
+    skin, dark = images
+    assert judge(skin, drawn).misfit < MISFIT < judge(dark, drawn).misfit
+    assert judge(skin, bent).misfit > judge(dark, bent).misfit + MISFIT

@@ -15,7 +15,7 @@ from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import SEEN, Sighting, Sightings
 from tracker.landmarks import DetectedHand
 from tracker.model.default_hand import default_hand
-from tracker.search.find_again import MIN_AREA, STEPS, find_again, find_seen
+from tracker.search.find_again import COARSE, MIN_AREA, STEPS, _is_hand_left, find_again, find_seen
 from tracker.search.tools import Tools
 
 RIGHT, LEFT = default_hand("right"), default_hand("left")
@@ -71,29 +71,25 @@ def test_an_empty_image_has_no_hand_to_find():
     assert find_seen(sightings(empty), SETUP, TOOLS, POSE, (0, 1)) is None
 
 
-@pytest.mark.parametrize(("share", "is_searched"), [(0.8, False), (1.25, True)])
-def test_a_search_begins_with_as_much_hand_as_a_fingertip_has_however_many_pixels_that_are(
-    share, is_searched, monkeypatch
-):
-    searched = []
-    monkeypatch.setattr("tracker.search.find_again.find_hand", lambda *args: searched.append(args))
+@pytest.mark.parametrize(("share", "is_left"), [(0.8, False), (1.25, True)])
+def test_there_is_something_to_search_from_as_much_hand_as_a_fingertip_has_however_many_pixels_that_are(share, is_left):
     for z in (0.2, 0.4):
         depth, is_hand = np.zeros((240, 320), np.float32), np.zeros((240, 320), np.bool_)
-        side = round(300.0 / z * (share * MIN_AREA) ** 0.5 / 4) * 4  # px
+        side = round(300.0 / z * (share * MIN_AREA) ** 0.5 / COARSE) * COARSE  # px
         depth[20 : 20 + side, 20 : 20 + side], is_hand[20 : 20 + side, 20 : 20 + side] = z, True
-        find_again(sightings(Frame(0, "cam0", None, depth, is_hand)), SETUP, TOOLS, POSE, (0,), 0)
-    assert len(searched) == (2 if is_searched else 0)
+        for shown in (is_hand, None):
+            assert _is_hand_left(Frame(0, "cam0", None, depth, shown), CAMERA, SETUP, POSE, (0,)) == is_left
+        assert not _is_hand_left(Frame(0, "cam0", None, depth, ~is_hand), CAMERA, SETUP, POSE, (0,))
 
 
-def test_frames_that_follow_each_other_try_every_hypothesis_once(monkeypatch):
-    parts = []
-    monkeypatch.setattr("tracker.search.find_again.find_hand", lambda *args: parts.append(args[-1]))
-    away = POSE.copy()
-    away[FIRST.start] += 0.5
-    for step in range(7, 7 + STEPS):
-        assert find_again(sightings(BOTH), SETUP, TOOLS, away, (0,), step) is None
-    every = np.arange(64)
-    np.testing.assert_array_equal(np.sort(np.concatenate([every[part] for part in parts])), every)
+def test_a_part_of_the_search_comes_again_after_all_others_and_no_two_of_a_round_are_alike():
+    def look(step: int) -> list[float] | None:
+        found = find_again(sightings(BOTH), SETUP, TOOLS, np.r_[POSE[FIRST] + 0.5, POSE[SECOND]], (0,), step)
+        return None if found is None else found[0].pose.tolist()
+
+    one, two = look(4), look(5)
+    assert one is not None and two is not None
+    assert look(4 + STEPS) == one != two == look(5 + 3 * STEPS)
 
 
 def test_of_frames_that_follow_each_other_one_finds_both_hands_that_nobody_knows_the_place_of():

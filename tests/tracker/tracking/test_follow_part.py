@@ -116,12 +116,15 @@ def test_a_finger_that_jumped_is_found_by_a_second_try_in_the_same_frame(bent):
 
 
 def test_a_thing_that_no_finger_explains_is_searched_once_and_then_not_for_some_frames():
-    frame = photograph(BOTH.scene, POSE)
+    alone = TrackSetup(("right",), (RIGHT,), "cam0", OPTIONS)
+    pose = POSE[: RIGHT.num_dofs]
+    frame = photograph(alone.scene, pose)
     assert frame.depth is not None and frame.is_hand is not None
     depth, is_hand = frame.depth.copy(), frame.is_hand.copy()
-    # Between the hands, before both wrists; no finger can lie flat on all of it.
-    depth[60:90, 147:172], is_hand[60:90, 147:172] = 0.40, True
+    depth[60:69, 157:166], is_hand[60:69, 157:166] = 0.40, True  # smaller than a hand that is lost would leave
     strange = replace(frame, depth=depth, is_hand=is_hand)
-    first = follow(strange)
-    assert first.attempt is not None and first.attempt.misfit > UNSETTLED
+    first = follow(strange, alone, pose=pose)
+    assert first.attempt is not None and first.attempt.misfit > UNSETTLED and not first.attempt.lost
     assert first.second_try == Patience(FINGER_REST[0], FINGER_REST[0])
+    second = follow(strange, alone, pose=first.attempt.pose, second_try=first.second_try)
+    assert second.second_try == first.second_try.pass_frame()

@@ -13,8 +13,8 @@ Array = npt.NDArray[np.float64]
 UNDISTORTION_STEPS = 8
 """Of Newton's method; three are enough inside an ordinary image."""
 
-STEP = 1e-7
-"""Of the finite differences, in a plane at distance 1."""
+SETTLED_PX = 1e-9
+"""Newton's method ends when every ray meets its pixel so nearly: another step would move it by rounding."""
 
 MEETING_PX = 1e-4
 """A ray meets its pixel if it comes so near."""
@@ -77,17 +77,19 @@ class Camera:
             K = self.K
             return np.column_stack([(pixels - K[:2, 2]) / [K[0, 0], K[1, 1]], np.ones(len(pixels))])
         guess = cv2.undistortPoints(pixels[:, None, :].astype(np.float64), self.K, self.distortion)[:, 0, :]
-        flat = guess.astype(np.float64)
-        for _ in range(UNDISTORTION_STEPS):
-            here = self._distort(flat)
-            J = np.stack([(self._distort(flat + step) - here) / STEP for step in STEP * np.eye(2)], axis=2)
-            is_regular = J[:, 0, 0] * J[:, 1, 1] - J[:, 0, 1] * J[:, 1, 0] > 0.0
-            move = np.linalg.solve(np.where(is_regular[:, None, None], J, np.eye(2)), (pixels - here)[:, :, None])
-            flat = np.where(is_regular[:, None], flat + move[:, :, 0], np.nan)
-        with np.errstate(invalid="ignore"):
-            meets = np.linalg.norm(self._distort(flat) - pixels, axis=1) < MEETING_PX
-        rays = np.column_stack([flat, np.ones(len(flat))])
-        rays[~meets] = np.nan
+        rays = np.column_stack([guess.astype(np.float64), np.ones(len(guess))])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            here, J = self._distort(rays)
+            for _ in range(UNDISTORTION_STEPS):
+                off = pixels - here
+                if np.nanmax(np.abs(off), initial=0.0) < SETTLED_PX:
+                    break
+                determinant = J[:, 0, 0] * J[:, 1, 1] - J[:, 0, 1] * J[:, 1, 0]
+                rays[:, 0] += (J[:, 1, 1] * off[:, 0] - J[:, 0, 1] * off[:, 1]) / determinant
+                rays[:, 1] += (J[:, 0, 0] * off[:, 1] - J[:, 1, 0] * off[:, 0]) / determinant
+                rays[~(determinant > 0.0), :2] = np.nan
+                here, J = self._distort(rays)
+            rays[~(np.linalg.norm(here - pixels, axis=1) < MEETING_PX)] = np.nan
         return rays
 
     def lift(self, pixels: npt.NDArray[np.number], depths: Array) -> Array:
@@ -107,8 +109,8 @@ class Camera:
             is_inside[is_inside] = np.all(np.abs(rays - points_camera / points_camera[:, 2:]) < 1e-3, axis=1)
         return is_inside
 
-    def _distort(self, flat: Array) -> Array:
-        """Pixels (N, 2) of rays (x, y, 1), camera, given as (N, 2)."""
-        points = np.column_stack([flat, np.ones(len(flat))])[:, None, :]
-        pixels = cv2.projectPoints(points, np.zeros(3), np.zeros(3), self.K, self.distortion)[0]
-        return np.asarray(pixels[:, 0, :], dtype=np.float64)
+    def _distort(self, rays: Array) -> tuple[Array, Array]:
+        """Pixels (N, 2) of rays (N, 3), camera, with z = 1, and their derivatives by x and y (N, 2, 2)."""
+        pixels, by_parameters = cv2.projectPoints(rays[:, None], np.zeros(3), np.zeros(3), self.K, self.distortion)
+        by_translation = by_parameters[:, 3:5]  # a camera that is moved sees what moved rays would show
+        return np.asarray(pixels[:, 0], dtype=np.float64), by_translation.reshape(-1, 2, 2)

@@ -14,7 +14,8 @@ DARK = 20
 
 def is_grey(image: npt.NDArray[np.uint8]) -> bool:
     """Whether an image (H, W, 3) tells no colours, as an infrared one."""
-    few = image[::4, ::4].astype(np.int16)
-    brightest = few.max(axis=2)
+    red, green, blue = (np.ascontiguousarray(image[::4, ::4, channel]) for channel in range(3))
+    brightest = np.maximum(np.maximum(red, green), blue)
+    darkest = np.minimum(np.minimum(red, green), blue)
     lit = brightest > DARK
-    return not lit.any() or bool(np.mean((brightest - few.min(axis=2))[lit]) < GREY)
+    return not lit.any() or bool(np.mean((brightest - darkest)[lit]) < GREY)

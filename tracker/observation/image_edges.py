@@ -1,4 +1,4 @@
-"""Edges of a part of a colour image, and for every pixel the nearest of each direction."""
+"""Edges of a part of a colour image, with their directions and their places to parts of a pixel."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 from tracker.capture.camera import Camera
 from tracker.observation.image_part import frame_points
@@ -17,6 +18,9 @@ DIRECTIONS = 6
 WEAK, STRONG = 30.0, 90.0
 """Canny's thresholds, of 255 times 4 (Sobel)."""
 
+SLACK = 1.0
+"""px by which an edge's pixel may be farther from a pixel than its place from a point beside that: half and half."""
+
 
 @dataclass(frozen=True)
 class ImageEdges:
@@ -25,13 +29,15 @@ class ImageEdges:
     Attributes:
         K: (3, 3) px; pixel (0, 0) is the part's first.
         T_world_camera: (4, 4).
-        nearest: (DIRECTIONS, H, W, 2) float32 row and column, to parts of a pixel, of the nearest edge across which
-            brightness changes in a direction of that bin; NaN where there is none.
+        directions: (H, W) uint8, bit d set at an edge across which brightness changes in a direction of bin d or of a
+            neighbour of it; 0 where there is no edge.
+        places: (H, W, 2) float32 row and column, to parts of a pixel; of no meaning where there is no edge.
     """
 
     K: npt.NDArray[np.float64]
     T_world_camera: npt.NDArray[np.float64]
-    nearest: npt.NDArray[np.float32]
+    directions: npt.NDArray[np.uint8]
+    places: npt.NDArray[np.float32]
 
 
 def find_image_edges(
@@ -48,59 +54,85 @@ def find_image_edges(
     window = frame_points(camera, points, margin)
     if window is None:
         return None
-    width, height, part = window.width, window.height, window.cut(image)
-    grey = cv2.GaussianBlur(cv2.cvtColor(np.ascontiguousarray(part), cv2.COLOR_RGB2GRAY), (3, 3), 0)
-    dx, dy = (cv2.Sobel(grey, cv2.CV_16S, *order).astype(np.int16) for order in ((1, 0), (0, 1)))
-    rows, columns = np.nonzero(cv2.Canny(dx, dy, WEAK, STRONG))
-    places = _refine(dx, dy, rows, columns)
-    angle = np.arctan2(dy[rows, columns].astype(np.float32), dx[rows, columns].astype(np.float32)) % np.pi
-    bins = (angle * (DIRECTIONS / np.pi)).astype(np.int8) % DIRECTIONS
-    nearest = np.full((DIRECTIONS, height, width, 2), np.nan, dtype=np.float32)
-    for direction in range(DIRECTIONS):
-        beside = (bins - direction) % DIRECTIONS
-        chosen = (beside <= 1) | (beside == DIRECTIONS - 1)
-        _nearest_into(nearest[direction], rows[chosen], columns[chosen], places[chosen])
-    return ImageEdges(window.K, camera.T_world_camera, nearest)
+    grey = cv2.GaussianBlur(cv2.cvtColor(np.ascontiguousarray(window.cut(image)), cv2.COLOR_RGB2GRAY), (3, 3), 0)
+    dx, dy = (np.asarray(cv2.Sobel(grey, cv2.CV_16S, *order), dtype=np.int16) for order in ((1, 0), (0, 1)))
+    is_edge = np.asarray(cv2.Canny(dx, dy, WEAK, STRONG), dtype=np.uint8)
+    directions = np.zeros((window.height, window.width), dtype=np.uint8)
+    places = np.empty((window.height, window.width, 2), dtype=np.float32)
+    _place_into(directions, places, is_edge, dx, dy)
+    return ImageEdges(window.K, camera.T_world_camera, directions, places)
 
 
-def _refine(
-    dx: npt.NDArray[np.int16], dy: npt.NDArray[np.int16], rows: npt.NDArray[np.intp], columns: npt.NDArray[np.intp]
-) -> npt.NDArray[np.float32]:
-    """(N, 2) row and column where the gradient (H, W) is strongest near pixels (N,), along its larger part.
+@njit(cache=True, nogil=True)
+def _place_into(directions, places, is_edge, dx, dy):
+    """Write where, along the larger part of the gradient, it is strongest: by a parabola through three pixels.
 
-    By a parabola through three pixels.
+    Args:
+        directions: (H, W) uint8 out, as in `ImageEdges`; must come zeroed.
+        places: (H, W, 2) float32 out, likewise.
+        is_edge: (H, W) uint8, not 0 at an edge.
+        dx, dy: (H, W) int16 gradient of the brightness.
     """
-    height, width = dx.shape
-    is_across = np.abs(dx[rows, columns].astype(np.int32)) >= np.abs(dy[rows, columns].astype(np.int32))
+    height, width = is_edge.shape
+    for row in range(height):
+        for column in range(width):
+            if is_edge[row, column] == 0:
+                continue
+            x, y = float(dx[row, column]), float(dy[row, column])
+            down, across = (0, 1) if abs(x) >= abs(y) else (1, 0)
+            r0, c0 = max(row - down, 0), max(column - across, 0)
+            r1, c1 = min(row + down, height - 1), min(column + across, width - 1)
+            before = np.hypot(float(dx[r0, c0]), float(dy[r0, c0]))
+            after = np.hypot(float(dx[r1, c1]), float(dy[r1, c1]))
+            curve = 2.0 * np.hypot(x, y) - before - after
+            shift = min(max(0.5 * (after - before) / curve, -0.5), 0.5) if curve > 0.0 else 0.0
+            places[row, column, 0] = row + down * shift
+            places[row, column, 1] = column + across * shift
+            own = int(np.arctan2(y, x) % np.pi * (DIRECTIONS / np.pi)) % DIRECTIONS
+            for bin in (own - 1, own, own + 1):
+                directions[row, column] |= np.uint8(1 << (bin % DIRECTIONS))
 
-    def strength(step: int) -> npt.NDArray[np.float32]:
-        at = (
-            np.clip(np.where(is_across, rows, rows + step), 0, height - 1),
-            np.clip(np.where(is_across, columns + step, columns), 0, width - 1),
-        )
-        return np.hypot(dx[at].astype(np.float32), dy[at].astype(np.float32))
 
-    before, here, after = strength(-1), strength(0), strength(1)
-    curve = 2.0 * here - before - after
-    shift = np.clip(np.where(curve > 0, 0.5 * (after - before) / np.maximum(curve, 1e-6), 0.0), -0.5, 0.5)
-    places = np.stack([rows + np.where(is_across, 0.0, shift), columns + np.where(is_across, shift, 0.0)], axis=1)
-    return places.astype(np.float32)
+def sort_offsets(radius: int) -> npt.NDArray[np.int16]:
+    """(N, 2) rows and columns of all pixels within a radius, px, of one; the nearest first, ties as they are read."""
+    steps = np.arange(-radius, radius + 1)
+    rows, columns = (grid.ravel() for grid in np.meshgrid(steps, steps, indexing="ij"))
+    square = rows**2 + columns**2
+    order = np.argsort(square, kind="stable")
+    order = order[: int(np.count_nonzero(square <= radius**2))]
+    return np.stack([rows[order], columns[order]], axis=1).astype(np.int16)
 
 
-def _nearest_into(
-    nearest: npt.NDArray[np.float32],
-    rows: npt.NDArray[np.intp],
-    columns: npt.NDArray[np.intp],
-    places: npt.NDArray[np.float32],
-) -> None:
-    """For every pixel (H, W, 2) the place (N, 2) of the nearest of some pixels (N,)."""
-    if not len(rows):
-        return
-    is_far = np.ones(nearest.shape[:2], dtype=np.uint8)
-    is_far[rows, columns] = 0
-    found = cv2.distanceTransformWithLabels(is_far, cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL)
-    labels = found[1].astype(np.int32, copy=False)
-    where = np.zeros((int(labels[rows, columns].max()) + 1, 2), dtype=np.float32)
-    where[labels[rows, columns]] = places
-    # Both numbers of a place are copied as one of 8 bytes.
-    np.take(where.view(np.float64)[:, 0], labels, mode="clip", out=nearest.view(np.float64)[:, :, 0])
+@njit(cache=True, nogil=True)
+def find_nearest_edge(seen, row, column, direction, beside, reach):
+    """The edge of a direction that is nearest to a point beside a pixel: its row, its column and how far it is, px.
+
+    Args:
+        seen: directions (H, W) and places (H, W, 2) as in `ImageEdges`, offsets (N, 2) of `sort_offsets`.
+        row, column: The pixel.
+        direction: Bin of the direction that is asked for.
+        beside: Rows and columns from the pixel to the point, together at most half a pixel.
+        reach: px; at most one less than the radius of the offsets.
+
+    Returns:
+        Infinities where there is none within reach.
+    """
+    directions, places, offsets = seen
+    height, width = directions.shape
+    wanted = np.uint8(1 << direction)
+    y, x = row + beside[0], column + beside[1]
+    found_y, found_x, least = np.inf, np.inf, np.inf
+    farthest = reach + SLACK
+    farthest *= farthest
+    for k in range(len(offsets)):
+        down, across = int(offsets[k, 0]), int(offsets[k, 1])
+        if down * down + across * across > farthest:
+            break
+        r, c = row + down, column + across
+        if r < 0 or c < 0 or r >= height or c >= width or not directions[r, c] & wanted:
+            continue
+        apart = np.hypot(places[r, c, 0] - y, places[r, c, 1] - x)
+        if apart < least and apart <= reach:
+            found_y, found_x, least = float(places[r, c, 0]), float(places[r, c, 1]), apart
+            farthest = min(farthest, (apart + SLACK) * (apart + SLACK))
+    return found_y, found_x, least

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
 from tracker.model.scene import PosedScene
-from tracker.observation.image_edges import DIRECTIONS, ImageEdges
+from tracker.observation.image_edges import DIRECTIONS, SLACK, ImageEdges, find_nearest_edge, sort_offsets
 from tracker.rendering import render_view
 from tracker.terms.drawn_frame import Matches
 from tracker.terms.point_line import PointToLine
@@ -49,7 +50,7 @@ class Contours:
     def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToLine:
         """Match the contours of the model as it is drawn now."""
         ids, barycentric, pixels, distances = self._match(posed)
-        near = distances <= self.max_distance
+        near = np.isfinite(distances)
         if self.models:
             near &= np.isin(posed.scene.vertex_models[ids[:, 0]], self.models)
         ids, barycentric, pixels, distances = ids[near], barycentric[near], pixels[near], distances[near]
@@ -63,15 +64,20 @@ class Contours:
         return PointToLine(ids[kept], barycentric[kept], directions, moments, weights)
 
     def measure(self, posed: PosedScene, model: int) -> Array:
-        """(N,) distances from each contour pixel of one model to the edge it would go to, m; infinite without one."""
+        """(N,) distances from each contour pixel of one model to the edge it would go to, m.
+
+        Infinite where there is none, or none within `max_distance`.
+        """
         ids, _, _, distances = self._match(posed)
         return distances[posed.scene.vertex_models[ids[:, 0]] == model]
 
     def _match(self, posed: PosedScene) -> tuple[npt.NDArray[np.int32], Array, Array, Array]:
-        """Ids (N, 3), shares (N, 3), edge (N, 2) px and distance (N,) m of every contour pixel, near or far."""
+        """Ids (N, 3), shares (N, 3), edge (N, 2) px and distance (N,) m of every contour pixel."""
         edges = self.edges
-        height, width = edges.nearest.shape[1:3]
+        height, width = edges.directions.shape
         view = render_view(posed, edges.K, edges.T_world_camera, height, width)
+        reach = self.max_distance * edges.K[0, 0] * float(view.inverse_depth.max()) + SLACK
+        offsets = _offsets(1 << int(np.ceil(np.log2(min(reach, height + width) + 1))))
         room = Matches.room(max(1, int(np.count_nonzero(view.face >= 0))))
         pixels, spans = np.zeros((len(room.ids), 2)), np.zeros(len(room.ids))
         count = _find_into(
@@ -79,9 +85,9 @@ class Contours:
             room.barycentric,
             pixels,
             spans,
-            (view.face, view.inverse_depth, view.projected, posed.scene.arrays.faces, edges.nearest, edges.K[0, 0]),
-            self.stride,
-            self.jump,
+            (view.face, view.inverse_depth, view.projected, posed.scene.arrays.faces),
+            (edges.directions, edges.places, offsets),
+            (edges.K[0, 0], self.stride, self.jump, self.max_distance),
         )
         return room.ids[:count], room.barycentric[:count], pixels[:count], spans[:count]
 
@@ -98,20 +104,27 @@ def reject_by_bone(
     return distances**2 <= 4.0 * square[bones]
 
 
+@cache
+def _offsets(radius: int) -> npt.NDArray[np.int16]:
+    """Those of `sort_offsets`, of a few radii."""
+    return sort_offsets(radius)
+
+
 @njit(cache=True, nogil=True)
-def _find_into(ids, barycentric, pixels, distances, drawn, stride, jump):
+def _find_into(ids, barycentric, pixels, distances, drawn, seen, how):
     """Write the matches and return their number.
 
     Args:
         ids: (N, 3) out.
         barycentric: (N, 3) out.
         pixels: (N, 2) out, column and row of the edges.
-        distances: (N,) out, m; infinite, with an edge of no meaning, where there is none of the direction.
-        drawn: face (H, W), inverse depth (H, W), projected (V, 3), faces (F, 3), nearest (D, H, W, 2), focal length px.
-        stride: As in `Contours`.
-        jump: As there.
+        distances: (N,) out, m; infinite, with an edge of no meaning, where there is none of the direction within reach.
+        drawn: face (H, W), inverse depth (H, W), projected (V, 3), faces (F, 3).
+        seen: directions (H, W) and places (H, W, 2) as in `ImageEdges`, offsets (N, 2) of `sort_offsets`.
+        how: Focal length, px; `stride`, `jump` and `max_distance` as in `Contours`.
     """
-    face, inverse_depth, projected, faces, nearest, focal = drawn
+    face, inverse_depth, projected, faces = drawn
+    focal, stride, jump, max_distance = how
     height, width = face.shape
     count = 0
     for row in range(1, height - 1):
@@ -145,18 +158,14 @@ def _find_into(ids, barycentric, pixels, distances, drawn, stride, jump):
                 continue
             # The surface ends half a pixel beyond the middle of its last one.
             half = 0.5 / length
-            to_row, to_column = (
-                nearest[direction, row, column, 0] - half * dy,
-                nearest[direction, row, column, 1] - half * dx,
-            )
-            apart = np.hypot(to_row - row, to_column - column) * z / focal
-            if np.isnan(apart):
-                apart = np.inf
+            beside = (half * dy, half * dx)
+            reach = max_distance * focal / z
+            to_row, to_column, apart = find_nearest_edge(seen, row, column, direction, beside, reach)
             corners = faces[f]
             barycentric_into(barycentric[count], corners, projected, column, row)
             for i in range(3):
                 ids[count, i] = corners[i]
-            pixels[count, 0], pixels[count, 1] = to_column, to_row
-            distances[count] = apart
+            pixels[count, 0], pixels[count, 1] = to_column - beside[1], to_row - beside[0]
+            distances[count] = apart * z / focal
             count += 1
     return count

@@ -20,6 +20,14 @@ from tracker.terms.surface_point import barycentric_into
 Array = npt.NDArray[np.float64]
 
 
+DRAWN = 0.001
+"""m; finer pixels than these are drawn together, so that the cost follows the hands and not the megapixels. The edges
+keep the resolution of the image."""
+
+SAMPLED = 16
+"""Of the vertices one in so many tells how far the scene is."""
+
+
 @dataclass(frozen=True)
 class Contours:
     """Pull drawn contours to image edges of their direction: E = Σ |v_i(θ) × d_i − m_i|², as Eq. 8 in each view.
@@ -75,7 +83,8 @@ class Contours:
         """Ids (N, 3), shares (N, 3), edge (N, 2) px and distance (N,) m of every contour pixel."""
         edges = self.edges
         height, width = edges.directions.shape
-        view = render_view(posed, edges.K, edges.T_world_camera, height, width)
+        shrink = _choose_shrink(posed, edges)
+        view = render_view(posed, _shrink(edges.K, shrink), edges.T_world_camera, height // shrink, width // shrink)
         reach = self.max_distance * edges.K[0, 0] * float(view.inverse_depth.max()) + SLACK
         offsets = _offsets(1 << int(np.ceil(np.log2(min(reach, height + width) + 1))))
         room = Matches.room(max(1, int(np.count_nonzero(view.face >= 0))))
@@ -87,7 +96,7 @@ class Contours:
             spans,
             (view.face, view.inverse_depth, view.projected, posed.scene.arrays.faces),
             (edges.directions, edges.places, offsets),
-            (edges.K[0, 0], self.stride, self.jump, self.max_distance),
+            (edges.K[0, 0], shrink, max(1, self.stride // shrink), self.jump, self.max_distance),
         )
         return room.ids[:count], room.barycentric[:count], pixels[:count], spans[:count]
 
@@ -104,6 +113,21 @@ def reject_by_bone(
     return distances**2 <= 4.0 * square[bones]
 
 
+def _choose_shrink(posed: PosedScene, edges: ImageEdges) -> int:
+    """How many px of the edges a drawn one is wide, so that it is at most `DRAWN` wide where the scene is."""
+    T = edges.T_world_camera
+    depth = float(np.median((posed.vertices[::SAMPLED] - T[:3, 3]) @ T[:3, 2]))
+    return max(1, int(DRAWN * edges.K[0, 0] / max(depth, 0.01)))
+
+
+def _shrink(K: Array, shrink: int) -> Array:
+    """(3, 3) of pixels that are so many times as wide; the first one's corner stays where it is."""
+    smaller = K / shrink
+    smaller[:2, 2] = (K[:2, 2] + 0.5) / shrink - 0.5
+    smaller[2, 2] = 1.0
+    return smaller
+
+
 @cache
 def _offsets(radius: int) -> npt.NDArray[np.int16]:
     """Those of `sort_offsets`, of a few radii."""
@@ -117,14 +141,16 @@ def _find_into(ids, barycentric, pixels, distances, drawn, seen, how):
     Args:
         ids: (N, 3) out.
         barycentric: (N, 3) out.
-        pixels: (N, 2) out, column and row of the edges.
+        pixels: (N, 2) out, column and row of where the drawn pixel's middle goes.
         distances: (N,) out, m; infinite, with an edge of no meaning, where there is none of the direction within reach.
         drawn: face (H, W), inverse depth (H, W), projected (V, 3), faces (F, 3).
         seen: directions (H, W) and places (H, W, 2) as in `ImageEdges`, offsets (N, 2) of `sort_offsets`.
-        how: Focal length, px; `stride`, `jump` and `max_distance` as in `Contours`.
+        how: Focal length, px of the edges; how many of these px a drawn one is wide; of its contours' px one in so many
+            is matched; `jump` and `max_distance` as in `Contours`.
     """
     face, inverse_depth, projected, faces = drawn
-    focal, stride, jump, max_distance = how
+    focal, shrink, stride, jump, max_distance = how
+    shift = 0.5 * (shrink - 1)
     height, width = face.shape
     count = 0
     for row in range(1, height - 1):
@@ -157,15 +183,14 @@ def _find_into(ids, barycentric, pixels, distances, drawn, seen, how):
             if length == 0.0:
                 continue
             # The surface ends half a pixel beyond the middle of its last one.
-            half = 0.5 / length
-            beside = (half * dy, half * dx)
-            reach = max_distance * focal / z
-            to_row, to_column, apart = find_nearest_edge(seen, row, column, direction, beside, reach)
+            half = 0.5 * shrink / length
+            y, x = shrink * row + shift + half * dy, shrink * column + shift + half * dx
+            to_row, to_column, apart = find_nearest_edge(seen, y, x, direction, max_distance * focal / z)
             corners = faces[f]
             barycentric_into(barycentric[count], corners, projected, column, row)
             for i in range(3):
                 ids[count, i] = corners[i]
-            pixels[count, 0], pixels[count, 1] = to_column - beside[1], to_row - beside[0]
+            pixels[count, 0], pixels[count, 1] = to_column - half * dx, to_row - half * dy
             distances[count] = apart * z / focal
             count += 1
     return count

@@ -27,7 +27,7 @@ def test_the_nearest_edge_is_one_of_the_direction_that_is_asked_for():
 
     def nearest(direction: int, row: int, column: int) -> tuple[float, float]:
         seen = (found.directions, found.places, sort_offsets(32))
-        return find_nearest_edge(seen, row, column, direction, (0.0, 0.0), 31.0)[:2]
+        return find_nearest_edge(seen, row, column, direction, 30.0)[:2]
 
     row, column = 60 - top, 70 - left  # inside, nearer to the left side than to the right, 20 px from top and bottom
     assert nearest(0, row, column) == pytest.approx((row, 59.5 - left), abs=0.1)
@@ -48,24 +48,23 @@ def test_an_edge_is_of_its_own_direction_and_of_both_neighbours():
     arrays(np.uint8, (13, 17), elements=st.sampled_from([0, 0, 0, 0b000111, 0b100011, 0b111000])),
     st.integers(0, 2**32 - 1),
     st.integers(0, DIRECTIONS - 1),
-    st.floats(0.0, 31.0),
+    st.floats(0.0, 30.0),
 )
 def test_no_edge_of_the_direction_is_nearer_than_the_one_found(directions, seed, direction, reach):
     rng = np.random.default_rng(seed)
-    row, column, turn = int(rng.integers(13)), int(rng.integers(17)), rng.uniform(0.0, 2.0 * np.pi)
-    beside = 0.5 * np.array([np.sin(turn), np.cos(turn)])
+    point = rng.uniform(-1.0, [14.0, 18.0])
     pixels = np.stack(np.meshgrid(np.arange(13.0), np.arange(17.0), indexing="ij"), axis=2)
     shifts = rng.uniform(-0.5, 0.5, (13, 17))
     places = (pixels + np.stack([shifts, np.zeros_like(shifts)], axis=2)).astype(np.float32)
     seen = (directions, places, sort_offsets(32))
-    *found, apart = find_nearest_edge(seen, row, column, direction, (beside[0], beside[1]), reach)
+    *found, apart = find_nearest_edge(seen, point[0], point[1], direction, reach)
     every = places[directions & (1 << direction) > 0].astype(np.float64)
-    distances = np.linalg.norm(every - (row, column) - beside, axis=1)
+    distances = np.linalg.norm(every - point, axis=1)
     if not np.any(distances <= reach):
         assert np.isinf([*found, apart]).all()
     else:
         assert apart == pytest.approx(distances.min(), abs=1e-9)
-        assert np.linalg.norm(found - beside - (row, column)) == pytest.approx(apart, abs=1e-9)
+        assert np.linalg.norm(found - point) == pytest.approx(apart, abs=1e-9)
 
 
 def test_a_plain_image_has_no_edges_and_what_is_out_of_sight_no_part():

@@ -112,7 +112,7 @@ def test_the_kernel_finds_what_a_plain_loop_finds(truth, edges):
     pixels, apart = np.zeros((count, 2)), np.zeros(count)
     drawn = (view.face, view.inverse_depth, view.projected, posed.scene.arrays.faces)
     offsets = sort_offsets(64)
-    how = (seen.K[0, 0], 3, 0.008, 0.0008)
+    how = (seen.K[0, 0], 1, 3, 0.008, 0.0008)
     found = _find_into(ids, shares, pixels, apart, drawn, (seen.directions, seen.places, offsets), how)
     plain = list(find_plainly(view, seen, 3, 0.008, 0.0008))
     assert found == len(plain) > 50
@@ -134,7 +134,7 @@ def test_a_contour_pixel_that_gaps_surround_evenly_has_no_direction_and_no_match
     drawn = (face, inverse_depth, np.zeros((3, 3)), np.array([[0, 1, 2]], np.int32))
     seen = (np.full((5, 5), 63, np.uint8), np.zeros((5, 5, 2), np.float32), sort_offsets(2))
     room = np.zeros((1, 3), np.int32), np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1)
-    assert _find_into(*room, drawn, seen, (1.0, 1, 0.008, 1.0)) == 0
+    assert _find_into(*room, drawn, seen, (1.0, 1, 1, 0.008, 1.0)) == 0
 
 
 def find_plainly(view, seen, stride, jump, max_distance):
@@ -162,3 +162,27 @@ def find_plainly(view, seen, stride, jump, max_distance):
             nearest = int(np.argmin(apart))
             is_near = apart[nearest] <= max_distance
             yield tuple(edges[nearest]), apart[nearest] if is_near else np.inf, (column, row)
+
+
+def test_a_scene_drawn_coarser_than_its_image_meets_the_same_edges(truth, edges, monkeypatch):
+    """An image of twice the resolution, of whose pixels four are drawn as one."""
+    seen, K = edges[0], edges[0].K.copy()
+    K[:2] *= 2.0
+    K[:2, 2] += 0.5
+    height, width = seen.directions.shape
+    directions = np.zeros((2 * height, 2 * width), np.uint8)
+    places = np.zeros((2 * height, 2 * width, 2), np.float32)
+    there = 2.0 * seen.places[seen.directions > 0] + 0.5
+    rows, columns = np.rint(there).astype(int).T
+    directions[rows, columns], places[rows, columns] = seen.directions[seen.directions > 0], there
+    posed = SCENE.pose_at(truth)
+    T = seen.T_world_camera
+    pixel = float(np.median((posed.vertices - T[:3, 3]) @ T[:3, 2])) / seen.K[0, 0]
+    monkeypatch.setattr("tracker.terms.contours.DRAWN", 1.4 * pixel)
+    as_it_is = Contours(seen, stride=1)._match(posed)
+    coarser = Contours(replace(seen, K=K, directions=directions, places=places), stride=2)._match(posed)
+    np.testing.assert_array_equal(coarser[0], as_it_is[0])
+    is_same = np.isclose(coarser[3], as_it_is[3], rtol=0.0, atol=1e-8)
+    assert len(is_same) > 200 and is_same.mean() > 0.97  # two edges may have come to one pixel
+    is_met = is_same & np.isfinite(as_it_is[3])
+    np.testing.assert_allclose(coarser[2][is_met], 2.0 * as_it_is[2][is_met] + 0.5, atol=1e-4)

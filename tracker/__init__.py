@@ -123,7 +123,8 @@ if TYPE_CHECKING:
     from tracker.model.default_hand import default_hand
     from tracker.model.files import measure_model
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
-    from tracker.model.mano_files import load_mano, save_mano
+    from tracker.model.mano_files import load_mano
+    from tracker.model.mano_writer import save_mano
     from tracker.model.object_files import ObjectSize
     from tracker.model.trained_hand import trained_hand
     from tracker.model.untrained_hand import untrained_hand
@@ -299,7 +300,7 @@ _HOMES = {
     "UNKNOWN_COLOR": "tracker.inspection.frame_view",
     "run_import": "tracker.capture.import_run",
     "save_annotations": "tracker.capture.annotations",
-    "save_mano": "tracker.model.mano_files",
+    "save_mano": "tracker.model.mano_writer",
     "save_blend_model": "tracker.model.blend_files",
     "save_label_files": "tracker.label_formats.label_files",
     "save_registration": "tracker.registration.registration_files",

@@ -32,7 +32,8 @@ from tracker.errors import AnnotationError, FileError, ScanError, TrackerError, 
 from tracker.label_formats.formats import import_labels
 from tracker.model.default_hand import default_hand
 from tracker.model.files import load_model
-from tracker.model.mano_files import load_mano, save_mano
+from tracker.model.mano_files import load_mano
+from tracker.model.mano_writer import save_mano
 from tracker.model.npz_files import save_npz_model
 from tracker.model.object_files import load_object
 from tracker.tracking.arrays_file import load_arrays

@@ -58,3 +58,31 @@ def body_hand(model: BlendModel, side: str) -> BodyHand:
         R_body_hand=R_BODY_HAND[side],
         outwards=np.array([-1.0 if side == "right" else 1.0, 1.0, 1.0]),
     )
+
+
+def body_pose(
+    model: BlendModel, root: Array, body: Array, hands: dict[str, Array], is_flat_mean: bool = False
+) -> Array:
+    """(52, 3) pose of a body, rad, its hands given by few numbers or by all, as in `smplx`.
+
+    Args:
+        model: The body.
+        root: (3,) rotation vector of the pelvis, about its joint.
+        body: (21, 3) rotation vectors of the joints behind it, wrists included.
+        hands: For "left" and "right", either may be missing, the first n < 45 coefficients of its pose space, or 45
+            rotation vectors' numbers.
+        is_flat_mean: They count from the flat hand, not from the mean pose.
+    """
+    pose = np.concatenate([root[None], body, np.zeros((2 * NUM_FINGER_JOINTS, 3))])
+    for side in ("left", "right"):
+        hand = body_hand(model, side)
+        columns = slice(3 * (hand.fingers[0] - 1), 3 * hand.fingers[-1])
+        numbers = hands.get(side, np.zeros(0))
+        assert numbers.ndim == 1 and len(numbers) <= 3 * NUM_FINGER_JOINTS
+        if len(numbers) < 3 * NUM_FINGER_JOINTS:
+            own = model.pose_components[:, columns]
+            numbers = numbers @ own[np.any(own != 0.0, axis=1)][: len(numbers)]
+        if not is_flat_mean:
+            numbers = numbers + model.pose_mean[columns]
+        pose[hand.fingers] = numbers.reshape(-1, 3)
+    return pose

@@ -54,15 +54,20 @@ class BodyModel:
         """The model whose mean shape is that population's and whose coefficients are its deviations.
 
         Args:
-            population: One of POPULATIONS. Standard normal coefficients are then people as likely as they are.
+            population: One of POPULATIONS. Standard normal coefficients are then people as likely as they are; the
+                first ones move the surface most.
         """
         assert population in POPULATIONS, f"population is {population!r}, not one of {POPULATIONS}"
         people = self.everybody if population == "neutral" else self.populations[population]
+        directions = self.blend.shape_directions @ people.factor
+        flat = directions.reshape(-1, directions.shape[2])
+        turn = np.linalg.eigh(flat.T @ flat)[1][:, ::-1]
+        turn = turn * np.where(flat[1::3].sum(axis=0) @ turn < 0.0, -1.0, 1.0)
         return replace(
             self.blend,
             name=f"{population} body with hands",
             template=self.blend.shaped(people.mean),
-            shape_directions=np.ascontiguousarray(self.blend.shape_directions @ people.factor),
+            shape_directions=np.ascontiguousarray(directions @ turn),
             provenance={**self.blend.provenance, "population": population},
         )
 
@@ -73,8 +78,7 @@ class BodyModel:
         within = np.mean([people.factor @ people.factor.T for people in self.populations.values()], axis=0)
         mean = means.mean(axis=0)
         values, vectors = np.linalg.eigh(within + (means - mean).T @ (means - mean) / len(means))
-        widest = np.argsort(-values)
-        return Population(mean, vectors[:, widest] * np.sqrt(np.maximum(values[widest], 0.0)))
+        return Population(mean, vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
 def save_body_model(body: BodyModel, path: Path) -> None:

@@ -1,11 +1,7 @@
-"""Files of MANO and SMPL-H, pickled or .npz: read into a blend model, and written for the programs that read them."""
-# pyright: reportAttributeAccessIssue=false
-# The parts of pickle._Pickler that are used here are not in its types.
+"""Files of MANO and SMPL-H, pickled or .npz, read into a blend model."""
 
 from __future__ import annotations
 
-import os
-import pickle
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +15,7 @@ from tracker.model.hand_parts import find_tip
 from tracker.model.joints import FINGERS
 from tracker.model.mano_conventions import CONVENTIONS, SMPLH_TIP_VERTICES, TIP_VERTICES, ManoConvention
 from tracker.model.npz_arrays import read_foreign_npz
-from tracker.model.npz_files import MAX_COORDINATE, write_plain_npz
+from tracker.model.npz_files import MAX_COORDINATE
 from tracker.model.restricted_pickle import read_restricted_pickle
 
 NEEDED = "a MANO or SMPL-H model: v_template, f, weights, shapedirs, posedirs, J_regressor, kintree_table"
@@ -55,63 +51,6 @@ def load_mano(path: Path, side: str | None = None, convention: ManoConvention = 
 def is_mano_npz(names: set[str]) -> bool:
     """Whether an .npz with these arrays is a MANO or SMPL-H model."""
     return {"v_template", "weights", "kintree_table"} <= names
-
-
-def save_mano(model: BlendModel, path: Path) -> None:
-    """Write a hand as MANO's files are: .npz when the path ends so, else a pickle of NumPy arrays and a SciPy matrix.
-
-    `smplx` loads either (`ext="npz"`, for .npz). It takes the side from "RIGHT" in the file's name. A pose space of
-    fewer than 3K components is completed by directions square to it. Vertices, unit and frame stay this model's: only a
-    model with MANO's own 778 vertices has MANO's fingertips and MANO's axes.
-    """
-    path = Path(path)
-    assert model.side in ("right", "left"), "only hands are written"
-    bones = model.num_bones
-    parts: dict[str, Any] = {
-        "v_template": model.template,
-        "f": model.faces.astype(np.uint32),
-        "weights": model.skinning_weights,
-        "shapedirs": model.shape_directions,
-        "posedirs": model.pose_directions,
-        "J_regressor": sparse.csc_matrix(model.joint_regressor),
-        "J": model.joints_of(model.template),
-        "kintree_table": np.stack([model.parents % 2**32, np.arange(bones)]).astype(np.uint32),
-        "hands_components": _complete(model.pose_components, 3 * (bones - 1)),
-        "hands_mean": model.pose_mean,
-        "hands_coeffs": np.zeros((0, 3 * (bones - 1))),  # nobody's poses; loaders of the authors' kind slice it
-        "bs_type": "lrotmin",
-        "bs_style": "lbs",
-        "tips": model.tips,
-        "side": model.side,
-        "name": model.name,
-    }
-    parts |= {f"provenance_{key}": text for key, text in model.provenance.items()}
-    if path.suffix.lower() == ".npz":
-        dense = {**parts, "J_regressor": model.joint_regressor.toarray()}
-        write_plain_npz(path, {key: np.asarray(value) for key, value in dense.items()})
-        return
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        with temporary.open("wb") as file:
-            _Writer(file, protocol=2).dump(parts)
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-class _Writer(pickle._Pickler):
-    """Names NumPy's and SciPy's parts as their older versions do, which the newer ones still know."""
-
-    homes = {"numpy._core": "numpy.core", "scipy.sparse._csc": "scipy.sparse.csc"}  # noqa: RUF012
-
-    def save_global(self, obj: Any, name: str | None = None) -> None:
-        module = str(getattr(obj, "__module__", ""))
-        for new, old in self.homes.items():
-            if module.startswith(new):
-                self.write(pickle.GLOBAL + f"{old}{module[len(new) :]}\n{name or obj.__qualname__}\n".encode())
-                self.memoize(obj)
-                return
-        super().save_global(obj, name)
 
 
 class _Builder:
@@ -220,7 +159,8 @@ class _Builder:
 
     def _tips(self, side, convention, template, weights, joints) -> npt.NDArray[np.int64]:
         own: Any = self.parts.get("tips")
-        is_own = isinstance(own, np.ndarray) and own.shape == (5,) and own.dtype.kind in "iu"
+        count = 10 if side == "body" else 5
+        is_own = isinstance(own, np.ndarray) and own.shape == (count,) and own.dtype.kind in "iu"
         if is_own and own.min() >= 0 and own.max() < len(template):
             return own.astype(np.int64)
         if side == "body" and len(template) == 6890:
@@ -237,13 +177,3 @@ class _Builder:
         start = "provenance_"
         told = {key[len(start) :]: str(value) for key, value in self.parts.items() if key.startswith(start)}
         return told or {"source": f"{self.path.name}, a file of MANO's or SMPL-H's kind", "licence": "see its source"}
-
-
-def _complete(components: npt.NDArray[np.float64], count: int) -> npt.NDArray[np.float64]:
-    """(count, count) the rows and, behind them, unit directions square to them."""
-    if len(components) >= count:
-        return components[:count]
-    if not len(components):
-        return np.eye(count)
-    rest = np.linalg.svd(components)[2][np.linalg.matrix_rank(components) :]
-    return np.concatenate([components, rest])[:count]

@@ -24,7 +24,7 @@ from tests.server.conftest import GeneratedHand
 from tests.server.curation import add_curation
 from tracker import untrained_hand
 from tracker.detection.default_detector import DATA as DETECTOR
-from tracker.model.mano_files import save_mano
+from tracker.model.mano_writer import save_mano
 
 API = "/api/v1"
 FRAME = 3

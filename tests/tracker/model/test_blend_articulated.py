@@ -22,7 +22,7 @@ from tracker.model.blend_model import BlendModel
 from tracker.model.decimation import compute_volume
 from tracker.model.default_hand import default_hand
 from tracker.model.joints import FINGERS, HAND_JOINTS
-from tracker.model.mano_files import save_mano
+from tracker.model.mano_writer import save_mano
 from tracker.model.pose_blend import PoseBlend
 from tracker.model.untrained_hand import untrained_hand
 

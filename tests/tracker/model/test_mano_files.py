@@ -28,7 +28,8 @@ from tracker.model.mano_conventions import (
     pose_of_parameters,
     present,
 )
-from tracker.model.mano_files import BODY_JOINTS, SMPLH_JOINTS, load_mano, save_mano
+from tracker.model.mano_files import BODY_JOINTS, SMPLH_JOINTS, load_mano
+from tracker.model.mano_writer import save_mano
 
 
 def mano_parts(seed: int = 0, vertices: int = 778) -> dict:

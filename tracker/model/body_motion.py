@@ -1,0 +1,130 @@
+"""Motions of a body as AMASS keeps them, an .npz with 156 numbers a frame: read, every array checked, and written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.errors import ModelFileError, reads
+from tracker.model.blend_model import Array
+from tracker.model.body_hands import NUM_BODY_JOINTS, NUM_FINGER_JOINTS
+from tracker.model.npz_arrays import read_foreign_npz
+from tracker.model.npz_files import write_plain_npz
+
+NUM_JOINTS = NUM_BODY_JOINTS + 2 * NUM_FINGER_JOINTS
+NUMBERS = 3 * NUM_JOINTS
+"""Of a frame: rotation vectors of the root, 21 joints of the body, 15 of the left hand, 15 of the right."""
+MAX_FRAMES = 200_000
+MAX_ANGLE = 20.0
+"""Largest component of a rotation vector, rad: some turns more than a whole one are on record."""
+MAX_PLACE = 1000.0
+"""Of a translation, m."""
+MAX_SHAPE = 30.0
+MAX_SHAPES = 400
+MAX_FPS = 1000.0
+
+NEEDED = f"an AMASS-like motion: 'poses', frames x {NUMBERS}, rad; 'trans', frames x 3, m; 'betas'; 'mocap_framerate'"
+
+
+@dataclass(frozen=True, eq=False)
+class BodyMotion:
+    """Poses of one person, frame after frame.
+
+    Attributes:
+        poses: (T, 52, 3) rotation vectors in SMPL-H's order, the root's about its joint, rad.
+        translations: (T, 3) m.
+        shape: (S,) coefficients of the shape.
+        fps: Frames per second.
+        population: "neutral", "male" or "female": whose shape space the coefficients are of.
+    """
+
+    poses: Array
+    translations: Array
+    shape: Array = field(default_factory=lambda: np.zeros(0))
+    fps: float = 30.0
+    population: str = "neutral"
+
+    def __post_init__(self) -> None:
+        assert self.poses.shape == (len(self.poses), NUM_JOINTS, 3) and self.translations.shape == (len(self.poses), 3)
+
+    def __len__(self) -> int:
+        return len(self.poses)
+
+
+@reads(ModelFileError, NEEDED)
+def load_body_motion(path: Path) -> BodyMotion:
+    """Read a motion; objects in the file stay unread, and no array is larger than what is said here.
+
+    Raises:
+        ModelFileError: No such motion; says what was found and what is needed.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise ModelFileError(path, "no such file", NEEDED)
+    arrays = read_foreign_npz(path)
+    poses = _floats(path, arrays, "poses", (-1, NUMBERS), MAX_ANGLE)
+    if not 1 <= len(poses) <= MAX_FRAMES:
+        raise ModelFileError(path, f"{len(poses)} frames", f"1 to {MAX_FRAMES}")
+    count = len(poses)
+    translations = np.zeros((count, 3))
+    if "trans" in arrays:
+        translations = _floats(path, arrays, "trans", (count, 3), MAX_PLACE)
+    shape = _floats(path, arrays, "betas", (-1,), MAX_SHAPE) if "betas" in arrays else np.zeros(0)
+    if len(shape) > MAX_SHAPES:
+        raise ModelFileError(path, f"{len(shape)} 'betas'", f"at most {MAX_SHAPES}")
+    return BodyMotion(
+        poses.reshape(count, NUM_JOINTS, 3), translations, shape, _read_fps(path, arrays), _read_gender(path, arrays)
+    )
+
+
+def save_body_motion(motion: BodyMotion, path: Path) -> None:
+    """Write a motion with AMASS's names; the file appears whole or not at all. Equal motions give equal bytes."""
+    write_plain_npz(
+        Path(path),
+        {
+            "poses": motion.poses.reshape(len(motion), NUMBERS),
+            "trans": motion.translations,
+            "betas": motion.shape,
+            "mocap_framerate": np.array(motion.fps),
+            "gender": np.array(motion.population),
+        },
+    )
+
+
+def _floats(
+    path: Path, arrays: dict[str, npt.NDArray], name: str, shape: tuple[int, ...], limit: float
+) -> npt.NDArray[np.float64]:
+    array = arrays.get(name)
+    wanted = " x ".join("N" if length < 0 else str(length) for length in shape)
+    if array is None or array.dtype.kind not in "fiu":
+        raise ModelFileError(path, f"no numbers '{name}'", NEEDED)
+    if array.ndim != len(shape) or any(want not in (-1, have) for want, have in zip(shape, array.shape, strict=True)):
+        raise ModelFileError(path, f"'{name}', {' x '.join(map(str, array.shape))}", f"'{name}', {wanted}")
+    array = np.ascontiguousarray(array, dtype=np.float64)
+    if array.size and not (np.all(np.isfinite(array)) and np.abs(array).max() <= limit):
+        raise ModelFileError(path, f"'{name}' with values that are endless or beyond {limit:g}", "sound numbers")
+    return array
+
+
+def _read_fps(path: Path, arrays: dict[str, npt.NDArray]) -> float:
+    for name in ("mocap_framerate", "mocap_frame_rate"):
+        if name in arrays:
+            fps = float(_floats(path, arrays, name, (), MAX_FPS))
+            if fps <= 0.0:
+                raise ModelFileError(path, f"'{name}' of {fps:g}", "frames per second above 0")
+            return fps
+    return 30.0
+
+
+def _read_gender(path: Path, arrays: dict[str, npt.NDArray]) -> str:
+    array = arrays.get("gender")
+    if array is None or array.dtype.kind not in "US" or array.ndim != 0:
+        return "neutral"
+    told = array.item()
+    text = told.decode("ascii", "replace") if isinstance(told, bytes) else str(told)
+    if text not in ("neutral", "male", "female"):
+        raise ModelFileError(path, f"gender {text[:40]!r}", "neutral, male or female")
+    return text

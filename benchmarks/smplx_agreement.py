@@ -121,7 +121,7 @@ np.savez(out, vertices=np.array(vertices), joints=np.array(joints))
 
 
 def compare_body(model: BlendModel, python: str, poses: int) -> list[dict]:
-    """As `compare`, for a body with hands. `smplx` uses the first ten shape directions where there are fewer than 300."""
+    """As `compare`, for a body with hands. Of fewer than 300 shape directions `smplx` uses the first ten."""
     rng = np.random.default_rng(0)
     given = {
         "shape": rng.standard_normal((poses, min(10, model.num_shape))),

@@ -112,7 +112,7 @@ def _floats(
 def _read_fps(path: Path, arrays: dict[str, npt.NDArray]) -> float:
     for name in ("mocap_framerate", "mocap_frame_rate"):
         if name in arrays:
-            fps = float(_floats(path, arrays, name, (), MAX_FPS))
+            fps = _floats(path, arrays, name, (), MAX_FPS).item()
             if fps <= 0.0:
                 raise ModelFileError(path, f"'{name}' of {fps:g}", "frames per second above 0")
             return fps

@@ -159,12 +159,12 @@ def test_an_accepted_detected_joint_stays_known_as_one_and_judges_no_track(clien
 
 def test_beside_the_studio_the_same_is_suggested(studio, client, tracked, rendered):
     """`handloom serve` has a process of its own for this."""
-    place = f"/api/v1/sequences/{tracked.sequence_id}/suggestions/cam0/12"
+    camera = f"/api/v1/sequences/{tracked.sequence_id}/suggestions/cam0"
     fits = [{"points": keep(find_truth(rendered, 12), joints)} for joints in (FEW, FEW[:3])]
 
     def ask():
-        answers = [client.get(place.replace("12", "5")), client.get(f"{place}/detector")]
-        answers += [client.post(f"{place}/right/fit", json=body) for body in fits]
+        answers = [client.get(f"{camera}/5"), client.get(f"{camera}/12/detector")]
+        answers += [client.post(f"{camera}/12/right/fit", json=body) for body in fits]
         return [(answer.status_code, answer.json()) for answer in answers]
 
     here = ask()

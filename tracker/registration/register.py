@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial.transform import Rotation
 
 from tracker.capture.scan import MAX_POINTS, Scan
 from tracker.capture.scan_size import SIZES_NEEDED, find_size_fault, measure_size
@@ -22,10 +23,10 @@ from tracker.registration.hand_state import HandState
 from tracker.registration.model_fit import Evaluation, ModelFit
 from tracker.registration.options import RegistrationOptions
 from tracker.registration.pose_prior import PosePrior
-from tracker.registration.registration import Registration, RegistrationStart, digest_model, digest_scan
+from tracker.registration.registration import VERDICTS, Registration, RegistrationStart, digest_model, digest_scan
 from tracker.registration.scan_frame import ScanFrame, find_scan_frame
 from tracker.registration.scan_points import ScanPoints, arrange_points, find_hand_points
-from tracker.registration.start import Start, StartSearch, find_apart
+from tracker.registration.start import StartSearch, find_apart
 from tracker.registration.verdict import Verdict, judge, refuse
 from tracker.registration.vertex_fit import fit_to_vertices
 
@@ -36,6 +37,12 @@ MIN_POINTS = 50
 
 NEARLY, MOST_AGAIN = 1.03, 3
 """When a registration is not good, so many starts that cost this much at most, against the best, are followed up."""
+
+
+_TURN = Rotation.from_rotvec([0.5, -0.7, 0.4]).as_matrix()
+_MIRROR = np.diag([-1.0, 1.0, 1.0])
+TURNS = {"right": ScanFrame(_TURN, np.zeros(3)), "left": ScanFrame(_MIRROR @ _TURN @ _MIRROR, np.zeros(3))}
+"""How the second look sees the scan of each side: turned away from the axes, a left hand's mirror image likewise."""
 
 
 @dataclass(frozen=True)
@@ -104,10 +111,9 @@ def register_scan(
     best = _settle(tools, evaluation, side, scans[side], inside, keep, options, clock)
     if start is None and best.verdict.name != "good":
         tell("second look", 0.8)
-        for again in _look_again(tools, scans, clock):
-            other = _settle(tools, again.evaluation, again.side, scans[again.side], inside, keep, options, clock)
-            if best.verdict.name == "doubtful" or other.verdict.name == "good":
-                best = min(best, other, key=_misfit)
+        for side, evaluation in _look_again(tools, scans, clock):
+            other = _settle(tools, evaluation, side, scans[side], inside, keep, options, clock)
+            best = min(best, other, key=_misfit)
     tell("done", 1.0)
     flip = _flip(best.side)
     state = frame.leave_state(tools.model, best.model.state, best.side)
@@ -143,13 +149,13 @@ class _Settled:
     verdict: Verdict
 
 
-def _misfit(settled: _Settled) -> tuple[bool, float]:
-    """Least for the best of several surfaces: a good one, then what misses the scan least and is strained least.
+def _misfit(settled: _Settled) -> tuple[int, float]:
+    """Least for the best of several surfaces: the best verdict, then what misses the scan least and is strained least.
 
     Of hands folded otherwise, the wrong one's surface both misses the scan more and is strained more.
     """
     measures = settled.verdict.measures
-    return settled.verdict.name != "good", measures["scan_to_surface"] * measures["stretch"]
+    return VERDICTS.index(settled.verdict.name), measures["scan_to_surface"] * measures["stretch"]
 
 
 def _settle(
@@ -183,11 +189,19 @@ def _settle(
     return _Settled(side, surface.vertices, last, distances, verdict)
 
 
-def _look_again(tools: Tools, scans: dict[str, ScanPoints], clock: _Clock) -> list[Start]:
-    """Starts that a thorough search finds about as good as its best, each another arrangement of the hand."""
+def _look_again(tools: Tools, scans: dict[str, ScanPoints], clock: _Clock) -> list[tuple[str, Evaluation]]:
+    """Side and state of starts about as good as the best of a thorough search, each another arrangement of the hand.
+
+    The search looks into grids along the axes. It looks at the scan turned, so that what the first look missed because
+    of how its grids lay is not missed again.
+    """
     with clock.measure("start"):
-        found = tools.starts.find(scans, is_thorough=True)
-        return [start for start in find_apart(found) if start.cost <= NEARLY * found[0].cost][:MOST_AGAIN]
+        turned = {side: TURNS[side].enter_points(points) for side, points in scans.items()}
+        found = tools.starts.find(turned, is_thorough=True)
+        nearly = [start for start in find_apart(found) if start.cost <= NEARLY * found[0].cost][:MOST_AGAIN]
+        count, settings = RegistrationOptions().model_stages[0]
+        states = [(one.side, TURNS[one.side].leave_state(tools.model, one.evaluation.state, "right")) for one in nearly]
+        return [(side, tools.fit.evaluate(state, scans[side].first(count), settings)) for side, state in states]
 
 
 def _flip(side: str) -> Array:

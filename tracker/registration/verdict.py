@@ -124,20 +124,26 @@ def _turned_over(fit: ModelFit, scan: ScanPoints, evaluation: Evaluation) -> flo
     A flat hand is much like a hand of the other side turned over: thumb and fingers lie where they should, and only
     palm and back are unlike. Registered so it has the measures of a strange person, but the right side fits far better.
     """
-    joints, state = evaluation.posed.joints, evaluation.state
-    palm = np.cross(joints[4] - joints[0], joints[1] - joints[7])  # knuckles of middle, index and little finger
-    palm /= np.linalg.norm(palm)
-    mirror = np.diag([-1.0, 1.0, 1.0])
-    turn = mirror @ (np.eye(3) - 2.0 * np.outer(palm, palm))
-    center = evaluation.posed.vertices.mean(axis=0)
-    root = fit.model.joints_of(fit.model.shaped(state.shape))[0]
-    pose = state.pose.copy()
-    pose[0] = Rotation.from_matrix(turn @ Rotation.from_rotvec(pose[0]).as_matrix()).as_rotvec()
-    other = HandState(pose, state.shape, turn @ (root + state.translation - center) + mirror @ center - root)
+    state, other = evaluation.state, turn_over(fit.model, evaluation.state)
     mirrored = scan.mirrored()
     for settings in OVER:
         other = fit.fit(other, mirrored.first(OVER_POINTS), settings).state
     return _cost(fit, scan, state) / max(_cost(fit, mirrored, other), 1e-9)
+
+
+def turn_over(model: BlendModel, state: HandState) -> HandState:
+    """A hand of the other side where this one is, palm where the back was; in the mirror x = 0, as left hands are."""
+    posed = state.posed(model)
+    joints = posed.joints
+    palm = np.cross(joints[4] - joints[0], joints[1] - joints[7])  # knuckles of middle, index and little finger
+    palm /= np.linalg.norm(palm)
+    mirror = np.diag([-1.0, 1.0, 1.0])
+    turn = mirror @ (np.eye(3) - 2.0 * np.outer(palm, palm))
+    center = posed.vertices.mean(axis=0)
+    root = model.joints_of(model.shaped(state.shape))[0]
+    pose = state.pose.copy()
+    pose[0] = Rotation.from_matrix(turn @ Rotation.from_rotvec(pose[0]).as_matrix()).as_rotvec()
+    return HandState(pose, state.shape, turn @ (root + state.translation - center) + mirror @ center - root)
 
 
 def _cost(fit: ModelFit, scan: ScanPoints, state: HandState) -> float:

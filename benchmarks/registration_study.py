@@ -40,7 +40,8 @@ OTHERS = tuple(name for name in POSE_NAMES if name not in FISTS)
 FIST_EVERY = 5
 TEST_SEED, TRAIN_SEED = 1000, 0
 ACCEPTED_P95_MM = 6.0
-"""What a person who looks at a registration lets pass: nothing is farther off than about half a finger."""
+"""What the oracle lets pass, as a person might: nothing is farther off than about half a finger."""
+CURATORS = {"eye": "an oracle that knows the true vertices", "verdict": "the program's own verdict"}
 
 
 def main() -> None:
@@ -104,7 +105,8 @@ def train(args: argparse.Namespace, path: Path) -> None:
         kept = [t for t, row in zip(trials, rows, strict=True) if is_accepted(row, args.curator)]
         vertices = [load_registration(t.folder / t.name).vertices for t in kept]
         errors = [row["vertices_mm"] for row in rows if is_accepted(row, args.curator)]
-        note = f"{len(kept)} of {len(trials)} own registrations, accepted by {args.curator}: {np.mean(errors):.2f} mm"
+        note = f"{len(kept)} of {len(trials)} own registrations, accepted by {CURATORS[args.curator]}"
+        note += f": {np.mean(errors):.2f} mm"
     chosen = make_training_set(
         vertices, [str(t.subject) for t in kept], [t.pose for t in kept], [t.side == "left" for t in kept]
     )
@@ -121,7 +123,7 @@ def _show_training():
 
 
 def is_accepted(row: dict[str, Any], curator: str) -> bool:
-    """Whether a curator lets a registration pass: one that sees the truth roughly, or the program itself."""
+    """Whether a curator lets a registration pass: an oracle that knows the true vertices, or the program itself."""
     if curator == "verdict":
         return row["verdict"] == "good"
     return row["vertices_p95_mm"] < ACCEPTED_P95_MM and row["found_side"] == row["side"]

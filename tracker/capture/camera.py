@@ -112,5 +112,6 @@ class Camera:
     def _distort(self, rays: Array) -> tuple[Array, Array]:
         """Pixels (N, 2) of rays (N, 3), camera, with z = 1, and their derivatives by x and y (N, 2, 2)."""
         pixels, by_parameters = cv2.projectPoints(rays[:, None], np.zeros(3), np.zeros(3), self.K, self.distortion)
-        by_translation = by_parameters[:, 3:5]  # a camera that is moved sees what moved rays would show
+        # A camera that is moved sees what moved rays would show.
+        by_translation = np.asarray(by_parameters[:, 3:5], dtype=np.float64)
         return np.asarray(pixels[:, 0], dtype=np.float64), by_translation.reshape(-1, 2, 2)

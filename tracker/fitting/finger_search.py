@@ -70,8 +70,9 @@ def swap_fingers(pose: Array, first_dof: int, model: ArticulatedModel) -> list[A
             _, *others, _ = _finger_dofs(model, other)
             new[every] = 0.0
             for own, taken in zip(bends, others, strict=True):
-                if len(own) == len(taken):
-                    new[own] = old[taken] / far[taken] * far[own]
+                common = min(len(own), len(taken))
+                own, taken = own[:common], taken[:common]
+                new[own] = old[taken] / far[taken] * far[own]
         poses.append(swapped)
     return poses
 

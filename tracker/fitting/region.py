@@ -29,12 +29,12 @@ def region_around(vertices: npt.NDArray[np.float64], camera: Camera) -> Region |
     depths = in_camera[:, 2]
     if depths.min() < 0.05:
         return None
-    margin = MARGIN * camera.K[0, 0] / float(np.median(depths))
+    across, down = MARGIN / float(np.median(depths)) * camera.K[[0, 1], [0, 1]]
     columns = camera.K[0, 0] * in_camera[:, 0] / depths + camera.K[0, 2]
     rows = camera.K[1, 1] * in_camera[:, 1] / depths + camera.K[1, 2]
-    first_column, first_row = max(0, int(columns.min() - margin)), max(0, int(rows.min() - margin))
-    last_column = min(camera.width, int(columns.max() + margin) + 1)
-    last_row = min(camera.height, int(rows.max() + margin) + 1)
+    first_column, first_row = max(0, int(columns.min() - across)), max(0, int(rows.min() - down))
+    last_column = min(camera.width, int(columns.max() + across) + 1)
+    last_row = min(camera.height, int(rows.max() + down) + 1)
     if last_column - first_column < SMALLEST or last_row - first_row < SMALLEST:
         return None
     return Region(

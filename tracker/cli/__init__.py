@@ -6,6 +6,7 @@ import argparse
 
 from tracker.cli import (
     bench,
+    body,
     calibrate,
     calibrate_cameras,
     detect,
@@ -25,6 +26,7 @@ from tracker.cli import (
 COMMANDS = (
     track,
     register,
+    body,
     calibrate,
     calibrate_cameras,
     refine_cameras,

@@ -62,7 +62,7 @@ def write_glb(track: Track, fps: float) -> bytes:
         mesh: dict[str, Any] = {"name": name, "primitives": [primitive | {"material": index}]}
         morphs = find_pose_morphs(model, motions[:, bones])
         if morphs is not None:
-            mesh["primitives"][0]["targets"] = _add_targets(writer, morphs)
+            mesh["primitives"][0]["targets"] = add_targets(writer, morphs)
             mesh["weights"] = [0.0] * len(morphs.targets)
             weights_of[index] = writer.add(morphs.weights.astype(np.float32).reshape(-1))
         document["meshes"].append(mesh)
@@ -76,8 +76,8 @@ def write_glb(track: Track, fps: float) -> bytes:
                 "inverseBindMatrices": writer.add(inverse),
             }
         )
-        for bone, Ts in enumerate(_find_local(motions[:, bones] @ Ts_rest, skeleton.parents)):
-            paths = {"rotation": _find_quaternions(Ts)}
+        for bone, Ts in enumerate(find_local(motions[:, bones] @ Ts_rest, skeleton.parents)):
+            paths = {"rotation": find_quaternions(Ts)}
             if skeleton.parents[bone] < 0 or np.ptp(Ts[:, :3, 3], axis=0).max() > MOVED:
                 paths["translation"] = Ts[:, :3, 3]
             for path, values in paths.items():
@@ -108,7 +108,7 @@ def _make_bones(name: str, model: ArticulatedModel, first: int) -> list[dict[str
     """Nodes of the bones at rest, the root's before `T_GLTF_WORLD`."""
     skeleton = model.skeleton
     nodes: list[dict[str, Any]] = []
-    for bone, T in enumerate(_find_local(skeleton.Ts_model_bone[None], skeleton.parents)[:, 0]):
+    for bone, T in enumerate(find_local(skeleton.Ts_model_bone[None], skeleton.parents)[:, 0]):
         node: dict[str, Any] = {
             "name": f"{name}/{skeleton.bone_names[bone]}",
             "rotation": Rotation.from_matrix(T[:3, :3]).as_quat().tolist(),
@@ -119,13 +119,13 @@ def _make_bones(name: str, model: ArticulatedModel, first: int) -> list[dict[str
     return nodes
 
 
-def _find_local(Ts: Array, parents: npt.NDArray[np.int64]) -> Array:
+def find_local(Ts: Array, parents: npt.NDArray[np.int64]) -> Array:
     """(B, T, 4, 4) bone to parent from (T, B, 4, 4) bone to world; a root stays as it is."""
     local = [Ts[:, b] if p < 0 else np.linalg.inv(Ts[:, p]) @ Ts[:, b] for b, p in enumerate(parents)]
     return np.stack(local)
 
 
-def _find_quaternions(Ts: Array) -> Array:
+def find_quaternions(Ts: Array) -> Array:
     """(T, 4) xyzw of (T, 4, 4), each on the side of the one before, so that nothing turns the long way round."""
     xyzw = Rotation.from_matrix(Ts[:, :3, :3]).as_quat()
     turns = np.where(np.sum(xyzw[1:] * xyzw[:-1], axis=1) < 0.0, -1.0, 1.0)
@@ -148,7 +148,7 @@ def _add_mesh(
     return {"attributes": attributes, "indices": indices, "mode": 4}
 
 
-def _add_targets(writer: GlbWriter, morphs: PoseMorphs) -> list[dict[str, int]]:
+def add_targets(writer: GlbWriter, morphs: PoseMorphs) -> list[dict[str, int]]:
     add = writer.add
     return [{"POSITION": add(each.astype(np.float32), target=ARRAY_BUFFER, bounded=True)} for each in morphs.targets]
 

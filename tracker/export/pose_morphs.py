@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.model.articulated import ArticulatedModel
+from tracker.model.pose_blend import PoseBlend
 
 Array = npt.NDArray[np.float64]
 
@@ -23,20 +24,28 @@ class PoseMorphs(NamedTuple):
 
 
 def find_pose_morphs(model: ArticulatedModel, motions: Array) -> PoseMorphs | None:
-    """As few targets as come close to every frame; None for a model that is only skinned.
-
-    The blend shapes are linear in the bones' rotations; of the space that a track goes through there the largest
-    singular directions are kept.
+    """Those of an articulated model; None for one that is only skinned.
 
     Args:
         model: Any.
         motions: (T, B, 4, 4) of its bones from rest.
     """
-    blend = model.pose_blend
-    if blend is None:
-        return None
+    return None if model.pose_blend is None else choose_morphs(model.pose_blend, model.skeleton.parents, motions)
+
+
+def choose_morphs(blend: PoseBlend, parents: npt.NDArray[np.int64], motions: Array) -> PoseMorphs:
+    """As few targets as come close to every frame.
+
+    The blend shapes are linear in the bones' rotations; of the space that a track goes through there the largest
+    singular directions are kept.
+
+    Args:
+        blend: The pose blend shapes.
+        parents: (B,) of the bones.
+        motions: (T, B, 4, 4) of the bones from rest.
+    """
     Rs = motions[:, :, :3, :3]
-    turns = np.swapaxes(Rs[:, model.skeleton.parents[blend.bones]], -1, -2) @ Rs[:, blend.bones] - np.eye(3)
+    turns = np.swapaxes(Rs[:, parents[blend.bones]], -1, -2) @ Rs[:, blend.bones] - np.eye(3)
     features = turns.reshape(len(turns), -1)
     directions = blend.directions.reshape(-1, blend.directions.shape[2])
     basis, small = np.linalg.qr(directions)

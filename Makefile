@@ -109,13 +109,13 @@ api: $(PROJECT) $(NODE_MODULES)
 bench: setup
 	$(BIN)/handloom bench tracking
 
-# T16's tables and figures on twins of its public sequences, and every bar: docs/studies.md. DATA is the authors' folder.
+# T16's tables and figures on twins of its public sequences, and every bar: benchmarks/results/studies.md. DATA is the authors' folder.
 studies: setup
 	@test -n "$(DATA)" || { echo "studies: say where the data of T16 is: make studies DATA=FOLDER"; exit 2; }
 	$(BIN)/python -m benchmarks.studies $(DATA) --write
 	@test ! -d $(DATA)/../uvr_cube_white || $(MAKE) real DATA=$(DATA)/..
 
-# Real recordings against marks: docs/studies/real_marks.md. DATA holds the folders that benchmarks/real_marks/recordings names.
+# Real recordings against marks: benchmarks/results/real_marks.md. DATA holds the folders that benchmarks/real_marks/recordings names.
 real: setup
 	@test -n "$(DATA)" || { echo "real: say where the recordings are: make real DATA=FOLDER"; exit 2; }
 	$(BIN)/python -m benchmarks.real_marks $(DATA) --write

@@ -2,7 +2,7 @@
 
 DATA holds the recordings that the folders in `recordings/` name. Pictures of the marked frames go into the work folder
 (`out/real_marks`): they show people and are not committed. With `--write` the table goes into
-`docs/studies/real_marks.md`.
+`benchmarks/results/real_marks.md`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from tracker.tracking.start import start_tracking  # noqa: E402
 from tracker.tracking.track import Track, join_chunks  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "studies" / "real_marks.md"
+PAGE = ROOT / "benchmarks" / "results" / "real_marks.md"
 WITH_BALL = "shape fitted, ball's model"
 HEAD = (
     "| recording | way | frames | lost | lost, of those that show it whole | tips | right | median px | "
@@ -126,7 +126,7 @@ def main() -> int:
     parser.add_argument("data", type=Path)
     parser.add_argument("--only", nargs="+", metavar="NAME")
     parser.add_argument("--work", type=Path, default=ROOT / "out" / "real_marks")
-    parser.add_argument("--write", action="store_true", help="write the table into docs")
+    parser.add_argument("--write", action="store_true", help="write the table into benchmarks/results")
     given = parser.parse_args()
     recordings = load_marked_recordings(given.data, given.only)
     if not recordings:

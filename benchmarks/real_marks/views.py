@@ -2,7 +2,7 @@
 
 Tracks `two_camera_rgb` in both views and `d405_take001` in all three left infrared views, without any annotation, and
 the latter in two views at a time, judged by the marks in the third. DATA holds those recordings. With `--write` the
-table goes into `docs/studies/real_views.md`.
+table goes into `benchmarks/results/real_views.md`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from tracker.tracking.track import Track, join_chunks  # noqa: E402
 
 Array = npt.NDArray[np.float64]
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "studies" / "real_views.md"
+PAGE = ROOT / "benchmarks" / "results" / "real_views.md"
 SQUARE = 0.04
 """m, the side of the checkerboard's squares of `two_camera_rgb`."""
 
@@ -128,7 +128,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("data", type=Path)
     parser.add_argument("--work", type=Path, default=ROOT / "out" / "real_views")
-    parser.add_argument("--write", action="store_true", help="write the table into docs")
+    parser.add_argument("--write", action="store_true", help="write the table into benchmarks/results")
     given = parser.parse_args()
     given.work.mkdir(parents=True, exist_ok=True)
     rows = []

@@ -1,7 +1,7 @@
 """[T16] §4.4.1 on two rendered recordings: `python -m benchmarks.rendered_views [crossing passing] [--write]`.
 
-Every run is kept in the folder `--work` and not done again. `--write` writes `docs/studies/rendered_views.md` from all
-runs of both recordings that the folder holds.
+Every run is kept in the folder `--work` and not done again. `--write` writes `benchmarks/results/rendered_views.md`
+from all runs of both recordings that the folder holds.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from benchmarks.rendered_views.errors import Array, Errors, find_interval
 from benchmarks.rendered_views.setting import Setting
 from tracker.synthesis.interplay import INTERPLAYS
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "studies" / "rendered_views.md"
+PAGE = Path(__file__).resolve().parents[1] / "results" / "rendered_views.md"
 
 BASE = Setting()
 TABLE_15 = {

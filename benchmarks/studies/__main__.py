@@ -2,7 +2,7 @@
 
 DATA holds the authors' `Cameras.txt`, `models/` and `seq/`. Results are kept in the cache as they come, so a run that
 was stopped goes on, and only what other code made is run anew. The report is written into the cache, with `--write`
-into docs.
+into `benchmarks/results`.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from benchmarks.studies.report import StudyRows, load_all_rows, write_report  # 
 from benchmarks.studies.study import Extent, Study  # noqa: E402
 from benchmarks.studies.trial import ROOT, NotMeasured, Results, load_kept, run_trials  # noqa: E402
 
-DOCS = ROOT / "docs"
-ROWS = DOCS / "studies" / "rows"
+RESULTS = ROOT / "benchmarks" / "results"
+ROWS = RESULTS / "studies" / "rows"
 
 
 def make_rows(study: Study, extent: Extent, runs: Path) -> StudyRows:
@@ -46,9 +46,9 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=2, help="trials at a time (2); those of time run alone")
     parser.add_argument("--keep", action="store_true", help="take results of older code, run only what is missing")
     parser.add_argument(
-        "--report", action="store_true", help="run nothing, build the report from rows in the cache or docs"
+        "--report", action="store_true", help="run nothing, build the report from rows in the cache or results"
     )
-    parser.add_argument("--write", action="store_true", help="write the report and its rows into docs")
+    parser.add_argument("--write", action="store_true", help="write the report and its rows into benchmarks/results")
     args = parser.parse_args()
     chosen = [study for study in STUDIES if args.only is None or study.name in args.only]
     extent, runs, began = Extent(args.quick), args.cache / "runs", time.perf_counter()
@@ -68,7 +68,7 @@ def main() -> int:
     if args.write:
         for own in rows.values():
             own.save(ROWS)
-    written = write_report(STUDIES, rows, DOCS if args.write else args.cache / "report")
+    written = write_report(STUDIES, rows, RESULTS if args.write else args.cache / "report")
     size = sum(path.stat().st_size for path in written)
     print(
         f"{written[0]} and {len(written) - 1} files beside it, {size / 1e3:.0f} kB, {time.perf_counter() - began:.0f} s"

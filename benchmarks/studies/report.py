@@ -1,4 +1,4 @@
-"""The report: from the rows of all studies to the files in docs."""
+"""The report: from the rows of all studies to the files in `benchmarks/results`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TITLE = "Studies: capturing hands in action, on twins"
 PREFACE = (
     "Handloom's tracker follows twins of the eight public sequences of T16 (Tzionas et al., Capturing hands in action "
     "using discriminative salient points and physics simulation, IJCV 2016): the authors' own motions and models, "
-    "rendered anew with the noise of a structured-light sensor (docs/synthesis.md). Each section is the analogue of "
+    "rendered anew with the noise of a structured-light sensor (docs/recordings.md). Each section is the analogue of "
     "one of the paper's tables or figures, with the paper's numbers beside ours, set apart.",
     "**What is comparable is how settings compare with each other, not the pixels.** The paper's recordings and "
     "annotations are not at hand, nor are the motions of its other sequences; its error of 5.12 px is that of a "
@@ -95,14 +95,14 @@ def describe_code(rows: dict[str, StudyRows]) -> str:
     return f"Made by `python -m benchmarks.studies DATA --write` (DATA: the authors' folder) with {made}."
 
 
-def write_report(studies: Sequence[Study], rows: dict[str, StudyRows], docs: Path) -> list[Path]:
+def write_report(studies: Sequence[Study], rows: dict[str, StudyRows], results: Path) -> list[Path]:
     """`studies.md`, and in `studies/` the page and the plots; the files written."""
     sections = build_sections(studies, rows)
     preface = [*PREFACE, describe_code(rows)]
-    folder = docs / PICTURES
+    folder = results / PICTURES
     folder.mkdir(parents=True, exist_ok=True)
     files = {
-        docs / "studies.md": write_markdown(TITLE, [*preface, "[As one page](studies/report.html)."], sections),
+        results / "studies.md": write_markdown(TITLE, [*preface, "[As one page](studies/report.html)."], sections),
         folder / "report.html": write_page(TITLE, preface, sections),
     }
     for section in sections:

@@ -95,7 +95,7 @@ STUDY = Study(
     paper="Table 8, §4.1.5",
     question="Is local optimisation better than a swarm, at its settings and at equal time?",
     same="The ratio of the two errors: both follow the same images. Swarms of the paper's four settings, one hand.",
-    differs="The swarm is written anew on our model and renderer (docs/baselines.md) and runs on the processor; in "
+    differs="The swarm is written anew on our model and renderer (docs/evaluation.md) and runs on the processor; in "
     "the paper it is the authors' program, with its own model, on a graphics card. It starts from our first pose.",
     trials=trials,
     tabulate=tabulate,

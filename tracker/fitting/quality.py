@@ -9,9 +9,9 @@ COVERAGE_GAIN = 0.25
 
 ELSEWHERE = 0.7
 """A finger whose joints are this far from where the hand detector saw them, `Sighting.measure`, is elsewhere. Measured
-with onnxruntime and before second tries waited (today's counts: docs/studies/real_marks.md): with 0.6, 59 of 126 frames
-of an infrared recording are called lost, 2 of 8 marked ones wrongly; with 0.8, 48, and 3 of the 8 are called `ok` with
-a fingertip in a wrong place. `uvr_cube_white` had 3 to 5 lost of 200 with any."""
+with onnxruntime and before second tries waited (today's counts: benchmarks/results/real_marks.md): with 0.6, 59 of 126
+frames of an infrared recording are called lost, 2 of 8 marked ones wrongly; with 0.8, 48, and 3 of the 8 are called
+`ok` with a fingertip in a wrong place. `uvr_cube_white` had 3 to 5 lost of 200 with any."""
 
 HAND_ELSEWHERE = 0.75
 """A hand all of whose joints are that far from where it was seen is elsewhere where some misfit is left: a box passes

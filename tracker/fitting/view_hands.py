@@ -85,7 +85,7 @@ class ViewHands:
         """The viewing rays of one hand's joints, in all views together, without those that most others contradict.
 
         Where four views or more see a hand, a joint that a single one tells of does not pull from afar: one in ten is
-        false in the noise of [T16] §4.4.1, and took its finger 65 mm along (docs/studies/rendered_views.md).
+        false in the noise of [T16] §4.4.1, and took its finger 65 mm along (benchmarks/results/rendered_views.md).
         """
         every = np.full((21, len(self.cameras), 3), np.nan)
         for view, (camera, hands) in enumerate(zip(self.cameras, self.hands, strict=True)):

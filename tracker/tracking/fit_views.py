@@ -39,8 +39,8 @@ FAR_REACH = 4.0 * REACH
 
 MANY = 4
 """Where so many views or more are tracked in, contours hold a hand better than single joints do, and the constants
-below count. They were chosen on rendered views (docs/studies/rendered_views.md); the real recordings at hand have two
-or three views, in which nothing changes."""
+below count. They were chosen on rendered views (benchmarks/results/rendered_views.md); the real recordings at hand have
+two or three views, in which nothing changes."""
 
 MANY_REACH = 5.0
 """mm; the reach of joints in the iterations with contours."""

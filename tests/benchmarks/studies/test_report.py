@@ -124,13 +124,13 @@ def test_every_table_and_figure_that_was_asked_for_has_a_study():
 
 def test_the_committed_report_is_what_its_rows_say(tmp_path):
     """After a change of its words: `python -m benchmarks.studies DATA --report --write`."""
-    docs = ROOT / "docs"
-    rows = load_all_rows(STUDIES, docs / "studies" / "rows")
-    assert bool(rows) == (docs / "studies.md").exists(), "the report and its rows are committed together"
+    results = ROOT / "benchmarks" / "results"
+    rows = load_all_rows(STUDIES, results / "studies" / "rows")
+    assert bool(rows) == (results / "studies.md").exists(), "the report and its rows are committed together"
     if rows:
         for written in write_report(STUDIES, rows, tmp_path):
-            assert written.read_text() == (docs / written.relative_to(tmp_path)).read_text(), written.name
-        size = sum(path.stat().st_size for path in (docs / "studies").rglob("*") if path.is_file())
+            assert written.read_text() == (results / written.relative_to(tmp_path)).read_text(), written.name
+        size = sum(path.stat().st_size for path in (results / "studies").rglob("*") if path.is_file())
         assert size < 1e6, "the report stays small"
         assert not any(own.quick for own in rows.values()), "trial runs are not committed"
 
@@ -143,7 +143,7 @@ def test_rows_come_from_the_first_folder_that_has_them(tmp_path):
 
 
 def test_the_papers_method_as_written_meets_its_bar_and_stands_beside_the_papers_figures():
-    kept = load_rows("table_06_as_written", ROOT / "docs" / "studies" / "rows")
+    kept = load_rows("table_06_as_written", ROOT / "benchmarks" / "results" / "studies" / "rows")
     assert kept is not None and not kept.quick
     whole = next(row for row in kept.rows if row["kind"] == "hands" and row["paper"] == "LO+SC")
     assert whole["sequences"] == 4 and whole["failed"] == 0 and whole["px"] <= BAR_PX

@@ -19,9 +19,9 @@ from fastapi.testclient import TestClient
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from server.accounts.logins import set_password  # noqa: E402
-from server.accounts.models import Account, TokenRow  # noqa: E402
-from server.accounts.secrets import hash_secret  # noqa: E402
+from server.access.logins import set_password  # noqa: E402
+from server.access.models import Account, TokenRow  # noqa: E402
+from server.access.secrets import hash_secret  # noqa: E402
 from server.app import create_app  # noqa: E402
 from server.settings import Settings  # noqa: E402
 from tests.server.app.full_studio import LEFT_OUT, Sender, fill  # noqa: E402

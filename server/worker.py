@@ -20,7 +20,7 @@ from server.jobs import workers
 from server.jobs.dispatcher import Dispatcher
 from server.jobs.models import JobRow
 from server.jobs.run import WorkerContext
-from server.jobs.slot import WorkerSlot
+from server.jobs.worker_name import WorkerName
 from server.jobs.workflow import APPLICATION, APPLICATION_VERSION, QUEUE, register_workflows
 from server.settings import Settings
 from server.storage import Storage, open_storage
@@ -42,7 +42,7 @@ def run_worker(settings: Settings) -> None:
     upgrade(database)
     storage = open_storage(settings)
     _drop_leftovers(database, storage)
-    slot = WorkerSlot.acquire(storage.root / "workers", workers.find_own_host(settings.worker_host))
+    slot = WorkerName.acquire(storage.root / "workers", workers.find_own_host(settings.worker_host))
     stopping = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stopping.set())

@@ -10,7 +10,7 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.annotations import service
 from server.annotations.models import AnnotationRow
 from server.annotations.schemas import SOURCE_DEFAULTS

@@ -16,7 +16,7 @@ from sqlalchemy import CursorResult, and_, bindparam, insert, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from server.accounts.models import Account
+from server.access.models import Account
 from server.annotations.models import Act, AnnotationRevisionRow, AnnotationRow
 from server.annotations.service import Extent, Place, check_place, check_points
 from server.annotations.sources import count_decided, imported_sources, settle_sources, write_sources

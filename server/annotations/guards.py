@@ -11,7 +11,7 @@ from fastapi import Depends
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
-from server.accounts.models import Account
+from server.access.models import Account
 from server.annotations.service import HiddenPlaces, Place
 from server.errors import ForbiddenError
 

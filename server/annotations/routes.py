@@ -11,8 +11,8 @@ from fastapi import APIRouter, Depends, Path, Query, Response
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
-from server.accounts.models import Account
-from server.accounts.service import CurrentAccount, find_names
+from server.access.models import Account
+from server.access.service import CurrentAccount, find_names
 from server.annotations import guards, key_frames, service
 from server.annotations.annotation_page import AnnotationQuestion, make_annotation_page
 from server.annotations.changes import Change, Marked, StaleAnnotationError, change_annotation, look_up

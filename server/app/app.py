@@ -12,13 +12,12 @@ from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.routing import BaseRoute
 
-from server.accounts.tries import FailedTries
+from server.access.login_throttle import LoginThrottle
+from server.app.authentication import Authentication
 from server.app.browser_app import BrowserApp
 from server.app.compression import Compression
 from server.app.document import DocumentedApp
-from server.app.door import Door
 from server.app.error_handler import install_error_handler
-from server.app.guard import Guard
 from server.app.methods import Methods
 from server.app.parts import (
     BIN_KINDS,
@@ -26,11 +25,12 @@ from server.app.parts import (
     PAGE_ROUTERS,
     PLACE_GUARDS,
     ROUTERS,
-    SCAN_FACTS,
     SCAN_RESIZED,
-    SEQUENCE_FACTS,
+    SCAN_SUMMARIES,
+    SEQUENCE_SUMMARIES,
     SIGHT_GUARDS,
 )
+from server.app.request_checks import RequestChecks
 from server.compute import Compute
 from server.database import Admission, Database
 from server.database.migrate import upgrade
@@ -59,22 +59,22 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         lifespan=_lifespan,
     )
     app.state.settings = settings
-    app.state.failed_tries = FailedTries()
+    app.state.login_throttle = LoginThrottle()
     app.state.visits = Visits()
     app.state.watches = Watches()
     app.state.place_guards = PLACE_GUARDS
     app.state.sight_guards = SIGHT_GUARDS
-    app.state.sequence_facts = SEQUENCE_FACTS
+    app.state.sequence_summaries = SEQUENCE_SUMMARIES
     app.state.bin_kinds = BIN_KINDS
-    app.state.scan_facts = SCAN_FACTS
+    app.state.scan_summaries = SCAN_SUMMARIES
     app.state.scan_resized = SCAN_RESIZED
     install_error_handler(app)
     app.router.routes.extend(_routes())
     app.router.default = BrowserApp(settings.web_dist)  # what no route takes
     app.add_middleware(Methods, prefix=API, routers=ROUTERS)
     app.add_middleware(Compression)
-    app.add_middleware(Door, settings=settings)
-    app.add_middleware(Guard, settings=settings)  # added last, so it stands outermost
+    app.add_middleware(Authentication, settings=settings)
+    app.add_middleware(RequestChecks, settings=settings)  # added last, so it stands outermost
     return app
 
 

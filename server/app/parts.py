@@ -7,8 +7,8 @@ from contextlib import AbstractAsyncContextManager
 
 from fastapi import APIRouter, FastAPI
 
-from server.accounts import login_routes, people_routes, token_routes
-from server.accounts import routes as accounts
+from server.access import login_routes, people_routes, token_routes
+from server.access import routes as accounts
 from server.annotations import routes as annotations
 from server.annotations.guards import PlaceGuard
 from server.annotations.service import find_annotated_frames
@@ -40,20 +40,20 @@ from server.registrations import routes as registrations
 from server.registrations.service import find_newest, settle_current
 from server.scans import routes as scans
 from server.scans.bin import SCANS
-from server.scans.facts import FactFinder as ScanFactFinder
-from server.scans.facts import Resized
+from server.scans.summaries import Resized
+from server.scans.summaries import SummaryFinder as ScanSummaryFinder
 from server.sequences import frame_routes
 from server.sequences import routes as sequences
 from server.sequences.bin import RECORDINGS
-from server.sequences.facts import FactFinder
+from server.sequences.summaries import SummaryFinder
 from server.suggestions import routes as suggestions
 from server.suggestions import triangulation_routes
 from server.teams import routes as teams
 from server.teams.bin import PROJECTS, REPLICA_SETS
 from server.teams.guard import ASSIGNMENTS, check_sees_tracks
 from server.tracks import routes as tracks
+from server.tracks.best_tracks import find_best_tracks
 from server.tracks.bin import TRACKS
-from server.tracks.facts import find_best_tracks
 from server.tracks.guard import SightGuard
 from server.training_sets import routes as training_sets
 from server.viewer import routes as viewer
@@ -103,10 +103,10 @@ PAGE_ROUTERS: tuple[APIRouter, ...] = (viewer.page_router,)
 LIFESPANS: tuple[Lifespan, ...] = (clean_imports, clean_films, viewer.lifespan)
 """Entered in this order when the app starts (database and storage are there), left in reverse when it stops."""
 
-SEQUENCE_FACTS: tuple[FactFinder, ...] = (find_annotated_frames, find_best_tracks)
+SEQUENCE_SUMMARIES: tuple[SummaryFinder, ...] = (find_annotated_frames, find_best_tracks)
 """What rooms above the recordings know of them."""
 
-SCAN_FACTS: tuple[ScanFactFinder, ...] = (find_newest,)
+SCAN_SUMMARIES: tuple[ScanSummaryFinder, ...] = (find_newest,)
 """What rooms above the scans know of them."""
 
 SCAN_RESIZED: tuple[Resized, ...] = (settle_current,)

@@ -13,8 +13,8 @@ from typing import Any
 from sqlalchemy import ColumnElement, Table, delete, func, or_, select, update
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
-from server.accounts.models import Account
+from server.access.audit import record_act
+from server.access.models import Account
 from server.bin.kinds import BinKind
 from server.bin.schemas import BinErasure, BinGoing
 from server.bin.service import find_kind, is_deleted, measure_files

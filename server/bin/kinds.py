@@ -12,8 +12,8 @@ from sqlalchemy import SQLColumnExpression
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
-from server.accounts.audit import record_act
-from server.accounts.models import Account
+from server.access.audit import record_act
+from server.access.models import Account
 from server.database import Base
 
 

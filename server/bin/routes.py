@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from server.accounts.service import LeadAccount
+from server.access.service import LeadAccount
 from server.bin import erasing, service
 from server.bin.kinds import BinKindsDep
 from server.bin.schemas import BinErasure, BinItem

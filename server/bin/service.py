@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from sqlalchemy import literal, select, tuple_, union_all
 from sqlalchemy.orm import Session
 
-from server.accounts.models import Account, AuditRow
-from server.accounts.service import find_names
+from server.access.models import Account, AuditRow
+from server.access.service import find_names
 from server.bin.kinds import BinKind
 from server.bin.schemas import BinItem
 from server.database.paging import read_moment_cursor, write_cursor

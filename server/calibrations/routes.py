@@ -11,7 +11,7 @@ from fastapi import Path as InPath
 from fastapi.responses import FileResponse
 from pydantic import BaseModel
 
-from server.accounts.service import AccountIdDep, LeadAccount, require_lead
+from server.access.service import AccountIdDep, LeadAccount, require_lead
 from server.calibrations import films, service, storing
 from server.calibrations.schemas import CalibrationCheck, CalibrationOptions, CalibrationOut, ResultFile
 from server.database import DatabaseDep, SessionDep

@@ -10,7 +10,7 @@ from pathlib import Path
 from sqlalchemy import select, tuple_
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
+from server.access.audit import record_act
 from server.calibrations import films, storing
 from server.calibrations.checking import check_films
 from server.calibrations.models import CalibrationRow

@@ -12,7 +12,7 @@ from server.cli.guarded import CommandError, add_json, answer, run_guarded
 if TYPE_CHECKING:
     from sqlalchemy.orm import Session
 
-    from server.accounts.models import Account
+    from server.access.models import Account
 
 ROLES = ("annotator", "reviewer", "lead", "admin")
 
@@ -60,7 +60,7 @@ def read_password() -> str:
 def _find(session: Session, name: str) -> Account:
     from sqlalchemy import select
 
-    from server.accounts.models import Account
+    from server.access.models import Account
 
     account = session.scalar(select(Account).where(Account.name == name))
     if account is None:
@@ -69,9 +69,9 @@ def _find(session: Session, name: str) -> Account:
 
 
 def _add(args: argparse.Namespace) -> int:
-    from server.accounts.logins import make_code, set_password
-    from server.accounts.passwords import check_new_password
-    from server.accounts.people import add_account, check_name
+    from server.access.logins import make_code, set_password
+    from server.access.passwords import check_new_password
+    from server.access.people import add_account, check_name
     from server.cli.open_studio import open_studio
 
     name = check_name(args.name)
@@ -88,7 +88,7 @@ def _add(args: argparse.Namespace) -> int:
 
 
 def _set_password(args: argparse.Namespace) -> int:
-    from server.accounts.logins import set_password
+    from server.access.logins import set_password
     from server.cli.open_studio import open_studio
 
     with open_studio() as studio:
@@ -99,8 +99,8 @@ def _set_password(args: argparse.Namespace) -> int:
 
 
 def _make_code(args: argparse.Namespace) -> int:
-    from server.accounts.audit import record_act
-    from server.accounts.logins import make_code
+    from server.access.audit import record_act
+    from server.access.logins import make_code
     from server.cli.open_studio import open_studio
 
     with open_studio() as studio, studio.database.writing() as session:
@@ -111,7 +111,7 @@ def _make_code(args: argparse.Namespace) -> int:
 
 
 def _set_disabled(args: argparse.Namespace) -> int:
-    from server.accounts.people import set_disabled
+    from server.access.people import set_disabled
     from server.cli.open_studio import open_studio
 
     with open_studio() as studio, studio.database.writing() as session:
@@ -124,7 +124,7 @@ def _set_disabled(args: argparse.Namespace) -> int:
 def _list(args: argparse.Namespace) -> int:
     from sqlalchemy import select
 
-    from server.accounts.models import Account
+    from server.access.models import Account
     from server.cli.open_studio import open_studio
 
     with open_studio() as studio, studio.database.reading() as session:

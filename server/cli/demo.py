@@ -71,8 +71,8 @@ def run(args: argparse.Namespace) -> int:
 
 def make_sample(studio: OpenStudio) -> None:
     """Import the samples, and queue jobs that track the first and register the scans, unless that was done before."""
-    from server.accounts.models import LOCAL_ACCOUNT_ID
-    from server.jobs.making import make_register_job
+    from server.access.models import LOCAL_ACCOUNT_ID
+    from server.jobs.create_jobs import make_register_job
     from server.jobs.schemas import RegisterCreate
     from server.jobs.service import check_track_params, create_job
 
@@ -100,7 +100,7 @@ def _import_sample(studio: OpenStudio, sample: Sample) -> SequenceRow:
 
 
 def _import_scans(studio: OpenStudio) -> None:
-    from server.accounts.models import LOCAL_ACCOUNT_ID
+    from server.access.models import LOCAL_ACCOUNT_ID
     from server.scans.adding import ScanOptions, add_scans
 
     sys.stderr.write("handloom: making sample scans ...\n")

@@ -154,7 +154,7 @@ def holds_scans(path: Path) -> bool:
 
 def _import_scans(args: argparse.Namespace, path: Path) -> int:
     import server.app.parts  # the tables that those of scans name
-    from server.accounts.models import LOCAL_ACCOUNT_ID
+    from server.access.models import LOCAL_ACCOUNT_ID
     from server.scans.adding import add_scans, make_options
 
     assert server.app.parts.ROUTERS
@@ -183,7 +183,7 @@ def _import_scans(args: argparse.Namespace, path: Path) -> int:
 
 
 def _import_labels(args: argparse.Namespace, path: Path) -> int:
-    from server.accounts.models import LOCAL_ACCOUNT_ID, Account
+    from server.access.models import LOCAL_ACCOUNT_ID, Account
     from server.app.parts import PLACE_GUARDS
     from server.exchange.importing import apply_import, find_problems, plan_import, read_files
     from tracker import ImportHints
@@ -236,12 +236,12 @@ def _import_labels(args: argparse.Namespace, path: Path) -> int:
 
 def import_recording(studio: OpenStudio, path: Path, options: dict[str, Any]) -> SequenceRow:
     """Bring a recording in with the annotations it has. Raises when it is refused."""
-    from server.accounts.models import LOCAL_ACCOUNT_ID
-    from server.imports.service import ImportDesk, import_recording
+    from server.access.models import LOCAL_ACCOUNT_ID
+    from server.imports.service import ImportContext, import_recording
     from server.sequences.service import get_sequence
 
-    desk = ImportDesk(studio.database, studio.storage, studio.settings)
-    id_ = import_recording(desk, path, options, LOCAL_ACCOUNT_ID)
+    context = ImportContext(studio.database, studio.storage, studio.settings)
+    id_ = import_recording(context, path, options, LOCAL_ACCOUNT_ID)
     with studio.database.reading() as session:
         return get_sequence(session, id_)
 

@@ -68,7 +68,7 @@ def serve(settings: Settings, *, with_worker: bool) -> None:
 
 def check_an_admin_can_log_in(settings: Settings) -> None:
     """Refuse to open a port at which nobody could let anybody in."""
-    from server.accounts.logins import count_admins_who_can_log_in
+    from server.access.logins import count_admins_who_can_log_in
     from server.cli.open_studio import open_studio
 
     with open_studio(settings) as studio, studio.database.reading() as session:

@@ -11,7 +11,7 @@ from itertools import pairwise
 from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.decisions.models import DecisionRow
 from server.decisions.schemas import (
     PersonThroughput,

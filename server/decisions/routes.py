@@ -9,8 +9,8 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 from pydantic import AwareDatetime, BeforeValidator
 
-from server.accounts.audit import record_act
-from server.accounts.service import AccountIdDep, CurrentAccount, LeadAccount, ReviewerAccount
+from server.access.audit import record_act
+from server.access.service import AccountIdDep, CurrentAccount, LeadAccount, ReviewerAccount
 from server.database import SessionDep, utc_now
 from server.database.paging import Cursor, Limit, Page
 from server.decisions import review, service

@@ -9,7 +9,7 @@ from sqlalchemy import func, select, tuple_
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.database.paging import read_moment_cursor, write_cursor
 from server.decisions.models import DecisionRow
 from server.decisions.schemas import DecisionMake, DecisionOut

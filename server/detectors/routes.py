@@ -8,7 +8,7 @@ from pathlib import Path
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse
 
-from server.accounts.service import AccountIdDep, LeadAccount, require_lead
+from server.access.service import AccountIdDep, LeadAccount, require_lead
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.detectors import service

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from sqlalchemy import select, tuple_
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
+from server.access.audit import record_act
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor
 from server.detectors.models import DetectorRow

@@ -46,15 +46,15 @@ class Judge:
     def __init__(self, database: Database, storage: Storage) -> None:
         self._database, self._storage = database, storage
         self._verdicts: OrderedDict[tuple[uuid.UUID, str], Verdict] = OrderedDict()
-        self._making: dict[tuple[uuid.UUID, str], threading.Lock] = {}
+        self._locks: dict[tuple[uuid.UUID, str], threading.Lock] = {}
         self._lock = threading.Lock()
 
     def find(self, track_id: uuid.UUID, labels: LabelsId) -> Verdict:
         """The verdict, worked out now if need be. Called from the thread pool: it may take seconds."""
         key = (track_id, labels.key)
         with self._lock:
-            making = self._making.setdefault(key, threading.Lock())
-        with making:
+            lock = self._locks.setdefault(key, threading.Lock())
+        with lock:
             with self._lock:
                 if key in self._verdicts:
                     self._verdicts.move_to_end(key)
@@ -63,7 +63,7 @@ class Judge:
                 verdict = self._judge(track_id, labels)
             finally:
                 with self._lock:
-                    self._making.pop(key, None)
+                    self._locks.pop(key, None)
             with self._lock:
                 self._verdicts[key] = verdict
                 while len(self._verdicts) > MOST:

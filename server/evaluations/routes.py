@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Depends, Path, Query, Request, Response
 from sqlalchemy.orm import Session
 
-from server.accounts.service import CurrentAccount
+from server.access.service import CurrentAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import DatabaseDep
 from server.database.frames import FramePath

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from sqlalchemy.orm import Session
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.exchange.comparison import HandChange
 from server.exchange.importing import Imported, ImportPlan, ReadLabels, find_problems, write_check
 from server.exchange.models import SnapshotRow

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from sqlalchemy.orm import Session
 
-from server.accounts.models import Account
+from server.access.models import Account
 from server.annotations.guards import PlaceGuard, find_hidden
 from server.annotations.service import Place, load_annotations
 from server.errors import ForbiddenError, InvalidError

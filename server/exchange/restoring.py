@@ -8,8 +8,8 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
-from server.accounts.models import Account
+from server.access.audit import record_act
+from server.access.models import Account
 from server.annotations.bulk import BulkChange, change_annotations, find_annotations
 from server.annotations.guards import PlaceGuard, check_change
 from server.annotations.service import Place

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from server.accounts.service import CurrentAccount, LeadAccount
+from server.access.service import CurrentAccount, LeadAccount
 from server.annotations.guards import GuardsDep
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import Database, DatabaseDep

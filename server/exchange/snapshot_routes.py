@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query, Response
 
-from server.accounts.service import CurrentAccount, LeadAccount
+from server.access.service import CurrentAccount, LeadAccount
 from server.annotations.guards import GuardsDep
 from server.annotations.service import load_annotations
 from server.database import SessionDep

@@ -12,7 +12,7 @@ import numpy as np
 from sqlalchemy import func, select, tuple_
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
+from server.access.audit import record_act
 from server.annotations.service import load_annotations
 from server.annotations.sources import read_sources
 from server.database.paging import read_cursor, write_cursor

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from fastapi import APIRouter, Depends, Request, Response
 
-from server.accounts.audit import record_act
-from server.accounts.service import AccountIdDep, LeadAccount, require_lead
+from server.access.audit import record_act
+from server.access.service import AccountIdDep, LeadAccount, require_lead
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.download import name_download

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from sqlalchemy import Uuid, column, func, select, table, tuple_
 from sqlalchemy.orm import Session
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor
 from server.errors import NotFoundError

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
+from server.access.audit import record_act
 from server.errors import ConflictError, InvalidError
 from server.hand_models.models import HandModelRow
 from server.hand_models.schemas import HandModelOut

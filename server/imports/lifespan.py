@@ -9,7 +9,7 @@ from contextlib import asynccontextmanager
 from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 
-from server.imports.service import ImportDesk, remove_abandoned
+from server.imports.service import ImportContext, remove_abandoned
 
 log = logging.getLogger(__name__)
 
@@ -17,7 +17,7 @@ log = logging.getLogger(__name__)
 @asynccontextmanager
 async def clean_imports(app: FastAPI) -> AsyncIterator[None]:
     """Remove abandoned uploads."""
-    desk = ImportDesk(app.state.database, app.state.storage, app.state.settings)
-    if removed := await run_in_threadpool(remove_abandoned, desk):
+    context = ImportContext(app.state.database, app.state.storage, app.state.settings)
+    if removed := await run_in_threadpool(remove_abandoned, context):
         log.info("Removed %d abandoned uploads.", removed)
     yield

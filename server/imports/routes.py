@@ -11,7 +11,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
-from server.accounts.service import AccountIdDep, require_lead
+from server.access.service import AccountIdDep, require_lead
 from server.database import DatabaseDep
 from server.errors import TooLargeError, error_responses
 from server.imports import service
@@ -27,10 +27,10 @@ from server.imports.schemas import (
     ImportOut,
     SensorPresetOut,
 )
-from server.imports.service import ImportDesk
+from server.imports.service import ImportContext
 from server.imports.taken_cameras import take_cameras
-from server.sequences.facts import FactsDep, describe_sequences
 from server.sequences.schemas import SequenceOut
+from server.sequences.summaries import SummariesDep, describe_sequences
 from server.storage import StorageDep
 from server.storage.upload import receive_upload
 from server.storage.upload_body import describe_upload_body
@@ -46,12 +46,12 @@ _BODY = describe_upload_body(
 )
 
 
-def get_desk(connection: HTTPConnection, database: DatabaseDep, storage: StorageDep) -> ImportDesk:
+def get_import_context(connection: HTTPConnection, database: DatabaseDep, storage: StorageDep) -> ImportContext:
     """The app's."""
-    return ImportDesk(database, storage, connection.app.state.settings)
+    return ImportContext(database, storage, connection.app.state.settings)
 
 
-DeskDep = Annotated[ImportDesk, Depends(get_desk)]
+ImportContextDep = Annotated[ImportContext, Depends(get_import_context)]
 
 
 @router.get("/form")
@@ -81,29 +81,29 @@ def _name_type(hint: Any) -> str:
     openapi_extra=_BODY,
     dependencies=by_lead,
 )
-async def create_import(request: Request, desk: DeskDep, account_id: AccountIdDep) -> ImportRow:
+async def create_import(request: Request, context: ImportContextDep, account_id: AccountIdDep) -> ImportRow:
     """Upload a recording and have it checked. Nothing becomes a recording before it is confirmed."""
     length = request.headers.get("content-length", "")
-    if length.isdecimal() and int(length) > desk.settings.max_upload_bytes + 2**20:
+    if length.isdecimal() and int(length) > context.settings.max_upload_bytes + 2**20:
         raise TooLargeError(
-            f"The upload has {length} bytes, more than {desk.settings.max_upload_bytes}; "
+            f"The upload has {length} bytes, more than {context.settings.max_upload_bytes}; "
             "HANDLOOM_MAX_UPLOAD_BYTES sets the limit."
         )
     import_id = uuid.uuid4()
     try:
-        upload = await run_in_threadpool(service.begin_upload, desk, import_id)
+        upload = await run_in_threadpool(service.begin_upload, context, import_id)
         await receive_upload(request.stream(), request.headers.get("content-type", ""), upload)
-        return await run_in_threadpool(service.add_import, desk, import_id, upload, account_id)
+        return await run_in_threadpool(service.add_import, context, import_id, upload, account_id)
     except BaseException:  # a client that has gone, too
         with CancelScope(shield=True):
-            await run_in_threadpool(service.drop_files, desk, import_id)
+            await run_in_threadpool(service.drop_files, context, import_id)
         raise
 
 
 @router.get("/{import_id}", response_model=ImportOut, responses=error_responses(404))
-def get_import(import_id: uuid.UUID, desk: DeskDep) -> ImportRow:
+def get_import(import_id: uuid.UUID, context: ImportContextDep) -> ImportRow:
     """An upload and its report."""
-    return service.get_import(desk, import_id)
+    return service.get_import(context, import_id)
 
 
 @router.get(
@@ -115,39 +115,43 @@ def get_import(import_id: uuid.UUID, desk: DeskDep) -> ImportRow:
 def get_import_picture(
     import_id: uuid.UUID,
     name: Annotated[str, Query(max_length=1100, description="As in the report's `pictures`.")],
-    desk: DeskDep,
+    context: ImportContextDep,
 ) -> Response:
     """A small picture of an image that would come in; depth in colours, near bright and far dark."""
-    service.get_import(desk, import_id)
-    data = make_picture(desk.source(import_id), name)
+    service.get_import(context, import_id)
+    data = make_picture(context.source(import_id), name)
     return Response(data, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=86400, immutable"})
 
 
 @router.post("/{import_id}/check", response_model=ImportOut, dependencies=by_lead, responses=error_responses(404, 409))
-def check_import(import_id: uuid.UUID, body: ImportCheck, desk: DeskDep) -> ImportRow:
+def check_import(import_id: uuid.UUID, body: ImportCheck, context: ImportContextDep) -> ImportRow:
     """Check again with other options."""
-    return service.check_again(desk, import_id, body.options)
+    return service.check_again(context, import_id, body.options)
 
 
 @router.put(
     "/{import_id}/calibration", response_model=ImportOut, dependencies=by_lead, responses=error_responses(404, 409)
 )
-def take_import_cameras(import_id: uuid.UUID, body: ImportCalibration, desk: DeskDep) -> ImportRow:
+def take_import_cameras(import_id: uuid.UUID, body: ImportCalibration, context: ImportContextDep) -> ImportRow:
     """Take the cameras of videos from a kept calibration, and check again."""
-    return take_cameras(desk, import_id, body.calibration_id)
+    return take_cameras(context, import_id, body.calibration_id)
 
 
 @router.post("/{import_id}/confirm", status_code=201, dependencies=by_lead, responses=error_responses(404, 409))
 def confirm_import(
-    import_id: uuid.UUID, body: ImportConfirm, desk: DeskDep, account_id: AccountIdDep, facts: FactsDep
+    import_id: uuid.UUID,
+    body: ImportConfirm,
+    context: ImportContextDep,
+    account_id: AccountIdDep,
+    summaries: SummariesDep,
 ) -> SequenceOut:
     """Make it a recording: whole, or not at all."""
-    row = service.confirm_import(desk, import_id, body.name, account_id, body.options)
-    with desk.database.reading() as session:
-        return describe_sequences(session, [row], facts)[0]
+    row = service.confirm_import(context, import_id, body.name, account_id, body.options)
+    with context.database.reading() as session:
+        return describe_sequences(session, [row], summaries)[0]
 
 
 @router.delete("/{import_id}", status_code=204, dependencies=by_lead, responses=error_responses(404, 409))
-def delete_import(import_id: uuid.UUID, desk: DeskDep) -> None:
+def delete_import(import_id: uuid.UUID, context: ImportContextDep) -> None:
     """Drop an upload."""
-    service.drop_import(desk, import_id)
+    service.drop_import(context, import_id)

@@ -18,7 +18,7 @@ from weakref import WeakValueDictionary
 
 from sqlalchemy import delete, select, update
 
-from server.accounts.audit import record_act
+from server.access.audit import record_act
 from server.annotations.changes import add_imported_annotations
 from server.database import Database, utc_now
 from server.errors import ConflictError, InvalidError, NotFoundError
@@ -49,7 +49,7 @@ FILES, UNPACKED = "files", "unpacked"
 
 
 @dataclasses.dataclass(frozen=True)
-class ImportDesk:
+class ImportContext:
     """Where imports are worked on."""
 
     database: Database
@@ -66,26 +66,26 @@ class ImportDesk:
         return folder / UNPACKED if (folder / UNPACKED).exists() else folder / FILES
 
 
-def begin_upload(desk: ImportDesk, import_id: uuid.UUID) -> Upload:
+def begin_upload(context: ImportContext, import_id: uuid.UUID) -> Upload:
     """Make room for an upload."""
-    folder = desk.folder(import_id) / FILES
+    folder = context.folder(import_id) / FILES
     folder.mkdir(parents=True)
-    return Upload(folder, desk.settings.max_upload_files, desk.settings.max_upload_bytes)
+    return Upload(folder, context.settings.max_upload_files, context.settings.max_upload_bytes)
 
 
-def drop_files(desk: ImportDesk, import_id: uuid.UUID) -> None:
+def drop_files(context: ImportContext, import_id: uuid.UUID) -> None:
     """Remove an upload's files."""
-    desk.storage.remove(AREA, import_id)
+    context.storage.remove(AREA, import_id)
 
 
-def add_import(desk: ImportDesk, import_id: uuid.UUID, upload: Upload, account_id: uuid.UUID) -> ImportRow:
+def add_import(context: ImportContext, import_id: uuid.UUID, upload: Upload, account_id: uuid.UUID) -> ImportRow:
     """Look at an upload that has arrived whole, and note what was found."""
     if not upload.names:
         raise InvalidError("The upload holds no files. Choose the recording's folder, its files, or a zip of them.")
     options = parse_options(upload.fields.get("options", ""))
-    _unpack(desk, import_id, upload)
+    _unpack(context, import_id, upload)
     name = (options.get("name") or propose_name(upload.names)).strip()
-    report = _check(desk, import_id, options, name)
+    report = _check(context, import_id, options, name)
     row = ImportRow(
         id=import_id,
         state="checked" if report["ok"] else "refused",
@@ -96,33 +96,33 @@ def add_import(desk: ImportDesk, import_id: uuid.UUID, upload: Upload, account_i
         byte_count=upload.byte_count,
         created_by=account_id,
     )
-    with desk.database.writing() as session:
+    with context.database.writing() as session:
         session.add(row)
     return row
 
 
-def get_import(desk: ImportDesk, import_id: uuid.UUID) -> ImportRow:
+def get_import(context: ImportContext, import_id: uuid.UUID) -> ImportRow:
     """The import of this id."""
-    with desk.database.reading() as session:
+    with context.database.reading() as session:
         row = session.get(ImportRow, import_id)
     if row is None:
         raise NotFoundError(f"There is no upload {import_id}; it was dropped, or removed after it had waited too long.")
     return row
 
 
-def check_again(desk: ImportDesk, import_id: uuid.UUID, options: dict[str, Any]) -> ImportRow:
+def check_again(context: ImportContext, import_id: uuid.UUID, options: dict[str, Any]) -> ImportRow:
     """Look at an upload with other options."""
-    row = get_open(desk, import_id)
+    row = get_open(context, import_id)
     ImportOptions.from_json(options)
     name = (options.get("name") or row.name).strip()
-    report = _check(desk, import_id, options, name)
+    report = _check(context, import_id, options, name)
     state = "checked" if report["ok"] else "refused"
     changes = {"state": state, "name": name, "options": options, "report": report, "updated_at": utc_now()}
-    with desk.database.writing() as session:
+    with context.database.writing() as session:
         query = update(ImportRow).where(ImportRow.id == import_id, ImportRow.state != "confirmed").values(changes)
         if session.connection().execute(query).rowcount != 1:
             raise ConflictError("The upload was imported or dropped meanwhile.")
-    return get_import(desk, import_id)
+    return get_import(context, import_id)
 
 
 _GUARD = threading.Lock()
@@ -131,7 +131,7 @@ _CONFIRMING: WeakValueDictionary[uuid.UUID, threading.Lock] = WeakValueDictionar
 
 
 def confirm_import(
-    desk: ImportDesk,
+    context: ImportContext,
     import_id: uuid.UUID,
     name: str | None,
     account_id: uuid.UUID,
@@ -144,13 +144,13 @@ def confirm_import(
     with _GUARD:
         lock = _CONFIRMING.setdefault(import_id, threading.Lock())
     with lock:
-        return _confirm(desk, import_id, name, account_id, seen)
+        return _confirm(context, import_id, name, account_id, seen)
 
 
 def _confirm(
-    desk: ImportDesk, import_id: uuid.UUID, name: str | None, account_id: uuid.UUID, seen: dict[str, Any] | None
+    context: ImportContext, import_id: uuid.UUID, name: str | None, account_id: uuid.UUID, seen: dict[str, Any] | None
 ) -> SequenceRow:
-    row = get_import(desk, import_id)
+    row = get_import(context, import_id)
     if row.state == "checked" and seen is not None and seen != row.options:
         raise ConflictError(
             "Somebody checked this upload with other options meanwhile; nothing was stored. Look at the new report."
@@ -160,20 +160,20 @@ def _confirm(
     if row.state == "checked":
         options = row.options | {"name": name or row.name}
         try:
-            import_recording(desk, desk.source(import_id), options, account_id, import_id=import_id)
+            import_recording(context, context.source(import_id), options, account_id, import_id=import_id)
         except (ConflictError, TrackerError):  # somebody who confirmed it too may have been quicker
-            if get_import(desk, import_id).state != "confirmed":
+            if get_import(context, import_id).state != "confirmed":
                 raise
-        drop_files(desk, import_id)
+        drop_files(context, import_id)
         forget_probes(import_id)
-        row = get_import(desk, import_id)
+        row = get_import(context, import_id)
     assert row.sequence_id is not None
-    with desk.database.reading() as session:
+    with context.database.reading() as session:
         return sequences.get_sequence(session, row.sequence_id)
 
 
 def import_recording(
-    desk: ImportDesk,
+    context: ImportContext,
     source: Path,
     options: dict[str, Any],
     account_id: uuid.UUID,
@@ -183,7 +183,7 @@ def import_recording(
     """Import a folder: its files first, then its rows in one transaction; without the rows, no files.
 
     Args:
-        desk: Where to.
+        context: Where to.
         source: Folder or video; only read.
         options: What the files do not tell, with `format` when it is not to be recognised.
         account_id: Who.
@@ -193,16 +193,16 @@ def import_recording(
         Id of the recording.
     """
     sequence_id = uuid.uuid4()
-    folder = desk.storage.folder(sequences.AREA, sequence_id)
+    folder = context.storage.folder(sequences.AREA, sequence_id)
     told = ImportOptions.from_json(options)
     report = run_import(source, folder, options.get("format"), told, measure=measure_mesh)
     try:
-        recording = sequences.open_sequence(desk.storage, sequence_id)
+        recording = sequences.open_sequence(context.storage, sequence_id)
         columns = sequences.describe_recording(recording)
         path = recording.annotations_path
         annotations = load_annotations(path) if path is not None and path.exists() else None
-        desk.storage.publish(sequences.AREA, sequence_id)
-        with desk.database.writing() as session:
+        context.storage.publish(sequences.AREA, sequence_id)
+        with context.database.writing() as session:
             row = sequences.add_sequence(session, sequence_id, columns, _clean(report, source), account_id)
             record_act(session, account_id, "recording.import", "recording", sequence_id, name=row.name)
             if annotations is not None:
@@ -213,37 +213,37 @@ def import_recording(
                 if session.connection().execute(done).rowcount != 1:
                     raise ConflictError("The upload was imported or dropped meanwhile.")
     except BaseException:
-        desk.storage.remove(sequences.AREA, sequence_id)
+        context.storage.remove(sequences.AREA, sequence_id)
         raise
     return sequence_id
 
 
-def drop_import(desk: ImportDesk, import_id: uuid.UUID) -> None:
+def drop_import(context: ImportContext, import_id: uuid.UUID) -> None:
     """Forget an upload."""
-    get_open(desk, import_id)
-    with desk.database.writing() as session:
+    get_open(context, import_id)
+    with context.database.writing() as session:
         session.execute(delete(ImportRow).where(ImportRow.id == import_id, ImportRow.state != "confirmed"))
-    drop_files(desk, import_id)
+    drop_files(context, import_id)
     forget_probes(import_id)
 
 
-def remove_abandoned(desk: ImportDesk) -> int:
+def remove_abandoned(context: ImportContext) -> int:
     """Remove uploads that nobody confirmed for long, and those that never arrived whole; gives their number."""
-    oldest = utc_now() - timedelta(hours=desk.settings.abandoned_import_hours)
-    with desk.database.writing() as session:
+    oldest = utc_now() - timedelta(hours=context.settings.abandoned_import_hours)
+    with context.database.writing() as session:
         query = select(ImportRow).where(ImportRow.state != "confirmed", ImportRow.updated_at < oldest)
         abandoned = {row.id for row in session.scalars(query)}
         session.execute(delete(ImportRow).where(ImportRow.id.in_(abandoned)))
         waiting = set(session.scalars(select(ImportRow.id).where(ImportRow.state != "confirmed")))
-    for import_id in desk.storage.list_ids(AREA):
+    for import_id in context.storage.list_ids(AREA):
         try:
-            is_old = desk.folder(import_id).stat().st_mtime < oldest.timestamp()
+            is_old = context.folder(import_id).stat().st_mtime < oldest.timestamp()
         except FileNotFoundError:
             continue
         if import_id in abandoned or (import_id not in waiting and is_old):
-            drop_files(desk, import_id)
+            drop_files(context, import_id)
             abandoned.add(import_id)
-    desk.storage.sweep(AREA)
+    context.storage.sweep(AREA)
     return len(abandoned)
 
 
@@ -262,17 +262,17 @@ def propose_name(names: list[str]) -> str:
     return "".join(c for c in name if c.isprintable()).strip()[:200] or "recording"
 
 
-def _unpack(desk: ImportDesk, import_id: uuid.UUID, upload: Upload) -> None:
+def _unpack(context: ImportContext, import_id: uuid.UUID, upload: Upload) -> None:
     """Unpack an upload that is one archive."""
     if len(upload.names) != 1 or not upload.names[0].lower().endswith(".zip"):
         return
-    limits = ArchiveLimits(files=desk.settings.max_upload_files, total_bytes=desk.settings.max_upload_bytes)
-    extract_archive(upload.folder / upload.names[0], desk.folder(import_id) / UNPACKED, limits)
+    limits = ArchiveLimits(files=context.settings.max_upload_files, total_bytes=context.settings.max_upload_bytes)
+    extract_archive(upload.folder / upload.names[0], context.folder(import_id) / UNPACKED, limits)
     shutil.rmtree(upload.folder)
 
 
-def _check(desk: ImportDesk, import_id: uuid.UUID, options: dict[str, Any], name: str) -> dict[str, Any]:
-    source = desk.source(import_id)
+def _check(context: ImportContext, import_id: uuid.UUID, options: dict[str, Any], name: str) -> dict[str, Any]:
+    source = context.source(import_id)
     known = find_probes(import_id)
     told = ImportOptions.from_json(options | {"name": name})
     report = check_import(source, options.get("format"), told, known, measure_mesh)
@@ -292,8 +292,8 @@ def _clean(report: ImportReport, source: Path) -> dict[str, Any]:
     return json.loads(text.replace(json.dumps(f"{source}/")[1:-1], ""))
 
 
-def get_open(desk: ImportDesk, import_id: uuid.UUID) -> ImportRow:
-    row = get_import(desk, import_id)
+def get_open(context: ImportContext, import_id: uuid.UUID) -> ImportRow:
+    row = get_import(context, import_id)
     if row.state == "confirmed":
         raise ConflictError("The upload has become a recording already. Change or delete the recording instead.")
     return row

@@ -10,7 +10,7 @@ from uuid import UUID, uuid4
 from sqlalchemy import func, select, tuple_
 from sqlalchemy.orm import Session, aliased
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.database.paging import read_moment_cursor, write_cursor
 from server.errors import InvalidError, NotFoundError, StudioError
 from server.jobs import service

@@ -104,8 +104,8 @@ class _CalibrateRun(JobRun):
             arrays = {"times": seen.times, "frames": seen.frames, "corners": seen.corners}
             path = self.files.folder / f"{step}.npz"
             self.files.write(path, lambda temporary: temporary.write_bytes(pack_arrays(arrays)))
-            facts = {"camera": seen.camera, "width": seen.width, "height": seen.height, "fps": seen.fps}
-            manifest = self.files.write_manifest(step, [path], facts)
+            described = {"camera": seen.camera, "width": seen.width, "height": seen.height, "fps": seen.fps}
+            manifest = self.files.write_manifest(step, [path], described)
             found, frames = len(seen.frames), say_count(len(seen.times), "frame")
             progress.log("info", f"{source.id}: the board was found in {found} of {frames}")
         progress.scans_done(number + 1, total, span)
@@ -147,8 +147,8 @@ class _CalibrateRun(JobRun):
         manifest = self.files.read_manifest(f"corners-{number:04d}")
         assert manifest is not None, "the steps before have written it"
         arrays = unpack_arrays((self.files.folder / f"corners-{number:04d}.npz").read_bytes())
-        facts = {name: manifest[name] for name in ("camera", "width", "height", "fps")}
-        return Sightings(**facts, times=arrays["times"], frames=arrays["frames"], corners=arrays["corners"])
+        described = {name: manifest[name] for name in ("camera", "width", "height", "fps")}
+        return Sightings(**described, times=arrays["times"], frames=arrays["frames"], corners=arrays["corners"])
 
 
 def _find_span(stage: str) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.jobs.calibrating import KIND
 from server.jobs.models import JobRow, WorkerRow
 from server.jobs.schemas import JobOut, JobWorker

@@ -44,7 +44,7 @@ class Dispatcher:
     def adopt(self) -> None:
         """Give the unfinished work of workers that are gone back to the queue."""
         with self._database.writing() as session:
-            gone = workers.find_abandoned_slots(session)
+            gone = workers.find_abandoned_workers(session)
             for worker in gone:
                 log.warning("worker %s (pid %d) is gone; its work goes back to the queue", worker.slot, worker.pid)
                 DBOS._recover_pending_workflows([worker.slot])

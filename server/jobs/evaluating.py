@@ -13,9 +13,9 @@ from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID
 from server.jobs.checkpoints import JobCheckpoints
 from server.jobs.held_out import choose_held_out, make_rule
-from server.jobs.modelling import ScanRun, Span
 from server.jobs.progress import JobProgress
 from server.jobs.restarting import read_loop
+from server.jobs.scan_run import ScanRun, Span
 from server.jobs.schemas import TrainingParams
 from server.registrations import service as registrations
 from server.scans import service as scans
@@ -45,8 +45,8 @@ def evaluate_model(run: ScanRun, attempt: int, model_id: UUID, parent_id: UUID, 
     if held_out is None:
         progress.log("warning", "nobody who was kept for testing has a registration that counts: not evaluated")
         return False
-    learned = run.shelf.get(model_id)[1]
-    _, parent = run.shelf.get(parent_id)
+    learned = run.cache.get(model_id)[1]
+    _, parent = run.cache.get(parent_id)
     assert row.training_set_id is not None, "a trained model has a training set"
     training_set = run.load_training_set(row.training_set_id, number) if chosen.trains_others else _nothing(learned)
     params = TrainingParams.model_validate(run.row.params["options"])

@@ -66,11 +66,11 @@ class JobFiles:
             return True
         return self._remote is not None and self._remote.read_document(step) is not None
 
-    def write_manifest(self, step: str, paths: list[Path], facts: dict[str, Any]) -> dict[str, Any]:
+    def write_manifest(self, step: str, paths: list[Path], described: dict[str, Any]) -> dict[str, Any]:
         """Seal `step` with the digests of its files."""
         files = [file for path in paths for file in (sorted(path.rglob("*")) if path.is_dir() else [path])]
         digests = {file.relative_to(self.folder).as_posix(): compute_digest(file) for file in files if file.is_file()}
-        manifest = {"files": digests, **facts}
+        manifest = {"files": digests, **described}
         if self._remote is not None:
             self._remote.put_blobs({digest: self.folder / name for name, digest in digests.items()})
         self.write(self.folder / f"{step}.json", lambda path: path.write_text(json.dumps(manifest, indent=1)))

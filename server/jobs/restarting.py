@@ -7,8 +7,8 @@ import uuid
 from sqlalchemy.orm import Session
 
 from server.jobs.calibrating import KIND, find_calibrate_obstacles, read_calibration_id
+from server.jobs.create_jobs import list_job_scans
 from server.jobs.files import JobFiles
-from server.jobs.making import list_job_scans
 from server.jobs.models import JobRow
 from server.jobs.obstacles import find_detect_obstacles, find_model_obstacles, find_track_obstacles, make_check
 from server.jobs.schemas import LoopCreate, RestartCheck, TrainCreate

@@ -10,13 +10,13 @@ from fastapi.responses import StreamingResponse
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
-from server.accounts.service import ReviewerAccount
+from server.access.audit import record_act
+from server.access.service import ReviewerAccount
 from server.calibrations.service import get_calibration
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import StudioError, error_responses
-from server.jobs import batches, events, making, restarting, service, workers
+from server.jobs import batches, create_jobs, events, restarting, service, workers
 from server.jobs.calibrating import KIND as CALIBRATE
 from server.jobs.calibrating import find_calibrate_obstacles, follow_job, make_calibrate_job
 from server.jobs.describe import describe_job, describe_jobs
@@ -106,7 +106,7 @@ def create_register_job(
     body: RegisterCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
 ) -> JobOut:
     """Register scans, one after the other; each is there to be curated as soon as it is done."""
-    job = making.make_register_job(session, storage, body, account.id)
+    job = create_jobs.make_register_job(session, storage, body, account.id)
     record_act(session, account.id, "job.start", "job", job.id)
     return describe_job(session, job)
 
@@ -120,7 +120,7 @@ def check_train_job(body: TrainCreate, session: SessionDep, storage: StorageDep,
 @router.post("/jobs/train", status_code=201, responses=error_responses(404))
 def create_train_job(body: TrainCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
     """Train a hand model from a training set."""
-    job = making.make_train_job(session, storage, body, account.id)
+    job = create_jobs.make_train_job(session, storage, body, account.id)
     record_act(session, account.id, "job.start", "job", job.id)
     return describe_job(session, job)
 
@@ -134,7 +134,7 @@ def check_loop_job(body: LoopCreate, session: SessionDep, storage: StorageDep, a
 @router.post("/jobs/loop", status_code=201, responses=error_responses(404))
 def create_loop_job(body: LoopCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
     """Register all, choose, train, register all again with the new model; several rounds of it when asked."""
-    job = making.make_loop_job(session, storage, body, account.id)
+    job = create_jobs.make_loop_job(session, storage, body, account.id)
     record_act(session, account.id, "job.start", "job", job.id)
     return describe_job(session, job)
 
@@ -266,7 +266,7 @@ def _act(session: Session, storage: Storage, act: str, job_id: uuid.UUID, accoun
         refuse_at(restarting.find_restart_obstacles(session, storage, asked))
     if act == "retry":
         job = service.retry_job(session, job_id, account_id)
-        making.copy_job_scans(session, job_id, job.id)
+        create_jobs.copy_job_scans(session, job_id, job.id)
         if job.kind == CALIBRATE:
             follow_job(session, job)
     else:

@@ -8,16 +8,16 @@ from uuid import UUID
 from dbos import DBOS
 
 from server.jobs.evaluating import evaluate_model
-from server.jobs.modelling import ModelShelf, ScanRun, Span
 from server.jobs.run import WorkerContext
+from server.jobs.scan_run import ModelCache, ScanRun, Span
 
 
 def register_scan_workflows(context: WorkerContext) -> dict[str, Callable[[str, int], str]]:
     """Make the workflows `register`, `train` and `loop` known to DBOS."""
-    shelf = ModelShelf(context)
+    cache = ModelCache(context)
 
     def open_run(job_id: str) -> ScanRun:
-        return ScanRun(context, UUID(job_id), shelf)
+        return ScanRun(context, UUID(job_id), cache)
 
     @DBOS.step(name="list scans")
     def list_scans(job_id: str) -> list[str]:

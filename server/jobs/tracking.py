@@ -141,8 +141,8 @@ class TrackingJob:
             except (OSError, StudioError):  # that job goes on meanwhile, and its files went with its end
                 continue
             progress.log("info", f"the start and the hands' shape are taken over from {name}: all was the same there")
-            facts = {name: value for name, value in manifest.items() if name != "files"}
-            return self.files.write_manifest("start", [self.files.setup, self.files.state(0)], facts)
+            described = {name: value for name, value in manifest.items() if name != "files"}
+            return self.files.write_manifest("start", [self.files.setup, self.files.state(0)], described)
         return None
 
     def track_chunk(self, start: dict[str, Any], chunk: int, progress: JobProgress) -> dict[str, Any]:

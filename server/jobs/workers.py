@@ -60,7 +60,7 @@ def stop_worker(session: Session, worker_id: UUID) -> None:
     session.execute(statement.values(state="stopped", last_seen_at=find_database_time(session)))
 
 
-def find_abandoned_slots(session: Session) -> list[WorkerRow]:
+def find_abandoned_workers(session: Session) -> list[WorkerRow]:
     """Workers that ended, or fell silent and are now given up, whose work nobody has taken over yet."""
     oldest = find_database_time(session) - LOST_AFTER
     silent = update(WorkerRow).where(WorkerRow.state == "running", WorkerRow.last_seen_at < oldest)

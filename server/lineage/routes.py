@@ -6,7 +6,7 @@ import uuid
 
 from fastapi import APIRouter
 
-from server.accounts.service import AccountIdDep
+from server.access.service import AccountIdDep
 from server.database import SessionDep
 from server.errors import error_responses
 from server.lineage import service

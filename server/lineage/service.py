@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.decisions.models import DecisionRow
 from server.errors import NotFoundError
 from server.hand_models.models import HandModelRow

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
-from server.accounts.models import Account
+from server.access.models import Account
 from server.annotations.guards import PlaceGuard, find_hidden
 from server.annotations.key_frames import list_key_frames
 from server.annotations.schemas import KeyFrame, KeyFrames

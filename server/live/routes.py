@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Header, Query, Request
 from fastapi.responses import StreamingResponse
 from starlette.requests import HTTPConnection
 
-from server.accounts.service import CurrentAccount
+from server.access.service import CurrentAccount
 from server.annotations.guards import GuardsDep, find_hidden
 from server.annotations.routes import ReplicaDep
 from server.annotations.service import check_place

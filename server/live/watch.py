@@ -18,7 +18,7 @@ from typing import Any
 from sqlalchemy import Select, bindparam, func, select
 from sqlalchemy.orm import Session
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.annotations.models import AnnotationRow, KeyFrameRow
 from server.annotations.service import Place
 from server.database import Database, utc_now
@@ -82,7 +82,7 @@ class RecordingWatch:
         self._revisions: dict[uuid.UUID, int] = {}
         self._changes: dict[uuid.UUID, tuple[int, Changed]] = {}
         self._number = self._forgotten = 0
-        self._facts: tuple[Any, ...] = ()
+        self._state: tuple[Any, ...] = ()
         self._newest_job = datetime.min.replace(tzinfo=UTC) + OVERLAP
         self.state: object = None
 
@@ -96,18 +96,16 @@ class RecordingWatch:
         with self._lock:
             self.asked_at = now = time.monotonic()
             if self._looked is None or now - self._looked >= LOOK_SECONDS:
-                number, facts = self._number, self._facts
+                number, state = self._number, self._state
                 self._refresh(database)
-                if (self._number, self._facts) != (number, facts):
+                if (self._number, self._state) != (number, state):
                     self.state = object()
                 self._looked = time.monotonic()
             changes = None
             if after >= self._forgotten:
                 changes = [changed for number, changed in self._changes.values() if number > after]
-            is_there, facts = self._facts[0], self._facts[1:]
-            return Look(
-                self._number, changes, self._looked_at, not is_there, facts[:6], facts[6:8], facts[8:], self.state
-            )
+            is_there, rest = self._state[0], self._state[1:]
+            return Look(self._number, changes, self._looked_at, not is_there, rest[:6], rest[6:8], rest[8:], self.state)
 
     def _refresh(self, database: Database) -> None:
         now = utc_now()
@@ -123,8 +121,8 @@ class RecordingWatch:
                 self._changes[id_] = self._number, changed
             # After the labels: who is not to see one of them any more is known before it is handed on.
             asked = {"sequence": self.sequence_id, "jobs_after": self._newest_job - OVERLAP}
-            self._facts = tuple(session.execute(_FACTS, asked).one())
-        self._newest_job = self._facts[-1] or self._newest_job
+            self._state = tuple(session.execute(_STATE, asked).one())
+        self._newest_job = self._state[-1] or self._newest_job
         self._revisions, self._looked_at = found, now
         for id_ in list(self._changes)[:-KEPT_CHANGES]:
             self._forgotten = self._changes.pop(id_)[0]
@@ -156,7 +154,7 @@ def load_since(session: Session, sequence_id: uuid.UUID, since: datetime) -> lis
     return [changed for _, changed in load_changes(session, *conditions)]
 
 
-def _ask_facts() -> Select[*tuple[Any, ...]]:
+def _select_state() -> Select[*tuple[Any, ...]]:
     """Whether the recording is there, how its assignments and comments are, its key frames, the jobs; in one query."""
     sequence_id = bindparam("sequence", type_=SequenceRow.id.type)
     work = select(AssignmentRow).where(AssignmentRow.sequence_id == sequence_id)
@@ -186,7 +184,7 @@ def _ask_facts() -> Select[*tuple[Any, ...]]:
     return select(*(query.scalar_subquery() for query in wanted))
 
 
-_FACTS = _ask_facts()
+_STATE = _select_state()
 
 
 class Watches:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
-from server.accounts.service import CurrentAccount
+from server.access.service import CurrentAccount
 from server.annotations.routes import PlaceDep
 from server.compute import ComputeDep
 from server.database import SessionDep

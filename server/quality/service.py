@@ -18,7 +18,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
-from server.accounts.service import CurrentAccount
+from server.access.service import CurrentAccount
 from server.annotations.guards import GuardsDep, find_hidden
 from server.annotations.models import AnnotationRow
 from server.annotations.service import HiddenPlaces, Place, find_revisions, get_annotation, list_annotations
@@ -34,7 +34,7 @@ from server.quality.queue import find_doubts, find_label_doubts
 from server.quality.witnesses import read_detections, read_track
 from server.sequences.service import get_sequence
 from server.storage import Storage
-from server.tracks.facts import find_best_tracks
+from server.tracks.best_tracks import find_best_tracks
 from server.tracks.service import get_track
 
 if TYPE_CHECKING:

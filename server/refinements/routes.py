@@ -6,7 +6,7 @@ import uuid
 
 from fastapi import APIRouter
 
-from server.accounts.service import LeadAccount
+from server.access.service import LeadAccount
 from server.database import DatabaseDep, SessionDep
 from server.errors import error_responses
 from server.refinements import service

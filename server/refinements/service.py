@@ -11,7 +11,7 @@ import numpy as np
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
+from server.access.audit import record_act
 from server.annotations.service import load_annotations
 from server.database import Database, utc_now
 from server.errors import ConflictError, InvalidError, NotFoundError

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Response
 
-from server.accounts.service import AccountIdDep
+from server.access.service import AccountIdDep
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.download import name_download

@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
+from server.access.audit import record_act
 from server.database import Database
 from server.database.texts import Label, Name
 from server.errors import StudioError

@@ -22,12 +22,12 @@ CROPPED, LEFT_OUT = 1, 2
 """Of `flags`."""
 
 
-def pack_arrays(arrays: dict[str, np.ndarray], facts: dict[str, Any]) -> bytes:
-    """Arrays and facts as bytes.
+def pack_arrays(arrays: dict[str, np.ndarray], members: dict[str, Any]) -> bytes:
+    """Arrays and further members as bytes.
 
     Args:
         arrays: uint8, int8, uint16, uint32 or float32 by name.
-        facts: Further members of the header.
+        members: Further members of the header.
     """
     described, parts, offset = [], [], 0
     for name, array in arrays.items():
@@ -36,7 +36,7 @@ def pack_arrays(arrays: dict[str, np.ndarray], facts: dict[str, Any]) -> bytes:
         padding = -len(data) % ALIGNMENT
         parts += [data, bytes(padding)]
         offset += len(data) + padding
-    header = json.dumps({**facts, "arrays": described}, separators=(",", ":")).encode()
+    header = json.dumps({**members, "arrays": described}, separators=(",", ":")).encode()
     header += b" " * (-(len(header) + len(MAGIC) + 4) % ALIGNMENT)
     return b"".join([MAGIC, struct.pack("<I", len(header)), header, *parts])
 
@@ -45,14 +45,14 @@ def unpack_arrays(data: bytes) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """What `pack_arrays` has packed."""
     assert data[:4] == MAGIC
     (length,) = struct.unpack("<I", data[4:8])
-    facts = json.loads(data[8 : 8 + length])
+    members = json.loads(data[8 : 8 + length])
     arrays = {}
-    for item in facts.pop("arrays"):
+    for item in members.pop("arrays"):
         kind, shape = np.dtype(item["type"]).newbyteorder("<"), tuple(item["shape"])
         start = 8 + length + item["offset"]
         count = int(np.prod(shape))
         arrays[item["name"]] = np.frombuffer(data, kind, count, start).reshape(shape)
-    return arrays, facts
+    return arrays, members
 
 
 def quantise(points: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
@@ -81,9 +81,9 @@ def pack_scan(
 ) -> bytes:
     """A scan for the browser: positions, normals (x127), colours if it has any, flags."""
     chosen = choose_points(len(points), size, digest)
-    positions, facts = quantise(points[chosen])
+    positions, members = quantise(points[chosen])
     arrays = {"positions": positions, "normals": np.round(127.0 * normals[chosen]).astype(np.int8)}
     if colors is not None:
         arrays["colors"] = colors[chosen]
     arrays["flags"] = flags[chosen]
-    return pack_arrays(arrays, {**facts, "point_count": len(points)})
+    return pack_arrays(arrays, {**members, "point_count": len(points)})

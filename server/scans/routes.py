@@ -10,8 +10,8 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
-from server.accounts.audit import record_act
-from server.accounts.service import AccountIdDep, CurrentAccount, LeadAccount, find_names, require_lead
+from server.access.audit import record_act
+from server.access.service import AccountIdDep, CurrentAccount, LeadAccount, find_names, require_lead
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.database.revision import IfMatch, read_if_match, write_etag
@@ -19,7 +19,6 @@ from server.download import name_download
 from server.errors import ConflictError, error_responses
 from server.scans import measuring, service
 from server.scans.adding import add_scans, parse_options
-from server.scans.facts import FactFinder, FactsDep, ResizedDep, describe_scans
 from server.scans.geometry import MEDIA_TYPE
 from server.scans.models import ScanCropRow, ScanRow
 from server.scans.schemas import (
@@ -34,6 +33,7 @@ from server.scans.schemas import (
     Side,
     State,
 )
+from server.scans.summaries import ResizedDep, SummariesDep, SummaryFinder, describe_scans
 from server.scans.units import find_revision_unit
 from server.storage import StorageDep
 from server.storage.upload import Upload, UploadLimits, work_on_upload
@@ -60,21 +60,21 @@ _BODY = describe_upload_body(
 )
 
 
-async def get_shelf(connection: HTTPConnection) -> service.ScanShelf:
+async def get_cache(connection: HTTPConnection) -> service.ScanCache:
     """The app's scans that were asked for lately."""
     state = connection.app.state
     if not hasattr(state, "scan_shelf"):
-        state.scan_shelf = service.ScanShelf(state.storage)
+        state.scan_shelf = service.ScanCache(state.storage)
     return state.scan_shelf
 
 
-ShelfDep = Annotated[service.ScanShelf, Depends(get_shelf)]
+CacheDep = Annotated[service.ScanCache, Depends(get_cache)]
 
 
 @router.get("")
 def list_scans(
     session: SessionDep,
-    facts: FactsDep,
+    summaries: SummariesDep,
     collection: Annotated[str | None, Query(max_length=200)] = None,
     subject: Annotated[str | None, Query(max_length=100)] = None,
     pose: Annotated[str | None, Query(max_length=100)] = None,
@@ -87,7 +87,7 @@ def list_scans(
     """Scans, the newest first."""
     wanted = service.ScanFilter(collection, subject, pose, side, state, search)
     rows, next_cursor = service.list_scans(session, wanted, cursor, limit)
-    return Page(items=describe_scans(session, rows, facts), next_cursor=next_cursor)
+    return Page(items=describe_scans(session, rows, summaries), next_cursor=next_cursor)
 
 
 @router.post(
@@ -98,7 +98,7 @@ def list_scans(
     dependencies=[Depends(require_lead)],
 )
 async def create_scans(
-    request: Request, database: DatabaseDep, storage: StorageDep, facts: FactsDep, account_id: AccountIdDep
+    request: Request, database: DatabaseDep, storage: StorageDep, summaries: SummariesDep, account_id: AccountIdDep
 ) -> ScansAdded:
     """Upload scans. Each file is judged by itself; one sent again is not kept twice."""
     limits = _read_limits(request)
@@ -109,8 +109,8 @@ async def create_scans(
         done = add_scans(database, storage, source, options, account_id, moves=True)
         with database.reading() as session:
             return ScansAdded(
-                added=describe_scans(session, done.added, facts),
-                known=describe_scans(session, done.known, facts),
+                added=describe_scans(session, done.added, summaries),
+                known=describe_scans(session, done.known, summaries),
                 refused=done.refused,
                 notes=done.notes,
             )
@@ -152,22 +152,22 @@ def list_scan_collections(session: SessionDep) -> Page[CollectionOut]:
 
 
 @router.get("/{scan_id}", responses=error_responses(404))
-def get_scan(scan_id: uuid.UUID, session: SessionDep, facts: FactsDep, response: Response) -> ScanOut:
+def get_scan(scan_id: uuid.UUID, session: SessionDep, summaries: SummariesDep, response: Response) -> ScanOut:
     """One scan."""
     row = service.get_scan(session, scan_id)
     response.headers["ETag"] = write_etag(row.revision)
-    return describe_scans(session, [row], facts)[0]
+    return describe_scans(session, [row], summaries)[0]
 
 
 @router.patch("/{scan_id}", responses=error_responses(404))
 def update_scan(
-    scan_id: uuid.UUID, patch: ScanPatch, session: SessionDep, facts: FactsDep, lead: LeadAccount
+    scan_id: uuid.UUID, patch: ScanPatch, session: SessionDep, summaries: SummariesDep, lead: LeadAccount
 ) -> ScanOut:
     """Change name, collection, subject or pose."""
     row = service.get_scan(session, scan_id)
     service.update_scan(session, row, patch)
     record_act(session, lead.id, "scan.change", "scan", row.id)
-    return describe_scans(session, [row], facts)[0]
+    return describe_scans(session, [row], summaries)[0]
 
 
 @router.delete("/{scan_id}", status_code=204, responses=error_responses(404))
@@ -178,12 +178,12 @@ def delete_scan(scan_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> N
 
 
 @router.post("/{scan_id}/restore", responses=error_responses(404))
-def restore_scan(scan_id: uuid.UUID, session: SessionDep, facts: FactsDep, lead: LeadAccount) -> ScanOut:
+def restore_scan(scan_id: uuid.UUID, session: SessionDep, summaries: SummariesDep, lead: LeadAccount) -> ScanOut:
     """Undo a deletion."""
     row = service.get_scan(session, scan_id, deleted_too=True)
     service.restore_scan(session, row)
     record_act(session, lead.id, "scan.restore", "scan", row.id)
-    return describe_scans(session, [row], facts)[0]
+    return describe_scans(session, [row], summaries)[0]
 
 
 @router.get(
@@ -206,14 +206,14 @@ def get_scan_geometry(
     scan_id: uuid.UUID,
     key: str,
     session: SessionDep,
-    shelf: ShelfDep,
+    cache: CacheDep,
     size: Annotated[int, Query(ge=1, le=200_000, description="Most points.")] = 20_000,
 ) -> Response:
     """Points for the browser: positions, normals, colours, flags (1 cropped, 2 object or loose). It never changes."""
     row = service.get_scan(session, scan_id, deleted_too=True)
     revision = service.find_geometry_revision(row, key)
     crop = service.get_crop(session, scan_id, revision)
-    return Response(shelf.pack(row, crop, size), media_type=MEDIA_TYPE, headers={"Cache-Control": IMMUTABLE})
+    return Response(cache.pack(row, crop, size), media_type=MEDIA_TYPE, headers={"Cache-Control": IMMUTABLE})
 
 
 @router.get(
@@ -222,11 +222,11 @@ def get_scan_geometry(
     responses={200: {"content": {"image/png": {"schema": {"type": "string", "format": "binary"}}}}}
     | error_responses(404),
 )
-def get_scan_thumbnail(scan_id: uuid.UUID, key: str, session: SessionDep, shelf: ShelfDep) -> Response:
+def get_scan_thumbnail(scan_id: uuid.UUID, key: str, session: SessionDep, cache: CacheDep) -> Response:
     """A small picture for lists, of what is not left out; `key` is the `geometry_key`. It never changes."""
     row = service.get_scan(session, scan_id, deleted_too=True)
     crop = service.get_crop(session, scan_id, service.find_geometry_revision(row, key))
-    return Response(shelf.draw(row, crop), media_type="image/png", headers={"Cache-Control": IMMUTABLE})
+    return Response(cache.draw(row, crop), media_type="image/png", headers={"Cache-Control": IMMUTABLE})
 
 
 @router.get("/{scan_id}/crop", responses=error_responses(404))
@@ -242,8 +242,8 @@ def put_scan_crop(
     scan_id: uuid.UUID,
     crop: ScanCrop,
     session: SessionDep,
-    shelf: ShelfDep,
-    facts: FactsDep,
+    cache: CacheDep,
+    summaries: SummariesDep,
     account: CurrentAccount,
     response: Response,
     if_match: IfMatch = None,
@@ -252,12 +252,12 @@ def put_scan_crop(
     row = service.get_scan(session, scan_id)
     revision = read_if_match(if_match)
     try:
-        row = service.put_crop(session, row, crop, service.judge_crop(shelf.get(row), crop), revision, account.id)
+        row = service.put_crop(session, row, crop, service.judge_crop(cache.get(row), crop), revision, account.id)
     except service.StaleScanError as stale:
-        raise _write_conflict(session, scan_id, facts, stale) from None
+        raise _write_conflict(session, scan_id, summaries, stale) from None
     record_act(session, account.id, "scan.crop", "scan", row.id, revision=row.revision)
     response.headers["ETag"] = write_etag(row.revision)
-    return describe_scans(session, [row], facts)[0]
+    return describe_scans(session, [row], summaries)[0]
 
 
 @router.put("/{scan_id}/unit", responses=error_responses(404, 409, 428))
@@ -265,8 +265,8 @@ def put_scan_unit(
     scan_id: uuid.UUID,
     unit: ScanUnit,
     session: SessionDep,
-    shelf: ShelfDep,
-    facts: FactsDep,
+    cache: CacheDep,
+    summaries: SummariesDep,
     resized: ResizedDep,
     lead: LeadAccount,
     response: Response,
@@ -276,25 +276,25 @@ def put_scan_unit(
     the scan as it is now in `theirs`."""
     row = service.get_scan(session, scan_id)
     revision = read_if_match(if_match)
-    service.settle_old_unit(session, shelf.storage, row)
+    service.settle_old_unit(session, cache.storage, row)
     before = row.metres_per_unit
     try:
-        row = service.put_unit(session, row, shelf.get(row), unit.metres_per_unit, revision, lead.id)
+        row = service.put_unit(session, row, cache.get(row), unit.metres_per_unit, revision, lead.id)
     except service.StaleScanError as stale:
-        raise _write_conflict(session, scan_id, facts, stale) from None
+        raise _write_conflict(session, scan_id, summaries, stale) from None
     for settle in resized:
         settle(session, row)
     detail = {"revision": row.revision, "from": before, "to": row.metres_per_unit}
     record_act(session, lead.id, "scan.unit", "scan", row.id, **detail)
     response.headers["ETag"] = write_etag(row.revision)
-    return describe_scans(session, [row], facts)[0]
+    return describe_scans(session, [row], summaries)[0]
 
 
 def _write_conflict(
-    session: Session, scan_id: uuid.UUID, facts: tuple[FactFinder, ...], stale: service.StaleScanError
+    session: Session, scan_id: uuid.UUID, summaries: tuple[SummaryFinder, ...], stale: service.StaleScanError
 ) -> ConflictError:
     row = service.get_scan(session, scan_id)
-    theirs = describe_scans(session, [row], facts)[0].model_dump(mode="json")
+    theirs = describe_scans(session, [row], summaries)[0].model_dump(mode="json")
     return ConflictError(stale.detail, headers={"ETag": write_etag(row.revision)}, theirs=theirs)
 
 

@@ -265,7 +265,7 @@ def find_geometry_revision(row: ScanRow, key: str) -> int:
     return int(match[2])
 
 
-class ScanShelf:
+class ScanCache:
     """Scans that were asked for lately, so that who moves on and back does not wait for the disk again."""
 
     def __init__(self, storage: Storage, most: int = 8) -> None:

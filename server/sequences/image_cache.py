@@ -19,15 +19,15 @@ class ImageCache:
         self._images: OrderedDict[Hashable, bytes] = OrderedDict()
         self._size = 0
         self._lock = threading.Lock()
-        self._making: dict[Hashable, threading.Lock] = {}
+        self._locks: dict[Hashable, threading.Lock] = {}
 
     def get(self, key: Hashable, make: Callable[[], bytes]) -> bytes:
         """The image of a key, made when it is not there."""
         with self._lock:
             if (image := self._find(key)) is not None:
                 return image
-            making = self._making.setdefault(key, threading.Lock())
-        with making:
+            lock = self._locks.setdefault(key, threading.Lock())
+        with lock:
             with self._lock:
                 if (image := self._find(key)) is not None:
                     return image
@@ -35,7 +35,7 @@ class ImageCache:
                 image = make()
             finally:
                 with self._lock:
-                    self._making.pop(key, None)
+                    self._locks.pop(key, None)
             self._keep(key, image)
             return image
 

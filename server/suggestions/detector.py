@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from server.annotations.service import Place
 from server.compute import ComputeContext
+from server.suggestions.cache import RecordingCache
 from server.suggestions.schemas import SuggestedJoint, Suggestion
 from server.suggestions.service import Recorded
-from server.suggestions.shelf import Shelf
 
 if TYPE_CHECKING:
     from tracker import Annotation
@@ -30,12 +30,12 @@ def suggest_detected(
     """
     from tracker import DETECTOR_LABEL
 
-    shelf = context.keep(Shelf)
-    found = None if job_id is None else shelf.detections(job_id)
+    cache = context.keep(RecordingCache)
+    found = None if job_id is None else cache.detections(job_id)
     if found is not None and found.covers(place.frame, place.camera):
         hands = found.at(place.frame, place.camera)
     else:
-        hands = _look(shelf, recorded, place)
+        hands = _look(cache, recorded, place)
     return [
         Suggestion(
             source="detector",
@@ -54,14 +54,14 @@ def suggest_detected(
     ]
 
 
-def _look(shelf: Shelf, recorded: Recorded, place: Place) -> tuple[Annotation, ...]:
+def _look(cache: RecordingCache, recorded: Recorded, place: Place) -> tuple[Annotation, ...]:
     """Look at one image, without the images before it."""
     from tracker import default_hand_detector, find_image_hands
 
-    recording = shelf.recording(recorded.id, recorded.content_key)
+    recording = cache.recording(recorded.id, recorded.content_key)
     camera = recording.camera(place.camera)
     if not camera.has_color:
         return ()
-    frame = shelf.frame(recorded.id, recorded.content_key, place.camera, place.frame)
+    frame = cache.frame(recorded.id, recorded.content_key, place.camera, place.frame)
     found = find_image_hands(default_hand_detector(), frame, float(camera.K[0, 0]), recording.hands)
     return tuple(hand.annotate(frame) for hand in found)

@@ -10,7 +10,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from sqlalchemy.orm import Session
 
-from server.accounts.service import CurrentAccount
+from server.access.service import CurrentAccount
 from server.annotations.guards import GuardsDep, check_read, find_hidden
 from server.annotations.routes import CameraPath, get_annotated_sequence
 from server.annotations.schemas import Hand

@@ -14,9 +14,9 @@ from server.annotations.service import Place
 from server.compute import ComputeContext
 from server.errors import InvalidError, NotFoundError
 from server.sequences.models import SequenceRow
+from server.suggestions.cache import RecordingCache
 from server.suggestions.schemas import SuggestedJoint, Suggestion
-from server.suggestions.shelf import Shelf
-from server.tracks.facts import find_best_tracks
+from server.tracks.best_tracks import find_best_tracks
 from server.tracks.models import TrackRow
 from server.tracks.service import get_track
 from tracker import say_count
@@ -64,12 +64,12 @@ def suggest_from_track(
     """The hands of a track in one image; none where the track was lost or does not reach. `place.hand` is ignored."""
     from tracker import view_track_hands
 
-    shelf = context.keep(Shelf)
-    track, rows = shelf.track(chosen.id)
+    cache = context.keep(RecordingCache)
+    track, rows = cache.track(chosen.id)
     row = rows.get(place.frame)
     if row is None or track.status[row] == "lost":
         return []
-    camera = shelf.recording(recorded.id, recorded.content_key).camera(place.camera)
+    camera = cache.recording(recorded.id, recorded.content_key).camera(place.camera)
     found = view_track_hands(track, row, camera)
     return [
         Suggestion(
@@ -102,10 +102,10 @@ def suggest_by_fit(
             f"{say_count(placed, 'joint is', 'joints are')} placed; a model fit needs {MIN_FIT_JOINTS} or more. "
             "Place some more."
         )
-    shelf = context.keep(Shelf)
-    camera = shelf.recording(recorded.id, recorded.content_key).camera(place.camera)
-    frame = shelf.frame(recorded.id, recorded.content_key, place.camera, place.frame) if camera.has_depth else None
-    model = _find_model(shelf, chosen, place.hand)
+    cache = context.keep(RecordingCache)
+    camera = cache.recording(recorded.id, recorded.content_key).camera(place.camera)
+    frame = cache.frame(recorded.id, recorded.content_key, place.camera, place.frame) if camera.has_depth else None
+    model = _find_model(cache, chosen, place.hand)
     fit = fit_marked(model, np.array(points, dtype=np.float64), camera, frame)
     return Suggestion(
         source="fit",
@@ -132,11 +132,11 @@ def warm_up(_context: ComputeContext) -> None:
     find_image_hands(default_hand_detector(), image, focal, ("right",))
 
 
-def _find_model(shelf: Shelf, chosen: ChosenTrack | None, hand: str) -> ArticulatedModel:
+def _find_model(cache: RecordingCache, chosen: ChosenTrack | None, hand: str) -> ArticulatedModel:
     from tracker import default_hand
 
     if chosen is not None:
-        setup = shelf.track(chosen.id)[0].setup
+        setup = cache.track(chosen.id)[0].setup
         if hand in setup.names:
             return setup.models[setup.names.index(hand)]
     return default_hand(hand)

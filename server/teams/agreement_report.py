@@ -16,7 +16,7 @@ from pydantic import BaseModel, Field
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from server.accounts.service import find_names
+from server.access.service import find_names
 from server.annotations.schemas import JointsOfSource, SourceChoice
 from server.annotations.service import load_annotations
 from server.database import utc_now

@@ -10,7 +10,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 from sqlalchemy.orm import Session
 
-from server.accounts.service import CurrentAccount, LeadAccount, ReviewerAccount
+from server.access.service import CurrentAccount, LeadAccount, ReviewerAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.database.revision import IfMatch, read_if_match, write_etag

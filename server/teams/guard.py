@@ -9,8 +9,8 @@ from typing import Any
 from sqlalchemy import and_, bindparam, or_, select
 from sqlalchemy.orm import Session
 
-from server.accounts.models import Account
-from server.accounts.service import find_names, has_role
+from server.access.models import Account
+from server.access.service import find_names, has_role
 from server.annotations.guards import PlaceGuard
 from server.annotations.service import HiddenPlaces, Place
 from server.database import Base

@@ -9,8 +9,8 @@ from fastapi import APIRouter, Query, Response
 from sqlalchemy import select, tuple_
 from sqlalchemy.orm import Session
 
-from server.accounts.models import Account
-from server.accounts.service import CurrentAccount, LeadAccount
+from server.access.models import Account
+from server.access.service import CurrentAccount, LeadAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page, read_id_cursor, write_cursor
 from server.database.revision import IfMatch, read_if_match, write_etag

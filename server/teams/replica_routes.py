@@ -7,7 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Response
 
-from server.accounts.service import CurrentAccount, LeadAccount, ReviewerAccount
+from server.access.service import CurrentAccount, LeadAccount, ReviewerAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page

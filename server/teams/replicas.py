@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from sqlalchemy import func, select, tuple_
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
-from server.accounts.models import Account
+from server.access.audit import record_act
+from server.access.models import Account
 from server.annotations.service import check_place
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor

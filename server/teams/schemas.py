@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from server.accounts.models import Role
+from server.access.models import Role
 from server.database.numbers import FrameNumber, Joint
 from server.database.texts import Name, Text, Words
 from server.teams.models import AssignmentState

@@ -10,8 +10,8 @@ from fastapi import Depends
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
-from server.accounts.models import Account
-from server.accounts.service import CurrentAccount
+from server.access.models import Account
+from server.access.service import CurrentAccount
 from server.database import DatabaseDep
 from server.tracks.models import TrackRow
 from server.tracks.service import get_track

@@ -12,8 +12,8 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
-from server.accounts.audit import record_act
-from server.accounts.service import LeadAccount
+from server.access.audit import record_act
+from server.access.service import LeadAccount
 from server.database import Base, SessionDep
 from server.database.frames import FramePath
 from server.database.paging import Cursor, Limit, Page

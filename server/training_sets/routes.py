@@ -10,7 +10,7 @@ from typing import IO
 from fastapi import APIRouter, Response
 from fastapi.responses import StreamingResponse
 
-from server.accounts.service import ReviewerAccount
+from server.access.service import ReviewerAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.download import name_download

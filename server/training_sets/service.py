@@ -14,8 +14,8 @@ import numpy as np
 from sqlalchemy import func, select, tuple_
 from sqlalchemy.orm import Session
 
-from server.accounts.audit import record_act
-from server.accounts.service import find_names
+from server.access.audit import record_act
+from server.access.service import find_names
 from server.database.paging import read_id_cursor, read_moment_cursor, write_cursor
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.hand_models.models import HandModelRow

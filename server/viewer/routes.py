@@ -12,7 +12,7 @@ from fastapi.responses import RedirectResponse
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
-from server.accounts.service import CurrentAccount
+from server.access.service import CurrentAccount
 from server.database import DatabaseDep
 from server.errors import StudioError, error_responses
 from server.storage import StorageDep

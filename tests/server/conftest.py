@@ -20,11 +20,11 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
 from server.database import Database
 from server.database.migrate import upgrade
-from server.imports.service import ImportDesk, import_recording
+from server.imports.service import ImportContext, import_recording
 from server.settings import Settings
 from server.storage import Storage
 from server.tracks.service import add_track
@@ -275,7 +275,7 @@ def add_recording(studio: Studio, make_recording: MakeRecording) -> AddRecording
     """Puts a small recording into the studio; gives it as the API does."""
 
     def add(name: str = "waving", **arguments: Any) -> dict[str, Any]:
-        desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+        desk = ImportContext(studio.database, studio.app.state.storage, studio.settings)
         id_ = import_recording(desk, make_recording(name, **arguments), {}, LOCAL_ACCOUNT_ID)
         return studio.client.get(f"/api/v1/sequences/{id_}").json()
 
@@ -344,7 +344,7 @@ class Tracked:
 @pytest.fixture
 def tracked(studio: Studio, rendered: Path, tracked_folder: Path) -> Tracked:
     storage: Storage = studio.app.state.storage
-    desk = ImportDesk(studio.database, storage, studio.settings)
+    desk = ImportContext(studio.database, storage, studio.settings)
     sequence_id = import_recording(desk, rendered, {}, LOCAL_ACCOUNT_ID)
     track_id = uuid.uuid4()
     shutil.copytree(tracked_folder, storage.folder("tracks", track_id))

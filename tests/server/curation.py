@@ -19,7 +19,7 @@ from sqlalchemy.orm import Session
 from server.decisions.schemas import DecisionMake
 from server.decisions.service import decide
 from server.hand_models.storing import UNTRAINED_ID, resolve_model
-from server.jobs.modelling import measure_errors
+from server.jobs.scan_run import measure_errors
 from server.registrations import service as registrations
 from server.registrations.models import RegistrationRow
 from server.scans.models import ScanRow

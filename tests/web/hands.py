@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 import server.app.app  # noqa: F401 (all tables, which name each other)
 from server.database import Database
 from server.hand_models.storing import resolve_model
-from server.jobs.modelling import measure_errors
+from server.jobs.scan_run import measure_errors
 from server.registrations import service as registrations
 from server.registrations.models import RegistrationRow
 from server.settings import Settings

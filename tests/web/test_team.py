@@ -14,7 +14,7 @@ import httpx
 import numpy as np
 import pytest
 
-from server.accounts.secrets import hash_secret
+from server.access.secrets import hash_secret
 from tests.web.conftest import Fingers, wait_for_held
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]

@@ -16,9 +16,9 @@ import numpy as np
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from server.accounts.logins import Browser, add_login
-from server.accounts.models import LOCAL_ACCOUNT_ID
-from server.imports.service import ImportDesk, import_recording
+from server.access.logins import Browser, add_login
+from server.access.models import LOCAL_ACCOUNT_ID
+from server.imports.service import ImportContext, import_recording
 from server.tracks.service import add_track
 from tests.server.conftest import GeneratedHand
 from tests.server.curation import add_curation
@@ -105,7 +105,7 @@ def fill(app: FastAPI, sender: Sender, rendered: Path, track: Path, hand: Genera
 
 
 def _add_recordings(app: FastAPI, sender: Sender, rendered: Path, track: Path) -> dict[str, Any]:
-    desk = ImportDesk(app.state.database, app.state.storage, app.state.settings)
+    desk = ImportContext(app.state.database, app.state.storage, app.state.settings)
     sequence_id = import_recording(desk, rendered, {}, LOCAL_ACCOUNT_ID)
     tracks = uuid.uuid4(), uuid.uuid4()
     for track_id in tracks:

@@ -24,7 +24,7 @@ from schemathesis.checks import CHECKS, load_all_checks
 from schemathesis.config import SchemathesisConfig
 from schemathesis.python.asgi import get_client, shutdown_lifespans
 
-from server.accounts.tries import FailedTries
+from server.access.login_throttle import LoginThrottle
 from server.app import create_app
 from server.settings import Settings
 from tests.server.api_document import read_document
@@ -66,7 +66,7 @@ class Fed:
         ):
             kept.backup(live)
         shutil.copytree(self.kept / "uploads", data_dir / "uploads", dirs_exist_ok=True)
-        self.app.state.failed_tries = FailedTries()
+        self.app.state.login_throttle = LoginThrottle()
 
     def fill_in(self, case: schemathesis.Case) -> None:
         """Put what is there in the place of made-up names."""

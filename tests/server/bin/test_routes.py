@@ -7,7 +7,7 @@ from pathlib import Path
 
 from sqlalchemy import select, update
 
-from server.accounts.models import LOCAL_ACCOUNT_ID, AuditRow
+from server.access.models import LOCAL_ACCOUNT_ID, AuditRow
 from server.database import Base
 from server.jobs.models import JobRow
 from tests.server.conftest import GeneratedHand, Studio, Tracked

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from sqlalchemy import select, update
 
-from server.accounts.models import AuditRow
+from server.access.models import AuditRow
 from server.calibrations.models import CalibrationRow
 from server.calibrations.service import remove_abandoned
 from server.database import utc_now

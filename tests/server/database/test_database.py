@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import select, text
 
-from server.accounts.models import Account
+from server.access.models import Account
 from server.database import Database
 
 

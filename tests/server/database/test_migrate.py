@@ -12,7 +12,7 @@ from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from sqlalchemy import inspect, select
 
-from server.accounts.models import LOCAL_ACCOUNT_ID, Account
+from server.access.models import LOCAL_ACCOUNT_ID, Account
 from server.annotations.models import AnnotationRow
 from server.database import Base, Database
 from server.database.migrate import SCRIPTS, downgrade, find_current, find_head, upgrade

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sqlalchemy import select
 
-from server.accounts.models import AuditRow
+from server.access.models import AuditRow
 from tests.server.conftest import AddRecording, Studio
 from tests.server.jobs.test_worker import Bench, bench
 from tracker import TrackSetup, load_detector
@@ -154,7 +154,7 @@ def test_a_job_that_could_not_use_the_detector_is_not_queued(studio: Studio, add
 
 
 def test_a_job_tracks_with_the_detector_that_was_chosen_and_its_track_tells_which(bench: Bench) -> None:
-    from server.accounts.models import LOCAL_ACCOUNT_ID
+    from server.access.models import LOCAL_ACCOUNT_ID
     from server.detectors.service import add_detector
 
     own = load_detector(DETECTOR)

@@ -118,10 +118,10 @@ def test_a_part_counts_alone(studio, client, tracked, add_shifted: AddShifted) -
 
 
 def test_a_project_is_judged_as_a_whole_by_method(studio, client, tracked, rendered, add_shifted: AddShifted) -> None:
-    from server.accounts.models import LOCAL_ACCOUNT_ID
-    from server.imports.service import ImportDesk, import_recording
+    from server.access.models import LOCAL_ACCOUNT_ID
+    from server.imports.service import ImportContext, import_recording
 
-    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    desk = ImportContext(studio.database, studio.app.state.storage, studio.settings)
     second = import_recording(desk, rendered, {}, LOCAL_ACCOUNT_ID)
     tracks = [str(tracked.track_id), add_shifted(2.0, terms="LO"), add_shifted(0.0, second)]
     tracks.append(add_shifted(1.0, second, terms="LO"))

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.exchange import routes
 from server.teams.models import AssignmentRow, ProjectRow
 from tests.server.conftest import AddRecording, Studio, Tracked

@@ -18,11 +18,11 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select, update
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
 from server.database import utc_now
 from server.imports.models import ImportRow
-from server.imports.service import ImportDesk, import_recording, propose_name
+from server.imports.service import ImportContext, import_recording, propose_name
 from server.settings import Settings
 from tests.server.conftest import BASE_URL, Studio
 from tracker import HAND_JOINTS, ImportRefusedError
@@ -249,12 +249,12 @@ def test_uploads_nobody_confirmed_are_removed_when_the_studio_starts(studio: Stu
 
 
 def test_a_recording_whose_rows_cannot_be_stored_leaves_no_files(studio: Studio, make_recording) -> None:
-    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    context = ImportContext(studio.database, studio.app.state.storage, studio.settings)
     with pytest.raises(Exception, match=r"(?i)foreign key"):
-        import_recording(desk, make_recording(), {}, uuid.uuid4())
+        import_recording(context, make_recording(), {}, uuid.uuid4())
     assert left_behind(studio) == []
     with pytest.raises(ImportRefusedError):
-        import_recording(desk, studio.settings.data_dir / "nothing", {}, LOCAL_ACCOUNT_ID)
+        import_recording(context, studio.settings.data_dir / "nothing", {}, LOCAL_ACCOUNT_ID)
     assert left_behind(studio) == []
     assert studio.client.get("/api/v1/sequences").json()["items"] == []
 

@@ -13,7 +13,7 @@ import pytest
 from fastapi import FastAPI
 from sqlalchemy import select
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.database import Database
 from server.hand_models.models import HandModelRow
 from server.jobs import service

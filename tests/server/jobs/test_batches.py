@@ -8,7 +8,7 @@ from datetime import timedelta
 import pytest
 from fastapi.testclient import TestClient
 
-from server.accounts.models import LOCAL_ACCOUNT_ID, Account
+from server.access.models import LOCAL_ACCOUNT_ID, Account
 from server.database import utc_now
 from server.jobs import service, workers
 from server.jobs.models import JobRow

@@ -7,10 +7,10 @@ import uuid
 import pytest
 from sqlalchemy import select
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID, add_uploaded
-from server.jobs import making
+from server.jobs import create_jobs
 from server.jobs.schemas import LoopCreate, RegisterCreate, TrainingParams
 from server.registrations.models import RegistrationRow
 from server.scans.models import ScanRow
@@ -47,7 +47,7 @@ def filled(bench: ScanBench, hands: list[GeneratedHand]) -> ScanBench:
 def test_a_cancelled_job_keeps_what_is_registered_and_goes_on_with_the_rest(filled: ScanBench) -> None:
     bench = filled
     bench.start_worker()
-    job_id = bench.make(making.make_register_job, RegisterCreate(subject="S1"))
+    job_id = bench.make(create_jobs.make_register_job, RegisterCreate(subject="S1"))
     bench.wait(job_id, lambda job: job.frames_done >= 2)
     bench.cancel(job_id)
     before = {row.id: row.created_at for row in bench.registrations(job_id)}
@@ -72,7 +72,7 @@ def test_a_loop_of_two_rounds_goes_on_after_a_killed_worker_and_each_round_learn
         evaluate="quick",
         options=TrainingParams(rounds=1, num_shapes=2, with_pose_shapes=False),
     )
-    job_id = bench.make(making.make_loop_job, asked)
+    job_id = bench.make(create_jobs.make_loop_job, asked)
     worker = bench.start_worker()
     bench.wait_for_file(job_id, "train-1-first-poses.json")
     bench.kill(worker)  # in the first training

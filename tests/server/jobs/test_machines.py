@@ -16,10 +16,10 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
 from server.database import Database
-from server.imports.service import ImportDesk, import_recording
+from server.imports.service import ImportContext, import_recording
 from server.jobs import workers
 from server.jobs.models import JobRow, WorkerRow
 from server.settings import Settings
@@ -100,7 +100,7 @@ def test_a_worker_that_dies_for_good_is_noticed_and_another_machine_ends_its_job
     machines: list[Machine], rendered: Path
 ) -> None:
     web, second, third = machines
-    desk = ImportDesk(web.database, web.storage, web.settings)
+    desk = ImportContext(web.database, web.storage, web.settings)
     sequence_id = import_recording(desk, rendered, {}, LOCAL_ACCOUNT_ID)
     app = create_app(web.settings)
     with closing(web.database), TestClient(app, base_url=BASE_URL) as client:

@@ -10,7 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.decisions.schemas import DecisionMake
 from server.decisions.service import decide
 from server.hand_models.models import HandModelRow

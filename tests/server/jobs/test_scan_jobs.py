@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from sqlalchemy import select
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID, find_file
-from server.jobs import making, service
+from server.jobs import create_jobs, service
 from server.jobs.files import JobFiles
 from server.jobs.scan_workflow import plan_loop
 from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate, TrainingParams
@@ -45,7 +45,7 @@ def test_a_killed_worker_loses_one_scan_at_most_and_none_is_registered_twice(
         damaged = session.scalars(select(ScanRow).where(ScanRow.name == "s2")).one()
     (bench.storage.folder("scans", damaged.id) / "scan.ply").write_bytes(b"ply\nnothing\n")
     worker = bench.start_worker()
-    job_id = bench.make(making.make_register_job, RegisterCreate(only="all"))
+    job_id = bench.make(create_jobs.make_register_job, RegisterCreate(only="all"))
     bench.wait(job_id, lambda job: job.frames_done >= 1)
     bench.kill(worker)
     assert bench.job(job_id).state == "running"
@@ -84,7 +84,9 @@ def test_a_trained_model_knows_what_it_was_trained_from_and_registers_the_next_r
         rule = TrainingRule(by="verdict")
         chosen, _ = create_training_set(session, bench.storage, "true", rule, LOCAL_ACCOUNT_ID)
     options = TrainingParams(rounds=1, num_shapes=2, with_pose_shapes=False)
-    job_id = bench.make(making.make_train_job, TrainCreate(training_set_id=chosen.id, name="Our hand", options=options))
+    job_id = bench.make(
+        create_jobs.make_train_job, TrainCreate(training_set_id=chosen.id, name="Our hand", options=options)
+    )
     bench.start_worker()
     job = bench.wait_for_end(job_id)
     with bench.database.reading() as session:
@@ -96,7 +98,7 @@ def test_a_trained_model_knows_what_it_was_trained_from_and_registers_the_next_r
     with bench.database.reading() as session:
         scan_id = session.scalars(select(ScanRow.id).order_by(ScanRow.name).limit(1)).one()
     asked = RegisterCreate(scan_ids=[scan_id], model_id=model.id)
-    again = bench.make(making.make_register_job, asked)
+    again = bench.make(create_jobs.make_register_job, asked)
     bench.wait_for_end(again)
     [row] = bench.registrations(again)
     assert (row.round, row.model_id, row.scan_id) == (2, model.id, scan_id)
@@ -108,7 +110,7 @@ def test_a_job_registers_what_was_chosen_when_it_was_made(studio: Studio, genera
     one = add_registered(studio.app, generated_hand, "one", collection="x")
     add_registered(studio.app, generated_hand, "two", collection="x", subject="Bob")
     with pytest.raises(Exception, match="Untrained right hand has registered all 2 scans of x as cropped now"):
-        bench.make(making.make_register_job, RegisterCreate(collection="x"))  # this model has registered both
+        bench.make(create_jobs.make_register_job, RegisterCreate(collection="x"))  # this model has registered both
     with studio.database.writing() as session:
         session.get_one(RegistrationRow, one).decision = "accept"
         scan = session.get_one(RegistrationRow, one).scan_id
@@ -118,14 +120,14 @@ def test_a_job_registers_what_was_chosen_when_it_was_made(studio: Studio, genera
         (RegisterCreate(only="all", subject="Bob"), ["two"]),
         (RegisterCreate(only="all", scan_ids=[scan]), ["one"]),
     ):
-        job_id = bench.make(making.make_register_job, asked)
+        job_id = bench.make(create_jobs.make_register_job, asked)
         with studio.database.reading() as session:
-            chosen = [session.get_one(ScanRow, id_).name for id_ in making.list_job_scans(session, job_id)]
+            chosen = [session.get_one(ScanRow, id_).name for id_ in create_jobs.list_job_scans(session, job_id)]
         assert chosen == names
         retried = studio.client.post(f"/api/v1/jobs/{job_id}/cancel").status_code
         again = studio.client.post(f"/api/v1/jobs/{job_id}/retry").json()
         with studio.database.reading() as session:
-            assert len(making.list_job_scans(session, uuid.UUID(again["id"]))) == len(names)
+            assert len(create_jobs.list_job_scans(session, uuid.UUID(again["id"]))) == len(names)
         assert retried == 200 and again["title"].endswith("with Untrained right hand")
 
 

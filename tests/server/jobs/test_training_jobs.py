@@ -9,14 +9,14 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select, update
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
 from server.errors import InvalidError
 from server.hand_models.storing import UNTRAINED_ID, find_file
-from server.jobs import making, service
+from server.jobs import create_jobs, service
 from server.jobs.evaluating import evaluate_model
-from server.jobs.modelling import ModelShelf, ScanRun
 from server.jobs.run import WorkerContext
+from server.jobs.scan_run import ModelCache, ScanRun
 from server.jobs.schemas import LoopCreate, TrainCreate, TrainingParams
 from server.registrations.models import RegistrationRow
 from server.scans.models import ScanRow
@@ -58,7 +58,7 @@ def choose(bench: ScanBench, **rule: Any) -> uuid.UUID:
 def train(bench: ScanBench, set_id: uuid.UUID, **more: Any) -> uuid.UUID:
     options = TrainingParams(rounds=2, num_shapes=2, with_pose_shapes=False)
     asked = TrainCreate.model_validate({"training_set_id": set_id, "name": "Our hand", "options": options, **more})
-    return bench.make(making.make_train_job, asked)
+    return bench.make(create_jobs.make_train_job, asked)
 
 
 @pytest.mark.slow
@@ -124,7 +124,7 @@ def test_who_is_judged_on_must_be_there_and_not_have_been_learnt_from(filled: Sc
             train(bench, set_id, evaluate="quick", test_subjects=subjects)
         train(bench, set_id, test_subjects=subjects)  # where nothing is to be judged nothing is wrong
     with pytest.raises(InvalidError, match="Nobody is kept for testing"):
-        bench.make(making.make_loop_job, LoopCreate(name="x", evaluate="quick"))
+        bench.make(create_jobs.make_loop_job, LoopCreate(name="x", evaluate="quick"))
 
 
 def test_a_model_that_nobody_was_kept_for_says_so_and_is_there_all_the_same(filled: ScanBench) -> None:
@@ -136,7 +136,7 @@ def test_a_model_that_nobody_was_kept_for_says_so_and_is_there_all_the_same(fill
     context = WorkerContext(bench.database, bench.storage, uuid.uuid4())
     with bench.database.writing() as session:
         assert service.claim_job(session, job_id, 1, context.worker_id) is not None
-    run = ScanRun(context, job_id, ModelShelf(context))
+    run = ScanRun(context, job_id, ModelCache(context))
     model_id = uuid.UUID(run.train(1, chosen, UNTRAINED_ID, "Our hand", 0, (0.0, 0.5)))
     for _ in range(2):
         assert not evaluate_model(run, 1, model_id, UNTRAINED_ID, 0, (0.5, 1.0))

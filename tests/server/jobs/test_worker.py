@@ -18,10 +18,10 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.app.app import create_app
 from server.database import Database, utc_now
-from server.imports.service import ImportDesk, import_recording
+from server.imports.service import ImportContext, import_recording
 from server.jobs import service, workers
 from server.jobs.models import JobRow
 from server.jobs.restarting import list_kept
@@ -42,7 +42,7 @@ class Bench:
     def __init__(self, settings: Settings, database: Database, recording: Path) -> None:
         self.settings, self.database = settings, database
         self.storage = Storage(settings.data_dir)
-        desk = ImportDesk(database, self.storage, settings)
+        desk = ImportContext(database, self.storage, settings)
         self.sequence_id = import_recording(desk, recording, {}, LOCAL_ACCOUNT_ID)
         self.processes: list[subprocess.Popen[bytes]] = []
 

@@ -22,7 +22,7 @@ def fall_silent(database: Database, worker: WorkerRow) -> None:
 
 def find_abandoned(database: Database) -> list[str]:
     with database.writing() as session:
-        return [row.slot for row in workers.find_abandoned_slots(session)]
+        return [row.slot for row in workers.find_abandoned_workers(session)]
 
 
 def test_a_silent_worker_is_given_up_and_learns_of_it(database) -> None:

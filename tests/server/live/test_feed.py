@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from sqlalchemy import event
 
-from server.accounts.models import Account
+from server.access.models import Account
 from server.app.parts import PLACE_GUARDS
 from server.jobs.models import JobRow
 from server.live import watch as watching

@@ -9,8 +9,8 @@ import uuid
 import numpy as np
 import pytest
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
-from server.imports.service import ImportDesk, import_recording
+from server.access.models import LOCAL_ACCOUNT_ID
+from server.imports.service import ImportContext, import_recording
 from tests.server.quality.conftest import see
 from tracker import add_commands, load_sequence
 
@@ -36,7 +36,7 @@ def surrounded(tmp_path_factory):
 @pytest.fixture
 def several(studio, surrounded):
     """That recording in the studio."""
-    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    desk = ImportContext(studio.database, studio.app.state.storage, studio.settings)
     return import_recording(desk, surrounded, {}, LOCAL_ACCOUNT_ID)
 
 

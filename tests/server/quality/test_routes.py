@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 import pytest
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.database import utc_now
-from server.imports.service import ImportDesk, import_recording
+from server.imports.service import ImportContext, import_recording
 from server.jobs.detections import AREA
 from server.jobs.service import create_job
 from server.quality import service
@@ -23,7 +23,7 @@ from tracker import default_hand_detector, detect_hands, load_sequence
 @pytest.fixture
 def labelled(studio, rendered):
     """Every frame labelled rightly."""
-    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    desk = ImportContext(studio.database, studio.app.state.storage, studio.settings)
     return f"/api/v1/sequences/{import_recording(desk, rendered, {}, LOCAL_ACCOUNT_ID)}"
 
 
@@ -175,7 +175,7 @@ def change_background(source, folder, color=None, depth=0):
 
 
 def test_joints_in_the_empty_part_of_a_masked_image_are_flagged(studio, client, rendered, tmp_path):
-    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    desk = ImportContext(studio.database, studio.app.state.storage, studio.settings)
     folder = change_background(rendered, tmp_path / "masked", color=0)
     masked = f"/api/v1/sequences/{import_recording(desk, folder, {}, LOCAL_ACCOUNT_ID)}"
     page = find(client, masked)
@@ -218,7 +218,7 @@ def test_a_joint_in_the_empty_part_is_flagged_however_far_away_it_is(client, lab
 
 def test_a_whole_recording_on_the_background_is_flagged(studio, client, rendered, tmp_path):
     """That all labels are alike does not excuse them: no hand that looks as large as these is so far away."""
-    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    desk = ImportContext(studio.database, studio.app.state.storage, studio.settings)
     folder = change_background(rendered, tmp_path / "wall", depth=1500)
     wall = f"/api/v1/sequences/{import_recording(desk, folder, {}, LOCAL_ACCOUNT_ID)}"
     assert find(client, wall, kind="background")["items"] == []

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
-from server.imports.service import ImportDesk, import_recording
+from server.access.models import LOCAL_ACCOUNT_ID
+from server.imports.service import ImportContext, import_recording
 from tests.tracker.calibration.labelled_hands import find_farthest_off_px, record_knocked, stand_around
 from tracker import load_sequence
 
@@ -18,7 +18,7 @@ from tracker import load_sequence
 def recording_id(studio, tmp_path: Path, rng: np.random.Generator) -> uuid.UUID:
     """Four cameras of which three were knocked, with labels of 40 frames."""
     record_knocked(tmp_path / "knocked", rng)
-    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    desk = ImportContext(studio.database, studio.app.state.storage, studio.settings)
     return import_recording(desk, tmp_path / "knocked", {}, LOCAL_ACCOUNT_ID)
 
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
-from server.imports.service import ImportDesk, import_recording
+from server.access.models import LOCAL_ACCOUNT_ID
+from server.imports.service import ImportContext, import_recording
 from tracker import Camera, add_commands, load_sequence
 
 BENT = [-0.21, 0.07, 0.0011, -0.0007, 0.0]
@@ -36,7 +36,7 @@ def surrounded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def sequence_id(studio, surrounded: Path) -> uuid.UUID:
-    desk = ImportDesk(studio.database, studio.app.state.storage, studio.settings)
+    desk = ImportContext(studio.database, studio.app.state.storage, studio.settings)
     return import_recording(desk, surrounded, {}, LOCAL_ACCOUNT_ID)
 
 

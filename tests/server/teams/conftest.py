@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from server.accounts.models import Account, Role, TokenRow
-from server.accounts.secrets import hash_secret
+from server.access.models import Account, Role, TokenRow
+from server.access.secrets import hash_secret
 
 API = "/api/v1"
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from sqlalchemy import select
 
-from server.accounts.models import AuditRow
+from server.access.models import AuditRow
 
 
 def find_acts(studio: Any, subject_id: str) -> list[str]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.annotations.changes import Change, change_annotation
 from server.annotations.service import Place
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
-from server.imports.service import ImportDesk, import_recording
+from server.imports.service import ImportContext, import_recording
 from server.settings import Settings
 from server.tracks.service import add_track
 from tests.server.conftest import BASE_URL, Studio, Tracked
@@ -34,7 +34,7 @@ def client(studio: Studio) -> TestClient:
 @pytest.fixture(scope="module")
 def tracked(studio: Studio, rendered: Path, tracked_folder: Path) -> Tracked:
     storage, track_id = studio.app.state.storage, uuid.uuid4()
-    desk = ImportDesk(studio.database, storage, studio.settings)
+    desk = ImportContext(studio.database, storage, studio.settings)
     sequence_id = import_recording(desk, rendered, {}, LOCAL_ACCOUNT_ID)
     shutil.copytree(tracked_folder, storage.folder("tracks", track_id))
     with studio.database.writing() as session:

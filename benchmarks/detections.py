@@ -1,4 +1,4 @@
-"""How well fingertips are found on twins of T16's sequences: `python benchmarks/detections.py FOLDER [--write]`.
+"""How well fingertips are found on twins of T16's sequences: `python -m benchmarks.detections FOLDER [--write]`.
 
 FOLDER holds the authors' `Cameras.txt`, `models/` and `seq/`. Judged as in PASCAL-VOC over five sequences: the detector
 that comes with Handloom, which has seen renders of its own hand only, and detectors trained on three other sequences.
@@ -125,7 +125,7 @@ def draw(curves: dict[str, PrecisionRecall]) -> np.ndarray:
 
 def write(rows: list[str], curves: dict[str, PrecisionRecall]) -> None:
     """The table, the picture, and points of the curves."""
-    command = "python benchmarks/detections.py FOLDER_OF_T16_DATA --write"
+    command = "python -m benchmarks.detections FOLDER_OF_T16_DATA --write"
     write_result("detection", "Fingertips found on twins", command, "\n".join(rows))
     done, data = cv2.imencode(".png", draw(curves))
     assert done

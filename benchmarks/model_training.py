@@ -1,4 +1,4 @@
-"""Train hand models from generated registrations and judge them on other people: `python benchmarks/model_training.py`.
+"""Train hand models from generated registrations and judge them on other people: `python -m benchmarks.model_training`.
 
 Learnt from: 31 people x 51 poses of the generator, right and left by turns, true vertices as registrations. Judged on:
 scans of six other people. With `--own DIR`, models from registrations of our own too: DIR/scans gets scans, DIR/loop
@@ -261,7 +261,7 @@ def write_results(found: dict[str, Any]) -> None:
     drawings = {f"model_{name}.svg": drawing for name, drawing in draw_study(found).items()}
     shown = [f"![{name}]({name})" for name in drawings]
     text = "\n".join([*write_tables(found), "", *shown])
-    write_result("model_training", "Training of a hand model", "python benchmarks/model_training.py --write", text)
+    write_result("model_training", "Training of a hand model", "python -m benchmarks.model_training --write", text)
     write_atomically(RESULTS / "model_training.json", (json.dumps(found, indent=1) + "\n").encode())
     for name, drawing in drawings.items():
         write_atomically(RESULTS / name, drawing.encode())

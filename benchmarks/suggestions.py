@@ -1,4 +1,4 @@
-"""How near a model fit comes to the joints that nobody has placed yet: `python benchmarks/suggestions.py FOLDER`.
+"""How near a model fit comes to the joints that nobody has placed yet: `python -m benchmarks.suggestions FOLDER`.
 
 FOLDER holds T16's `Cameras.txt`, `models/` and `seq/`: real motions, rendered with a sensor's noise, every joint known.
 Of each hand that is wholly in the image the first joints of ORDER count as placed, to the pixel, and the fit

@@ -3,7 +3,7 @@
     python -m benchmarks.blend_model [MODEL.npz] [--write]
 
 Without a MODEL a hand of the same size with random, dense pose blend shapes is taken: the most that they can cost.
-Process time, medians, one thread. `--write` puts the tables into docs/hand_models.md.
+Process time, medians, one thread. `--write` writes `benchmarks/results/blend_model.md`.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
 
 import numpy as np  # noqa: E402
 
+from benchmarks.result_page import write_result  # noqa: E402
 from tracker.model.blend_articulated import articulated_of  # noqa: E402
 from tracker.model.blend_files import load_blend_model  # noqa: E402
 from tracker.model.blend_limits import blend_limits  # noqa: E402
@@ -27,9 +28,6 @@ from tracker.model.blend_model import BlendModel  # noqa: E402
 from tracker.model.blend_normal_equations import MeshEdges, plane_system, vertex_system  # noqa: E402
 from tracker.model.default_hand import default_hand  # noqa: E402
 from tracker.model.scene import Scene  # noqa: E402
-
-DOCS = Path(__file__).resolve().parents[1] / "docs" / "hand_models.md"
-BEGIN, END = "<!-- python -m benchmarks.blend_model -->", "<!-- end -->"
 
 
 def median_ms(work: Callable[[], object], repeats: int = 200) -> float:
@@ -115,7 +113,7 @@ def convergence(model: BlendModel, with_blend: bool, noise: float, fits: int = 2
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("model", nargs="?", type=Path, help="a blend model of Handloom, .npz")
-    parser.add_argument("--write", action="store_true", help=f"put the tables into docs/{DOCS.name}")
+    parser.add_argument("--write", action="store_true", help="write benchmarks/results/blend_model.md")
     arguments = parser.parse_args()
     if arguments.model is None:
         from tests.tracker.random_blend import random_blend
@@ -133,9 +131,7 @@ def main() -> int:
     text = "\n".join(lines)
     print(text)
     if arguments.write:
-        page = DOCS.read_text()
-        before, rest = page.split(BEGIN)
-        DOCS.write_text(f"{before}{BEGIN}\n{text}\n{END}{rest.split(END, 1)[1]}")
+        write_result("blend_model", "What a blend model costs", "python -m benchmarks.blend_model --write", text)
     return 0
 
 

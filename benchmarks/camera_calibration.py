@@ -1,4 +1,4 @@
-"""How well cameras are calibrated: `PYTHONPATH=. python benchmarks/camera_calibration.py [FOLDER]`.
+"""How well cameras are calibrated: `python -m benchmarks.camera_calibration [FOLDER]`.
 
 Boards waved in front of known cameras, corners with Gaussian noise of 0.2 px, lenses unknown, videos out of step by
 fractions of a frame: how far centres, directions, focal lengths and time offsets are from the truth. FOLDER holds

@@ -1,8 +1,8 @@
-"""How well fingertips are found on twins of T16's sequences: `python benchmarks/detections.py FOLDER [--write]`.
+"""How well fingertips are found on twins of T16's sequences: `python -m benchmarks.detections FOLDER [--write]`.
 
 FOLDER holds the authors' `Cameras.txt`, `models/` and `seq/`. Judged as in PASCAL-VOC over five sequences: the detector
 that comes with Handloom, which has seen renders of its own hand only, and detectors trained on three other sequences.
-`--write` renews the table, the curves and the picture in `docs/`.
+`--write` writes the table and the curves into `benchmarks/results` and the picture into `docs/pictures`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from benchmarks.result_page import RESULTS, write_result
 from tracker.capture.annotations import load_annotations
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.sequence import Sequence, load_sequence
@@ -123,11 +124,9 @@ def draw(curves: dict[str, PrecisionRecall]) -> np.ndarray:
 
 
 def write(rows: list[str], curves: dict[str, PrecisionRecall]) -> None:
-    """The table between the marks of docs/detection.md, the picture, and points of the curves."""
-    page = DOCS / "detection.md"
-    before, _, rest = page.read_text().partition("<!-- table -->\n")
-    _, _, after = rest.partition("<!-- end -->\n")
-    write_atomically(page, (before + "<!-- table -->\n" + "\n".join(rows) + "\n<!-- end -->\n" + after).encode())
+    """The table, the picture, and points of the curves."""
+    command = "python -m benchmarks.detections FOLDER_OF_T16_DATA --write"
+    write_result("detection", "Fingertips found on twins", command, "\n".join(rows))
     done, data = cv2.imencode(".png", draw(curves))
     assert done
     write_atomically(DOCS / "pictures" / "detection.png", data.tobytes())
@@ -135,13 +134,13 @@ def write(rows: list[str], curves: dict[str, PrecisionRecall]) -> None:
     for name, curve in curves.items():
         for n in range(0, len(curve.confidences), max(1, len(curve.confidences) // 100)):
             lines.append(f"{name},{curve.confidences[n]:.3f},{curve.precision[n]:.4f},{curve.recall[n]:.4f}")
-    write_atomically(DOCS / "detection.csv", ("\n".join(lines) + "\n").encode())
+    write_atomically(RESULTS / "detection.csv", ("\n".join(lines) + "\n").encode())
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--write", action="store_true", help="renew docs/detection.*")
+    parser.add_argument("--write", action="store_true", help="write benchmarks/results/detection.*")
     parser.add_argument("--threads", type=int, default=1, help="of the training")
     args = parser.parse_args()
     cv2.setNumThreads(1)

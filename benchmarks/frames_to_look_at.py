@@ -2,14 +2,13 @@
 
 Two hands are rendered moving before three cameras, tracked in their colour, and looked through by the hand detector.
 Every hand is labelled by accepting the track's suggestion in every camera. In one of ten hands the suggestion is wrong:
-an error is planted in the track itself, so that its labels have it too. `--write` renews the table in
-`docs/quality.md`. `--folder` keeps what was rendered, tracked and found for the next time.
+an error is planted in the track itself, so that its labels have it too. `--write` writes
+`benchmarks/results/frames_to_look_at.md`. `--folder` keeps what was rendered, tracked and found for the next time.
 """
 
 from __future__ import annotations
 
 import argparse
-import re
 import subprocess
 import sys
 import tempfile
@@ -21,6 +20,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from benchmarks.result_page import write_result
 from server.annotations.sources import write_sources
 from server.quality.doubt import doubt_label
 from server.quality.find import Setting, check_labels
@@ -31,7 +31,6 @@ from tracker import JointSource, Sequence, load_sequence
 
 Array = npt.NDArray[np.float64]
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "quality.md"
 CHOSEN_ON, REPORTED = ("open-close",), ("count", "pinch")
 """Limits and the way that scores are put together were chosen on the first; figures are of the others."""
 KINDS = ("shifted joint", "swapped fingers", "hand of another frame", "one camera only")
@@ -232,7 +231,7 @@ def describe(count: Count) -> list[str]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--write", action="store_true", help="renew the table in docs/quality.md")
+    parser.add_argument("--write", action="store_true", help="write benchmarks/results/frames_to_look_at.md")
     parser.add_argument("--folder", type=Path, help="keep what was made here, or take it from here")
     parser.add_argument(
         "--only", metavar="NAME", help="measure NAME, NAME-track and NAME-det.json of --folder, all made before"
@@ -248,9 +247,8 @@ def main() -> None:
         rows = describe(measure(folder, REPORTED))
     print(f"\n{', '.join(REPORTED)}:", *rows, sep="\n")
     if args.write:
-        table = "\n".join(["<!-- queue -->", *rows, "<!-- end of queue -->"])
-        pattern = r"<!-- queue -->.*?<!-- end of queue -->"
-        PAGE.write_text(re.sub(pattern, lambda _: table, PAGE.read_text(), flags=re.DOTALL))
+        command = "python -m benchmarks.frames_to_look_at --write"
+        write_result("frames_to_look_at", "The queue of frames to look at", command, "\n".join(rows))
 
 
 if __name__ == "__main__":

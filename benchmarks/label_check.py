@@ -1,13 +1,12 @@
 """How many injected mistakes the label check finds: `python -m benchmarks.label_check [--write]`.
 
 Two hands are rendered moving, every frame labelled with 1.5 px of noise, as people have it ([T16] §4.2); one label in
-ten gets a mistake. `--write` renews the table in `docs/quality.md`.
+ten gets a mistake. `--write` writes `benchmarks/results/label_check.md`.
 """
 
 from __future__ import annotations
 
 import argparse
-import re
 import subprocess
 import sys
 import tempfile
@@ -17,12 +16,12 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.result_page import write_result
 from server.quality.find import Setting, find_flags
 from server.quality.labels import LabelReader
 from tests.server.quality.errors import KINDS, Item, inject
 from tracker import load_annotations, load_sequence
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "quality.md"
 MOTIONS = ("open-close", "wave", "count", "pinch")
 FRAMES, EVERY, SEEDS, NOISE_PX = 60, 10, 3, 1.5
 
@@ -37,7 +36,7 @@ class Row:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--write", action="store_true", help="renew the table in docs/quality.md")
+    parser.add_argument("--write", action="store_true", help="write benchmarks/results/label_check.md")
     args = parser.parse_args()
     found: dict[str, list[int]] = defaultdict(list)
     flagged = wrong = false = labels = clean_flags = clean_labels = 0
@@ -95,8 +94,8 @@ def main() -> None:
     print("\n".join(rows_))
     print("flags of labels without a mistake:", dict(kinds))
     if args.write:
-        table = "\n".join(["<!-- table -->", *rows_, "<!-- end -->"])
-        PAGE.write_text(re.sub(r"<!-- table -->.*?<!-- end -->", lambda _: table, PAGE.read_text(), flags=re.DOTALL))
+        command = "python -m benchmarks.label_check --write"
+        write_result("label_check", "Mistakes that the label check finds", command, "\n".join(rows_))
 
 
 if __name__ == "__main__":

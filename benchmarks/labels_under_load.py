@@ -4,7 +4,7 @@
 
 Some of the annotators sit at real Chromiums, press a key that moves and click at once. Every picture carries its
 number, so what was on the screen at a click is read from the screen's own pixels. The others are simulated
-(`handloom bench server`). `--write` puts the figures into docs/server_load.md.
+(`handloom bench server`). `--write` writes `benchmarks/results/labels_under_load.md`.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from benchmarks.load.bystander import stand_by
 from benchmarks.load.other_computers import sit_elsewhere
 from benchmarks.load.slow_network import SlowNetwork
 from benchmarks.load.stored import Judgement, judge
+from benchmarks.result_page import write_result
 from server.cli.bench_server import ServedStudio, annotations_of, write_recording
 from server.cli.simulated_annotators import Ledger, annotate_together, find_faults
 
-PAGE = Path(__file__).parents[1] / "docs" / "server_load.md"
 FRAMES, OF_ONE_BROWSER, OF_BYSTANDER = 10_000, 200, 20
 KILLS, OUTAGES, OUTAGE_SECONDS = 2, 4, 5.0
 REST_SECONDS = 20.0
@@ -117,7 +117,7 @@ def main() -> None:
     parser.add_argument("--latency", type=float, default=3.0, help="each request is late by up to this, s (3)")
     parser.add_argument("--cut", type=float, default=0.02, help="part of the requests that are cut (0.02)")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--write", action="store_true", help="write docs/server_load.md")
+    parser.add_argument("--write", action="store_true", help="write benchmarks/results/labels_under_load.md")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="handloom-load-") as folder:
         path = write_recording(Path(folder) / "recording", FRAMES, 40_000)
@@ -131,9 +131,8 @@ def main() -> None:
     for fault in faults[:60]:
         print(fault)
     if args.write:
-        before, _, rest = PAGE.read_text().partition("<!-- trouble -->")
-        after = rest.partition("<!-- trouble end -->")[2]
-        PAGE.write_text(f"{before}<!-- trouble -->\n\n{table}\n<!-- trouble end -->{after}")
+        command = "python -m benchmarks.labels_under_load --write"
+        write_result("labels_under_load", "Annotators at real browsers on a bad network", command, table)
     sys.exit(1 if faults else 0)
 
 

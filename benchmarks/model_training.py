@@ -1,9 +1,9 @@
-"""Train hand models from generated registrations and judge them on other people: `python benchmarks/model_training.py`.
+"""Train hand models from generated registrations and judge them on other people: `python -m benchmarks.model_training`.
 
 Learnt from: 31 people x 51 poses of the generator, right and left by turns, true vertices as registrations. Judged on:
 scans of six other people. With `--own DIR`, models from registrations of our own too: DIR/scans gets scans, DIR/loop
-what `handloom model-loop` makes of them; an interrupted run goes on where it stopped. `--write` renews the tables, the
-curves and the figures in `docs/`.
+what `handloom model-loop` makes of them; an interrupted run goes on where it stopped. `--write` writes tables,
+curves and figures to `benchmarks/results/model_training.*`.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.distance_weights import with_distance_weights
+from benchmarks.result_page import RESULTS, write_result
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan import save_scan
 from tracker.cli.__main__ import main as handloom
@@ -43,7 +44,6 @@ from tracker.training.options import TrainingOptions
 from tracker.training.train import Training, train_model
 from tracker.training.training_set import TrainingSet, make_training_set
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
 COUNTS = (0, 1, 2, 3, 4, 6, 8, 10, 15, 20, 30, 45)
 SHAPES, LOCAL_SHAPES = 10, 40
 """Directions of the whole hand, and of parts: chosen on people 26 to 31 with models of the 25 others."""
@@ -257,15 +257,14 @@ def write_tables(found: dict[str, Any]) -> list[str]:
     return lines
 
 
-def write_docs(found: dict[str, Any]) -> None:
-    page = DOCS / "model_training.md"
-    before, rest = page.read_text().split("<!-- figures -->\n", 1)
-    after = rest.split("<!-- /figures -->", 1)[1]
-    text = "\n".join(write_tables(found))
-    write_atomically(page, f"{before}<!-- figures -->\n{text}\n<!-- /figures -->{after}".encode())
-    write_atomically(DOCS / "model_training.json", (json.dumps(found, indent=1) + "\n").encode())
-    for name, drawing in draw_study(found).items():
-        write_atomically(DOCS / "pictures" / f"model_{name}.svg", drawing.encode())
+def write_results(found: dict[str, Any]) -> None:
+    drawings = {f"model_{name}.svg": drawing for name, drawing in draw_study(found).items()}
+    shown = [f"![{name}]({name})" for name in drawings]
+    text = "\n".join([*write_tables(found), "", *shown])
+    write_result("model_training", "Training of a hand model", "python -m benchmarks.model_training --write", text)
+    write_atomically(RESULTS / "model_training.json", (json.dumps(found, indent=1) + "\n").encode())
+    for name, drawing in drawings.items():
+        write_atomically(RESULTS / name, drawing.encode())
 
 
 def main() -> None:
@@ -277,12 +276,12 @@ def main() -> None:
     parser.add_argument("--own-people", type=int, default=30)
     parser.add_argument("--own-poses", type=int, default=12)
     parser.add_argument("--processes", type=int, default=2, help="registrations at a time")
-    parser.add_argument("--write", action="store_true", help="renew the docs")
+    parser.add_argument("--write", action="store_true", help="write benchmarks/results/model_training.*")
     args = parser.parse_args()
     found = study(args)
     print("\n".join(write_tables(found)))
     if args.write:
-        write_docs(found)
+        write_results(found)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What the presets of a tracking job cost: `python benchmarks/presets.py FOLDER_OF_T16_DATA`.
+"""What the presets of a tracking job cost: `python -m benchmarks.presets FOLDER_OF_T16_DATA`.
 
 Twins of two public sequences, the authors' models, with `t16` their full meshes, one thread: 09 (one hand) and 17 (two
 hands and a pipe).

@@ -1,4 +1,4 @@
-"""How well real recordings are tracked: `python benchmarks/real_recordings.py FOLDER [--ball] [--pictures DIR]`.
+"""How well real recordings are tracked: `python -m benchmarks.real_recordings FOLDER [--ball] [--pictures DIR]`.
 
 FOLDER holds `uvr_sphere_green` (a hand turning a ball, with colour) and `sr305_depth` (an open hand, depth alone).
 There is no truth; what is measured is whether the fitted surface lies on the depth image, and pictures are made to look

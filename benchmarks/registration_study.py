@@ -3,8 +3,8 @@
 Round 1 registers scans of the six test subjects cold, with the untrained hand: every fifth a fist, every second
 without forearm, left and right in turn. Then a model is trained from registrations of the training subjects, and round
 2 registers the test scans again, warm and with it. Everything is kept in `--out`: run again, it goes on where it was
-stopped; after a change to registration or training take a fresh folder. `--write` renews the table in
-`docs/registration_study.md`.
+stopped; after a change to registration or training take a fresh folder. `--write` writes
+`benchmarks/results/registration_study.md`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import re
 import time
 from itertools import cycle, islice
 from pathlib import Path
@@ -24,6 +23,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 import numpy as np  # noqa: E402
 
 from benchmarks.registration_trial import Trial, is_right, run_trials  # noqa: E402
+from benchmarks.result_page import write_result  # noqa: E402
 from tracker.cli.progress import ProgressLine  # noqa: E402
 from tracker.model.blend_files import save_blend_model  # noqa: E402
 from tracker.model.untrained_hand import untrained_hand  # noqa: E402
@@ -35,7 +35,6 @@ from tracker.training.options import TrainingOptions  # noqa: E402
 from tracker.training.train import train_model  # noqa: E402
 from tracker.training.training_set import make_training_set  # noqa: E402
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "registration_study.md"
 OTHERS = tuple(name for name in POSE_NAMES if name not in FISTS)
 FIST_EVERY = 5
 TEST_SEED, TRAIN_SEED = 1000, 0
@@ -74,7 +73,8 @@ def main() -> None:
     table = "\n".join(["| what | bar | measured |", "|---|---|---|", *lines])
     print(table)
     if args.write:
-        write(table)
+        command = "python -m benchmarks.registration_study --out DIR --write"
+        write_result("registration_study", "Registration of generated scans", command, table)
 
 
 def plan(subjects: tuple[int, ...], count: int, strength: float, folder: Path, seed: int) -> list[Trial]:
@@ -166,13 +166,6 @@ def describe_round(rows: list[dict[str, Any]], number: int) -> list[str]:
     if number == 2:
         lines.append(f"| round 2: posed joints, mean over right ones, mm | 2.5 mm | {mean('joints_mm', right)} |")
     return lines
-
-
-def write(table: str) -> None:
-    """Put the table between the marks of the page."""
-    text = PAGE.read_text()
-    new = re.sub(r"(?s)(<!-- table -->\n).*?(<!-- end -->)", lambda m: f"{m[1]}{table}\n{m[2]}", text)
-    PAGE.write_text(new)
 
 
 if __name__ == "__main__":

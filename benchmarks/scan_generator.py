@@ -1,10 +1,9 @@
-"""What generated scans are like: `python -m benchmarks.scan_generator`; `--write` renews the page and its picture."""
+"""What generated scans are like: `python -m benchmarks.scan_generator`; `--write` writes page and picture."""
 
 from __future__ import annotations
 
 import argparse
 import os
-import re
 import time
 from pathlib import Path
 
@@ -16,6 +15,7 @@ import numpy as np  # noqa: E402
 import numpy.typing as npt  # noqa: E402
 from scipy.spatial import KDTree  # noqa: E402
 
+from benchmarks.result_page import write_result  # noqa: E402
 from tracker.cli.progress import ProgressLine  # noqa: E402
 from tracker.model.blend_model import BlendModel  # noqa: E402
 from tracker.model.untrained_hand import untrained_hand  # noqa: E402
@@ -48,9 +48,7 @@ def main() -> None:
     table = "\n".join(["| what | measured |", "|---|---|", *(f"| {what} | {value} |" for what, value in rows)])
     print(table)
     if args.write:
-        page = DOCS / "scans.md"
-        pattern = r"(?s)(<!-- table -->\n).*?(<!-- end -->)"
-        page.write_text(re.sub(pattern, lambda m: f"{m[1]}{table}\n{m[2]}", page.read_text()))
+        write_result("scan_generator", "Generated scans", "python -m benchmarks.scan_generator --write", table)
         cv2.imwrite(str(DOCS / "pictures" / "scan_poses.png"), draw_poses(20), [cv2.IMWRITE_PNG_COMPRESSION, 9])
 
 

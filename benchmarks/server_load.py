@@ -3,7 +3,7 @@
     python -m benchmarks.server_load [--seconds 300] [--write]
 
 Every case is `handloom bench server` with other options. PostgreSQL is started here, with commits that wait for the
-disk. `--write` puts the table into docs/server_load.md.
+disk. `--write` writes `benchmarks/results/server_load.md`.
 """
 
 from __future__ import annotations
@@ -12,14 +12,13 @@ import argparse
 import json
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import psycopg
 
+from benchmarks.result_page import write_result
 from tests.postgres import run_postgres
 
-PAGE = Path(__file__).parents[1] / "docs" / "server_load.md"
 HEADS = (
     "what",
     "database",
@@ -60,7 +59,7 @@ def row(result: dict[str, Any]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=300, help="of the cases with fifty annotators (300)")
-    parser.add_argument("--write", action="store_true", help="write docs/server_load.md")
+    parser.add_argument("--write", action="store_true", help="write benchmarks/results/server_load.md")
     args = parser.parse_args()
     seconds = ("--seconds", str(args.seconds))
     results = []
@@ -79,8 +78,7 @@ def main() -> None:
     table = "\n".join(["| " + " | ".join(HEADS) + " |", "|" + "---|" * len(HEADS), *map(row, results)])
     print(table)
     if args.write:
-        before, _, rest = PAGE.read_text().partition("<!-- table -->\n")
-        PAGE.write_text(f"{before}<!-- table -->\n{table}\n<!-- table end -->{rest.partition('<!-- table end -->')[2]}")
+        write_result("server_load", "Saving under load", "python -m benchmarks.server_load --write", table)
 
 
 if __name__ == "__main__":

@@ -1,14 +1,13 @@
-"""How near a model fit comes to the joints that nobody has placed yet: `python benchmarks/suggestions.py FOLDER`.
+"""How near a model fit comes to the joints that nobody has placed yet: `python -m benchmarks.suggestions FOLDER`.
 
 FOLDER holds T16's `Cameras.txt`, `models/` and `seq/`: real motions, rendered with a sensor's noise, every joint known.
 Of each hand that is wholly in the image the first joints of ORDER count as placed, to the pixel, and the fit
-is judged by the others. `--write` renews the table in `docs/suggestions.md`.
+is judged by the others. `--write` writes `benchmarks/results/suggestions.md`.
 """
 
 from __future__ import annotations
 
 import argparse
-import re
 import tempfile
 import time
 from collections.abc import Iterator
@@ -16,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.result_page import write_result
 from tracker.capture.annotations import Annotation, load_annotations
 from tracker.capture.sequence import Sequence
 from tracker.model import save_model
@@ -25,7 +25,6 @@ from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.synthesis.twin import load_twin
 from tracker.tracking.quick_fit import fit_marked
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "suggestions.md"
 SEQUENCES = ("01", "04", "09", "12", "15", "17", "20")
 FRAMES = 12
 """So many of each sequence, evenly spread."""
@@ -83,7 +82,7 @@ def judge(hands: list[tuple[Sequence, Annotation]], placed: int, is_own: bool, w
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--write", action="store_true", help="renew the table in docs/suggestions.md")
+    parser.add_argument("--write", action="store_true", help="write benchmarks/results/suggestions.md")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as out:
         hands = list(render(args.folder, Path(out)))
@@ -99,9 +98,9 @@ def main() -> None:
     print(f"{len(hands)} hands")
     print("\n".join(rows))
     if args.write:
-        text = PAGE.read_text()
-        table = "\n".join([f"<!-- table -->\n{len(hands)} hands:\n", *rows, "<!-- end -->"])
-        PAGE.write_text(re.sub(r"<!-- table -->.*?<!-- end -->", lambda _: table, text, flags=re.DOTALL))
+        command = "python -m benchmarks.suggestions FOLDER_OF_T16_DATA --write"
+        text = "\n".join([f"{len(hands)} hands:\n", *rows])
+        write_result("suggestions", "Fits to the joints placed so far", command, text)
 
 
 if __name__ == "__main__":

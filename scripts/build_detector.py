@@ -1,7 +1,7 @@
 """Make the fingertip detector that comes with Handloom: `python scripts/build_detector.py [--out FILE]`.
 
 It learns from renders of the default hand alone: random people, poses and views, one or two hands, things in and near
-them, the noise of `docs/synthesis.md`. A second set of renders says what its confidences mean and how good it is.
+them, the noise of `docs/recordings.md`. A second set of renders says what its confidences mean and how good it is.
 """
 
 from __future__ import annotations

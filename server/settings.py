@@ -1,4 +1,4 @@
-"""Every setting of the studio. The only module that reads the environment; `docs/settings.md` lists them for users."""
+"""Every setting of the studio. The only module that reads the environment; `docs/operating.md` lists them for users."""
 
 from __future__ import annotations
 

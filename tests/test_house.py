@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-from scripts.measure_house import Room, add_module, complexity, count_parameters, measure
+from scripts.measure_house import Room, add_module, complexity, count_parameters, count_words, measure
 
 SOURCE = """
 LIMIT, _OTHER = 1, 2
@@ -58,3 +58,7 @@ def test_every_room_is_there_with_its_tests() -> None:
     rooms = {room.name: room for room in measure(Path(__file__).parents[1])}
     assert rooms["tracker/terms"].test_lines > 0 and rooms["server/jobs"].kernels == []
     assert sum("tests" in name for name in rooms) == 0
+
+
+def test_rules_of_tables_are_no_words() -> None:
+    assert count_words("| what | mm |\n|---|---|\n| a hand | 0.3 |") == 5

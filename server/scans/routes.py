@@ -47,7 +47,7 @@ IMMUTABLE = "private, max-age=31536000, immutable"
 GEOMETRY: dict[int | str, dict[str, Any]] = {
     200: {
         "content": {MEDIA_TYPE: {"schema": {"type": "string", "format": "binary"}}},
-        "description": "Arrays, as `docs/curation.md` describes them.",
+        "description": "Arrays, as `docs/scans.md` describes them.",
     }
 }
 _BODY = describe_upload_body(

@@ -13,6 +13,10 @@ SOURCE = re.compile(r"(?:tracker|server|web|tests|scripts|benchmarks|examples|mi
 """A path that a page names between backticks."""
 
 
+KINDS = {".py", ".ts", ".tsx", ".yaml"}
+"""Endings of files of the program."""
+
+
 @pytest.mark.parametrize("page", [*PAGES, *RESULTS], ids=name_of)
 def test_every_link_leads_to_a_file_and_to_a_heading_in_it(page: Path) -> None:
     for link in find_links(page.read_text()):
@@ -32,6 +36,20 @@ def test_every_file_that_a_page_names_is_there(page: Path) -> None:
         path = span.split("::")[0].rstrip("/")
         if SOURCE.fullmatch(path) and Path(path).suffix in ("", ".py", ".ts", ".tsx", ".md", ".npz", ".json", ".toml"):
             assert (ROOT / path).exists(), f"`{span}`: there is no such file"
+
+
+def test_every_page_that_the_program_names_is_there() -> None:
+    folders = ("tracker", "server", "web/src", "benchmarks", "scripts", "docker", "examples", "tests")
+    files = [
+        path for folder in folders for path in (ROOT / folder).rglob("*") if path.is_file() and path.suffix in KINDS
+    ]
+    named = {
+        (path, page)
+        for path in [*files, ROOT / "Makefile"]
+        for page in re.findall(r"(?:docs|benchmarks/results)/[\w/]+\.md", path.read_text())
+        if not (ROOT / page).exists()
+    }
+    assert {f"{name_of(path)}: {page}" for path, page in named} == set()
 
 
 def test_every_picture_of_the_documentation_is_shown() -> None:

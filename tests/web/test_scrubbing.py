@@ -18,7 +18,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 
 FRAMES = 1500
 LAST = min(FRAMES - 1, int(os.environ.get("HANDLOOM_SCRUB_TO", "600")))
-"""Where scrubbing ends: the whole recording takes 50 s, so one asks for it (docs/browser.md)."""
+"""Where scrubbing ends: the whole recording takes 50 s, so one asks for it (docs/annotating.md)."""
 
 FPS = 30
 SIZE = (320, 240)

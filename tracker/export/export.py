@@ -21,7 +21,7 @@ EXPORT_KINDS: dict[str, str] = {"npz": "track.npz", "csv": "joints.csv", "glb": 
 
 
 def export_track(track: Track, sequence: Sequence, kind: str, out_path: Path) -> None:
-    """Write a track to a file, whole or not at all; one that is there is replaced. `docs/export.md` says what is in it.
+    """Write a track to a file, whole or not at all; one that is there is replaced. docs/tracking.md says what it holds.
 
     Args:
         track: What a run found.

@@ -21,7 +21,7 @@ GRIDS = ((24, 2), (12, 6))
 MIN_SCORE, MAX_OVERLAP = 0.15, 0.3
 """Of boxes that are looked at; boxes that overlap by more are one palm. MediaPipe looks at 0.5 and more; the other
 network refuses what is no hand. Of 140 single real images 114 give their hand at 0.15, 100 at 0.5
-(docs/landmarks.md)."""
+(docs/journal.md)."""
 
 WRIST, MIDDLE = 0, 2
 """Which of a palm's seven points are its wrist and the base of its middle finger."""

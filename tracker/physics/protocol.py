@@ -92,7 +92,7 @@ SEARCH = Protocol("search", time_step=1.0 / 240.0, friction=3.0, patch_radius=PA
 with fewer solver iterations, which change little.
 
 With points for contacts a cube that two fingers carry swings about the line through them, by 12 mm in the time that a
-run takes, and true poses count as falling (docs/objects.md). As in [T16] support is looked for in the simulation that
+run takes, and true poses count as falling (docs/journal.md). As in [T16] support is looked for in the simulation that
 displacement is reported in; friction 3 is the last column of its Table 11. With friction 1.2 and half the skin true
 grips of a cube fall, and what is drawn into contact was held.
 """

@@ -38,7 +38,7 @@ class Tools:
         Differs from the paper, which has them in every frame: those of the detector that comes along are asked for
         where a fit went badly, which is what they are for; a lab's own is asked in every frame. A hand that is followed
         well gains nothing from them and loses time, and where an object hides fingertips a false detection pulls
-        (docs/objective.md).
+        (docs/journal.md).
         """
         if self.detector is None:
             return self.objective

@@ -44,7 +44,7 @@ class Contours:
     weight: float = 0.1
     max_distance: float = 0.006
     """m at the hand's distance; a farther edge is of something else. Of 6 and 12 mm with weights of 0.03, 0.1 and 0.3
-    this pair brought the joints of five marked real views nearest to their marks (docs/tracking.md)."""
+    this pair brought the joints of five marked real views nearest to their marks (docs/cameras.md)."""
 
     stride: int = 2
     """Of the contours' pixels one in so many is matched."""

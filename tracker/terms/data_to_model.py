@@ -32,7 +32,7 @@ class DataToModel:
     unreliable depth at an edge only rejects outliers: it is averaged over 3x3 pixels.
 
     Differs from the paper: a smaller weight and a limit in pixels. On rendered twins full weight within 20 px drew
-    fingers to their neighbour's contour (docs/objective.md).
+    fingers to their neighbour's contour (docs/journal.md).
     """
 
     weight: float = 0.2

@@ -20,7 +20,7 @@ class DataToSurface:
 
     Differs from the paper: T16 matches depth discontinuities only, because matching the whole cloud by a kd-tree cost
     40 % without lowering its error. Against the rendering the search is a few pixels, and on rendered twins the dense
-    form is what keeps fingers apart (docs/objective.md). Normals of the face, held fixed: those of the data are noisy,
+    form is what keeps fingers apart (docs/journal.md). Normals of the face, held fixed: those of the data are noisy,
     and noisy normals hold a surface back along itself, like friction.
     """
 

@@ -33,7 +33,7 @@ class HandPose:
     """One pose.
 
     Attributes:
-        name: As listed in docs/scans.md.
+        name: What `handloom synthesize-scans --poses` takes.
         thumb: Flexion, abduction and twist of the metacarpal, flexion of the proximal and distal phalanx.
         index, middle, ring, little: Flexion of the three phalanges.
         spread: Of index, middle, ring and little finger.

@@ -14597,7 +14597,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Arrays, as `docs/curation.md` describes them. */
+            /** @description Arrays, as `docs/scans.md` describes them. */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -21092,7 +21092,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Arrays, as `docs/curation.md` describes them. */
+            /** @description Arrays, as `docs/scans.md` describes them. */
             200: {
                 headers: {
                     [name: string]: unknown;
@@ -22883,7 +22883,7 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Arrays, as `docs/curation.md` describes them. */
+            /** @description Arrays, as `docs/scans.md` describes them. */
             200: {
                 headers: {
                     [name: string]: unknown;

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,9 +63,7 @@ class VideoFile:
                 f"{self.name}: no frame can be decoded; is it cut off, or in a codec that is not known here?"
             )
         elif promised and len(times) < promised:
-            problems.append(
-                f"{self.name}: promises {say_count(promised, 'frame')}, {len(times)} can be decoded; copy it again."
-            )
+            problems.append(self._tell_missing(promised, times))
         if len(sizes) > 1:
             problems.append(f"{self.name}: the size of its frames changes ({', '.join(f'{w}x{h}' for w, h in sizes)}).")
         size = sizes.most_common(1)[0][0] if sizes else None
@@ -81,7 +79,8 @@ class VideoFile:
     def look(self) -> StreamProbe:
         """What its header, its first and its last frame tell, without decoding the rest; else as `probe`.
 
-        A video whose header promises nothing, or whose last promised frame is not there, is decoded whole.
+        A video whose header promises nothing, or does not hold as many frames as that, or whose last promised frame is
+        not there, is decoded whole.
         """
         fps, promised = self.read_header()
         with self.open() as capture:
@@ -91,9 +90,34 @@ class VideoFile:
                 size = image.shape[1], image.shape[0]
                 is_whole = capture.set(cv2.CAP_PROP_POS_FRAMES, promised - 1) and capture.grab()
                 size = size if promised == 1 or is_whole else None
-        if size is None:
+        times = self._read_times()
+        if size is None or len(times) != promised:
             return self.probe(2)
-        return StreamProbe(promised, size, {"video frame, decoded when asked for": promised}, fps=fps or None)
+        types = {"video frame, decoded when asked for": promised}
+        return StreamProbe(promised, size, types, timestamps=times, fps=fps or None)
+
+    def _read_times(self) -> npt.NDArray[np.float64]:
+        """(T,) s, of the frames that the file holds, without decoding any: it may promise some that were left out."""
+        times: list[float] = []
+        with self.open([cv2.CAP_PROP_FORMAT, -1]) as capture:
+            while len(times) <= MAX_VIDEO_FRAMES and capture.grab():
+                times.append(float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000)
+        return np.sort(times)  # frames that refer to later ones are stored behind those
+
+    def _tell_missing(self, promised: int, times: list[float]) -> str:
+        """What a video with fewer frames than it promises is refused with; `times` (T,) s of those that it has."""
+        told = f"{self.name}: promises {say_count(promised, 'frame')}, {len(times)} can be decoded"
+        steps = np.diff(times)
+        usual = float(np.median(steps)) if len(steps) else 0.0
+        gaps = np.flatnonzero(steps > 1.5 * usual)
+        left_out = int(np.sum(np.rint(steps[gaps] / usual) - 1)) if usual > 0 else 0
+        if not left_out or left_out < promised - len(times):
+            return f"{told}; copy it again, or leave this camera out."
+        return (
+            f"{told}: the camera left out {say_count(left_out, 'frame')}, the first after frame {gaps[0]} "
+            f"({times[int(gaps[0])]:.2f} s), and all later ones would be taken for earlier moments. Have it converted "
+            "to a constant frame rate, or leave this camera out."
+        )
 
     def read(self) -> Iterator[SourceImage]:
         """Every frame in order, encoded to be stored."""
@@ -140,8 +164,12 @@ class VideoFile:
         return image
 
     @contextmanager
-    def open(self) -> Iterator[cv2.VideoCapture]:
-        """The decoder, for a file that begins like a video: playlists and other texts would make it open more files."""
+    def open(self, settings: Sequence[int] = ()) -> Iterator[cv2.VideoCapture]:
+        """The decoder, for a file that begins like a video: playlists and other texts would make it open more files.
+
+        Args:
+            settings: OpenCV's properties and their values in turn.
+        """
         path = (self.root / self.name).resolve()
         if not path.is_file():
             raise FrameError(f"{self.name}: there is no such file.")
@@ -154,7 +182,7 @@ class VideoFile:
         )
         if not is_video:
             raise FrameError(f"{self.name}: is no MP4, MOV, AVI, MKV or WebM video (begins with {head[:8].hex(' ')}).")
-        capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
+        capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG, list(settings))
         try:
             with reading(FrameError, self.name, "a video that can be decoded"):
                 if not capture.isOpened():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -119,6 +120,36 @@ def test_a_hole_in_a_video_is_told_with_its_camera(films: Path) -> None:
     (films / "cam1.avi").write_bytes(data)
     with pytest.raises(TrackerError, match=r"cam1\.avi: (ends after|promises)"):
         read_to_the_end(films)
+
+
+def leave_out(film: Path, frames: set[int]) -> None:
+    """Make frames of an AVI empty, as a grabber does with those that it could not keep."""
+    data = film.read_bytes()
+    out, at, number = bytearray(data), data.index(b"movi") + 4, 0
+    while data[at : at + 4] != b"idx1":
+        (size,) = struct.unpack("<I", data[at + 4 : at + 8])
+        if data[at : at + 4] == b"00dc" and number in frames:
+            out[at + 4 : at + 16] = struct.pack("<I4sI", 0, b"JUNK", size + size % 2 - 8)
+        number += data[at : at + 4] == b"00dc"
+        at += 8 + size + size % 2
+    for number in frames:
+        entry = at + 8 + 16 * number
+        out[entry + 12 : entry + 16] = bytes(4)
+    film.write_bytes(out)
+
+
+@pytest.mark.parametrize(("frames", "said"), [({12}, "1 frame"), ({5, 6, 7, 20}, "4 frames"), ({28}, "1 frame")])
+def test_frames_that_a_camera_left_out_are_told_before_later_ones_are_taken_for_earlier_moments(
+    films: Path, tmp_path: Path, frames: set[int], said: str
+) -> None:
+    leave_out(films / "cam1.avi", frames)
+    first = min(frames) - 1
+    told = rf"cam1\.avi: promises 30 frames, {30 - len(frames)} .*left out {said}, the first after frame {first} \("
+    with pytest.raises(ImportRefusedError, match=told):
+        open_recording(films, TOLD)
+    with pytest.raises(ImportRefusedError, match=told):
+        run_import(films, tmp_path / "unpacked", options=TOLD)
+    assert not (tmp_path / "unpacked").exists()
 
 
 def read_to_the_end(films: Path) -> None:

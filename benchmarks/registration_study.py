@@ -39,8 +39,8 @@ OTHERS = tuple(name for name in POSE_NAMES if name not in FISTS)
 FIST_EVERY = 5
 TEST_SEED, TRAIN_SEED = 1000, 0
 ACCEPTED_P95_MM = 6.0
-"""What the oracle lets pass, as a person might: nothing is farther off than about half a finger."""
-CURATORS = {"eye": "an oracle that knows the true vertices", "verdict": "the program's own verdict"}
+"""What the oracle on true vertices lets pass: nothing is farther off than about half a finger."""
+CURATORS = {"oracle": "an oracle on the true vertices", "verdict": "the program's own verdict"}
 
 
 def main() -> None:
@@ -54,7 +54,9 @@ def main() -> None:
     parser.add_argument(
         "--train-on", choices=("own", "truth"), default="own", help="own registrations, or the true vertices"
     )
-    parser.add_argument("--curator", choices=("eye", "verdict"), default="eye", help="who accepts own registrations")
+    parser.add_argument(
+        "--curator", choices=("oracle", "verdict"), default="oracle", help="who accepts own registrations"
+    )
     parser.add_argument("--strength", type=float, default=1.0, help="of the bulges")
     parser.add_argument("--rounds", type=int, choices=(1, 2), default=2)
     parser.add_argument("--write", action="store_true")
@@ -123,7 +125,7 @@ def _show_training():
 
 
 def is_accepted(row: dict[str, Any], curator: str) -> bool:
-    """Whether a curator lets a registration pass: an oracle that knows the true vertices, or the program itself."""
+    """Whether a curator lets a registration pass: an oracle on the true vertices, or the program itself."""
     if curator == "verdict":
         return row["verdict"] == "good"
     return row["vertices_p95_mm"] < ACCEPTED_P95_MM and row["found_side"] == row["side"]

@@ -42,7 +42,7 @@ def describe_untrained() -> HandModelOut:
 
 
 def describe_trained() -> HandModelOut:
-    """The hand learnt from scans that comes with Handloom, which recordings can be tracked with."""
+    """The hand learnt from scans of generated people that comes with Handloom, which recordings can be tracked with."""
     from tracker import trained_hand
 
     named = {"id": TRAINED_ID, "name": TRAINED_NAME, "kind": "default", "side": "right"}

@@ -57,7 +57,7 @@ MOST_OFFERED = 100
 
 def _choose_hand(session: Session) -> JobFormField:
     text = "What the hands are taken to be; the other hand is its mirror image."
-    built_in = {"": "The default hand", TRAINED_HAND: "The hand learnt from scans"}
+    built_in = {"": "The default hand", TRAINED_HAND: "The hand learnt from scans of generated people"}
     return _choose(HAND_MODEL, "Hand model", text, built_in | _list_newest(session, HandModelRow))
 
 

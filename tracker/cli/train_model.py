@@ -80,7 +80,7 @@ def train_from(folder: Path, initial, out: Path, name: str, accepted: set[str] |
     save_blend_model(training.model, out)
     write_atomically(out.with_suffix(".json"), json.dumps(training.report, indent=1).encode())
     kept.remove(list_stages(options.rounds))
-    told = ("registrations", "people", "hands", "residual_mm", "ridge", "joint_regressor_mm")
+    told = ("registrations", "people", "hands", "residual_mm", "joint_regressor_mm")
     return {
         "out": str(out),
         "report": str(out.with_suffix(".json")),

@@ -15,7 +15,7 @@ from tracker.model.blend_model import BlendModel, PosedBlend
 from tracker.registration.equations import add_model_rows, weigh_robustly
 from tracker.registration.surface_search import SurfaceSearch
 from tracker.training.motion import sparsen_skinning
-from tracker.training.pose_fit import Poses, Rig, fit_poses, start_poses
+from tracker.training.pose_fit import Hands, Rig, fit_poses, start_poses
 from tracker.training.spaces import compute_rotation_vectors
 
 Array = npt.NDArray[np.float64]
@@ -55,8 +55,8 @@ def fit_pose_to_vertices(model: BlendModel, vertices: Array, iterations: int = 2
     rig = Rig(np.ascontiguousarray(model.parents), sparsen_skinning(model.skinning_weights), model.pose_directions)
     templates, targets, owners = model.template[None], vertices[None], np.zeros(1, dtype=np.int64)
     joints = model.joints_of(model.template)[None]
-    start = start_poses(targets, templates, owners, joints, rig)
-    found: Poses = fit_poses(start, targets, templates, owners, joints, rig, iterations)
+    hands = Hands(targets, owners, templates, joints, rig)
+    found = fit_poses(start_poses(hands), hands, iterations)
     return _at(model, compute_rotation_vectors(found.rotations[0]), np.zeros(model.num_shape), found.translations[0])
 
 

@@ -96,6 +96,26 @@ def load_registration(path: Path) -> Registration:
     num_vertices = len(vertices)
     if not 3 <= num_vertices <= MAX_VERTICES:
         raise RegistrationError(path, f"{num_vertices} vertices", f"3 to {MAX_VERTICES}")
+    texts = _texts(path, fields)
+    details = _details(path, fields)
+    return Registration(
+        vertices=vertices,
+        model_vertices=_floats(path, fields, "model_vertices", (num_vertices, 3)),
+        faces=_faces(path, fields, num_vertices),
+        pose=_floats(path, fields, "pose", (-1, 3)),
+        shape=_floats(path, fields, "shape", (-1,)),
+        translation=_floats(path, fields, "translation", (3,)),
+        score=float(_floats(path, fields, "score", ())),
+        reasons=tuple(str(reason) for reason in details["reasons"]),
+        scan_to_mesh=_distances(path, fields),
+        seconds=float(_floats(path, fields, "seconds", ())),
+        timings={str(name): float(value) for name, value in details["timings"].items()},
+        measures={str(name): float(value) for name, value in details["measures"].items()},
+        **texts,
+    )
+
+
+def _faces(path: Path, fields: dict[str, np.ndarray], num_vertices: int) -> np.ndarray:
     faces = fields["faces"]
     if faces.ndim != 2 or faces.shape[1] != 3 or faces.dtype.kind not in "ui" or not len(faces):
         raise RegistrationError(path, f"faces of shape {faces.shape} and kind {faces.dtype}", NEEDED)
@@ -103,28 +123,21 @@ def load_registration(path: Path) -> Registration:
         raise RegistrationError(
             path, f"{len(faces)} faces up to vertex {faces.max()}", f"vertices below {num_vertices}"
         )
+    return faces.astype(np.int64)
+
+
+def _texts(path: Path, fields: dict[str, np.ndarray]) -> dict[str, str]:
     texts = {name: _text(path, fields, name) for name in TEXTS}
     if texts["verdict"] not in VERDICTS or texts["side"] not in ("right", "left"):
         raise RegistrationError(path, f"verdict {texts['verdict']!r}, side {texts['side']!r}", NEEDED)
+    return texts
+
+
+def _distances(path: Path, fields: dict[str, np.ndarray]) -> np.ndarray:
     distances = fields["scan_to_mesh"]
     if distances.ndim != 1 or distances.dtype.kind != "f" or np.isinf(distances).any():
         raise RegistrationError(path, f"scan_to_mesh of shape {distances.shape}", NEEDED)
-    details = _details(path, fields)
-    return Registration(
-        vertices=vertices,
-        model_vertices=_floats(path, fields, "model_vertices", (num_vertices, 3)),
-        faces=faces.astype(np.int64),
-        pose=_floats(path, fields, "pose", (-1, 3)),
-        shape=_floats(path, fields, "shape", (-1,)),
-        translation=_floats(path, fields, "translation", (3,)),
-        score=float(_floats(path, fields, "score", ())),
-        reasons=tuple(str(reason) for reason in details["reasons"]),
-        scan_to_mesh=distances.astype(np.float64),
-        seconds=float(_floats(path, fields, "seconds", ())),
-        timings={str(name): float(value) for name, value in details["timings"].items()},
-        measures={str(name): float(value) for name, value in details["measures"].items()},
-        **texts,
-    )
+    return distances.astype(np.float64)
 
 
 def summarize_registration(registration: Registration) -> dict[str, Any]:

@@ -26,8 +26,8 @@ from tracker.training.training_set import TrainingSet
 
 log = logging.getLogger(__name__)
 
-VERSION = 1
-"""Of what a stage leaves. Raise it when stages change: what an older program has kept is then not gone on with."""
+VERSION = 2
+"""Of what a stage leaves. Raise it when stages change: what an older program has kept is then refused."""
 
 Arrays = Mapping[str, npt.NDArray]
 

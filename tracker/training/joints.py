@@ -15,21 +15,16 @@ import numpy.typing as npt
 
 from tracker.training.linearize import linearize
 from tracker.training.motion import turn
-from tracker.training.pose_fit import Poses, Rig, each
+from tracker.training.pose_fit import Hands, Poses, Rig, each
 
 Array = npt.NDArray[np.float64]
-Integers = npt.NDArray[np.int64]
 
 
 def fit_joints(
     start: Poses,
-    targets: Array,
-    templates: Array,
-    owners: Integers,
-    joints: Array,
+    hands: Hands,
     expected: Array,
     stiffness: float,
-    rig: Rig,
     iterations: int,
     threads: int = 1,
     progress: Callable[[float], None] | None = None,
@@ -38,26 +33,27 @@ def fit_joints(
 
     Args:
         start: Poses to begin with.
-        targets: (N, V, 3) m; templates (S, V, 3) m; owners (N,) whose template; joints (S, B, 3) m to begin with.
+        hands: What is brought onto what; their joints are where to begin.
         expected: (S, B, 3) where the joints should be as far as registrations do not tell, m.
         stiffness: Weight of (joint - expected)² against that of one vertex, per registration.
         iterations: Steps for each person.
         progress: Told the share done; may raise to cancel.
     """
     rotations, translations = start.rotations.copy(), start.translations.copy()
-    errors, found = start.errors.copy(), joints.copy()
+    errors, found = start.errors.copy(), hands.joints.copy()
 
     def fit(person: int) -> None:
-        mine = np.flatnonzero(owners == person)
+        mine = np.flatnonzero(hands.owners == person)
         if len(mine):
             pose = rotations[mine], translations[mine]
+            template, joints = hands.templates[person], hands.joints[person]
             pose, found[person], costs = _fit_person(
-                pose, targets[mine], templates[person], joints[person], expected[person], stiffness, rig, iterations
+                pose, hands.targets[mine], template, joints, expected[person], stiffness, hands.rig, iterations
             )
             rotations[mine], translations[mine] = pose
-            errors[mine] = np.sqrt(costs / targets.shape[1])
+            errors[mine] = np.sqrt(costs / hands.targets.shape[1])
 
-    each(fit, len(templates), threads, progress)
+    each(fit, len(hands.templates), threads, progress)
     return Poses(rotations, translations, errors), found
 
 

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_array
 
-from tracker.geometry.geodesics import compute_geodesics
 from tracker.training.blend_weights import fit_blend_weights
 from tracker.training.joints import fit_joints
 from tracker.training.motion import compute_features, fill_skinning, sparsen_skinning
 from tracker.training.options import TrainingOptions
-from tracker.training.pose_fit import Poses, Rig, fit_poses, start_poses
-from tracker.training.pose_shapes import compute_costs, fit_pose_shapes
+from tracker.training.pose_fit import Hands, Poses, Rig, fit_poses, start_poses
+from tracker.training.pose_shapes import compute_costs, fit_pose_shapes, measure_from_joints
 from tracker.training.regressor import fit_joint_regressor
-from tracker.training.ridge_choice import choose_ridge
 from tracker.training.spaces import align_rigidly
 from tracker.training.templates import fit_templates, unpose, weigh_by_pose
 
@@ -27,12 +25,10 @@ Integers = npt.NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Data:
-    """targets (N, V, 3) registrations, m; owners (N,) which template they are of; people (N,) whose; faces (F, 3)."""
+    """targets (N, V, 3) registrations, m; owners (N,) which template they are of."""
 
     targets: Array
     owners: Integers
-    people: Integers
-    faces: Integers
 
 
 @dataclass(frozen=True)
@@ -44,8 +40,6 @@ class Learnt:
         poses: Of the registrations.
         rig: Skinning and pose blend shapes.
         regressor: (B, V).
-        ridge: Weight that the blend shapes were learnt with; None without.
-        ridges: Error of each weight that was tried, m.
     """
 
     templates: Array
@@ -53,8 +47,6 @@ class Learnt:
     poses: Poses
     rig: Rig
     regressor: csr_array
-    ridge: float | None = None
-    ridges: dict[float, float] = field(default_factory=dict)
 
 
 def begin(
@@ -78,11 +70,10 @@ def begin(
     rig = Rig(parents, sparsen_skinning(skinning_weights), np.zeros((*template.shape, 0)))
     templates = np.tile(template, (S, 1, 1))
     joints = np.tile(regressor @ template, (S, 1, 1))
-    poses = start_poses(targets, templates, owners, joints, rig)
+    poses = start_poses(Hands(targets, owners, templates, joints, rig))
     for turn in range(2):
-        poses = fit_poses(
-            poses, targets, templates, owners, joints, rig, 6, options.threads, lambda s, t=turn: progress((t + s) / 2)
-        )
+        hands = Hands(targets, owners, templates, joints, rig)
+        poses = fit_poses(poses, hands, 6, options.threads, lambda s, t=turn: progress((t + s) / 2))
         templates = fit_templates(poses, targets, owners, weigh_by_pose(poses, owners), joints, rig)
         joints = np.stack([regressor @ own for own in templates])
     return Learnt(templates, joints, poses, rig, regressor)
@@ -106,13 +97,9 @@ def improve_joints(
     progress("poses and joints", 0.0)
     poses, joints = fit_joints(
         learnt.poses,
-        data.targets,
-        learnt.templates,
-        data.owners,
-        learnt.joints,
+        Hands(data.targets, data.owners, learnt.templates, learnt.joints, learnt.rig),
         np.stack([learnt.regressor @ own for own in learnt.templates]),
         options.joint_stiffness,
-        learnt.rig,
         4,
         options.threads,
         lambda share: progress("poses and joints", share),
@@ -147,21 +134,15 @@ def improve_surface(
     regressor = fit_joint_regressor(templates, joints, fill_skinning(rig.skinning, len(rig.parents)), rig.parents)
     if is_last:
         joints = np.stack([regressor @ own for own in templates])
-    poses = fit_poses(
-        poses, targets, templates, owners, joints, rig, 3, options.threads, lambda share: progress("poses", share)
-    )
-    ridge, ridges = learnt.ridge, learnt.ridges
+    hands = Hands(targets, owners, templates, joints, rig)
+    poses = fit_poses(poses, hands, 3, options.threads, lambda share: progress("poses", share))
     if options.with_pose_shapes:
         progress("pose blend shapes", 0.0)
-        costs = compute_costs(measure_from_joints(templates.mean(0), data.faces, regressor))
+        costs = compute_costs(measure_from_joints(templates.mean(0), regressor))
         rest, features = unpose(poses, targets, owners, joints, rig), find_features(poses)
-        if ridge is None or is_last:
-            ridge, ridges = choose_ridge(
-                options.ridges, targets, owners, data.people, poses, joints, rig, features, rest, costs, options.threads
-            )
-        rig = replace(rig, directions=fit_pose_shapes(features, rest, owners, costs, ridge))
+        rig = replace(rig, directions=fit_pose_shapes(features, rest, owners, costs, options.ridge))
     templates = fit_templates(poses, targets, owners, even, joints, rig)
-    return Learnt(templates, joints, poses, rig, regressor, ridge, ridges)
+    return Learnt(templates, joints, poses, rig, regressor)
 
 
 def find_features(poses: Poses) -> Array:
@@ -170,19 +151,6 @@ def find_features(poses: Poses) -> Array:
     for rotations, row in zip(poses.rotations, features, strict=True):
         compute_features(rotations, row)
     return features
-
-
-def measure_from_joints(template: Array, faces: Integers, regressor: csr_array) -> Array:
-    """(B-1, V) mean geodesic distance from the vertices that a joint is averaged from, m, [R17] Eq. 10.
-
-    A vertex that no path along the surface leads to counts as far away as the farthest that one leads to.
-    """
-    weights = regressor.toarray()[1:]
-    sources = np.flatnonzero(weights.any(0))
-    distances = compute_geodesics(template, faces, sources)
-    is_reached = np.isfinite(distances)
-    distances[~is_reached] = distances[is_reached].max()
-    return weights[:, sources] @ distances
 
 
 def _turn_poses(poses: Poses, owners: Integers, turned: Array, before: Array, after: Array) -> Poses:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import numpy as np
+
 from tracker.errors import TrainingError
-from tracker.training.pose_shapes import RIDGES
+from tracker.training.pose_shapes import RIDGE
 
 
 @dataclass(frozen=True)
@@ -16,7 +18,7 @@ class TrainingOptions:
     rounds: Times that templates, joints, weights and blend shapes are improved in turn.
     with_pose_shapes: Without, what is trained is plain linear blend skinning.
     with_mirrored: Whether mirrored left hands are learnt from, too.
-    ridges: Weights of Eq. 10 to choose from by leaving people out; a single one is taken as it is.
+    ridge: Weight of Eq. 10, per registration.
     num_shapes: Shape directions of the whole hand kept, at most.
     num_local_shapes: Shape directions of parts of the hand that follow them, at most (`local_shapes`).
     joint_stiffness: How strongly joints keep to the joint regressor, in vertices per registration.
@@ -28,7 +30,7 @@ class TrainingOptions:
     rounds: int = 3
     with_pose_shapes: bool = True
     with_mirrored: bool = True
-    ridges: tuple[float, ...] = RIDGES
+    ridge: float = RIDGE
     num_shapes: int = 10
     num_local_shapes: int = 0
     joint_stiffness: float = 2.0
@@ -38,8 +40,8 @@ class TrainingOptions:
     def __post_init__(self) -> None:
         if not 1 <= self.rounds <= 20:
             raise TrainingError(f"rounds is {self.rounds}; it must be from 1 to 20.")
-        if not self.ridges or min(self.ridges) <= 0.0:
-            raise TrainingError(f"ridges are {self.ridges}; give one or more weights above 0.")
+        if not 0.0 < self.ridge < np.inf:
+            raise TrainingError(f"ridge is {self.ridge}; it must be a finite number above 0.")
         if not 1 <= self.num_shapes <= 200:
             raise TrainingError(f"num_shapes is {self.num_shapes}; it must be from 1 to 200.")
         if not 0 <= self.num_local_shapes <= 200:
@@ -53,4 +55,4 @@ class TrainingOptions:
         """For a report; how many threads did it is left out, for the result does not depend on it."""
         described = asdict(self)
         del described["threads"]
-        return {**described, "ridges": list(self.ridges)}
+        return described

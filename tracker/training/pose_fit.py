@@ -35,14 +35,29 @@ class Rig:
     directions: Array
 
 
-def start_poses(targets: Array, templates: Array, owners: Integers, joints: Array, rig: Rig) -> Poses:
+@dataclass(frozen=True)
+class Hands:
+    """N registrations, and the S hands that are posed onto them.
+
+    Attributes:
+        targets: (N, V, 3) registrations, m; owners: (N,) which hand each is of.
+        templates: (S, V, 3) m; joints: (S, B, 3) m, both at rest.
+        rig: What the hands share.
+    """
+
+    targets: Array
+    owners: Integers
+    templates: Array
+    joints: Array
+    rig: Rig
+
+
+def start_poses(hands: Hands) -> Poses:
     """Poses from each bone's own vertices: a rotation that lays them on the target's, without regard to joints.
 
     Needs no earlier pose and does not depend on lengths of fingers.
-
-    Args:
-        targets: (N, V, 3) m; templates (S, V, 3) m; owners (N,) whose template; joints (S, B, 3) m.
     """
+    targets, owners, templates, joints, rig = hands.targets, hands.owners, hands.templates, hands.joints, hands.rig
     N, B = len(targets), len(rig.parents)
     strongest = rig.skinning.bones[:, 0]
     rotations = np.empty((N, B, 3, 3))
@@ -70,11 +85,7 @@ def start_poses(targets: Array, templates: Array, owners: Integers, joints: Arra
 
 def fit_poses(
     start: Poses,
-    targets: Array,
-    templates: Array,
-    owners: Integers,
-    joints: Array,
-    rig: Rig,
+    hands: Hands,
     iterations: int,
     threads: int = 1,
     progress: Callable[[float], None] | None = None,
@@ -83,22 +94,22 @@ def fit_poses(
 
     Args:
         start: Where to begin.
-        targets, templates, owners, joints: As in `start_poses`.
+        hands: What is brought onto what.
         iterations: At most, each.
         progress: Told the share done; may raise to cancel.
     """
-    N, V = targets.shape[:2]
+    rig, (N, V) = hands.rig, hands.targets.shape[:2]
     rotations, translations = start.rotations.copy(), start.translations.copy()
     errors = np.empty(N)
 
     def fit(n: int) -> None:
         cost = _fit(
-            templates[owners[n]],
-            joints[owners[n]],
+            hands.templates[hands.owners[n]],
+            hands.joints[hands.owners[n]],
             rig.parents,
             *rig.skinning,
             rig.directions,
-            targets[n],
+            hands.targets[n],
             rotations[n],
             translations[n],
             iterations,

@@ -1,7 +1,8 @@
 """Pose blend shapes, [R17] Eq. 4, by ridge regression with a cost that grows with the distance from the joint, Eq. 10.
 
-Differs from the paper: the cost is the square of the geodesic distance over 15 mm plus a constant, so that shapes at
-the joint itself are held, too; its weight grows with the number of registrations and is chosen by leaving people out.
+Differs from the paper: the cost is the square of the straight distance over 15 mm plus a constant, so that shapes at
+the joint itself are held, too (the paper's distance is geodesic: docs/model_training.md); its weight grows with the
+number of registrations.
 Each person's template is eliminated: what is explained is how the unposed registrations of one person differ, so that
 templates and blend shapes need not wait for one another.
 """
@@ -11,6 +12,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 from numba import njit
+from scipy.sparse import csr_array
+from scipy.spatial.distance import cdist
 
 Array = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -21,12 +24,24 @@ REACH = 0.015
 FLOOR = 0.05
 """The part of the cost that does not depend on the distance."""
 
-RIDGES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
-"""Weights to choose from, per registration."""
+RIDGE = 1e-4
+"""Weight of the costs, per registration: chosen on generated people 26 to 31 (docs/model_training.md)."""
+
+
+def measure_from_joints(template: Array, regressor: csr_array) -> Array:
+    """(B-1, V) mean distance from the vertices that a joint is averaged from, m, [R17] Eq. 10; the root is left out.
+
+    Args:
+        template: (V, 3) m.
+        regressor: (B, V) rows that sum to 1.
+    """
+    weights = regressor.toarray()[1:]
+    sources = np.flatnonzero(weights.any(0))
+    return weights[:, sources] @ cdist(template[sources], template)
 
 
 def compute_costs(distances: Array) -> Array:
-    """(V, 9K) cost of each feature at each vertex, from geodesic distances (K, V) m, [R17] Eq. 10."""
+    """(V, 9K) cost of each feature at each vertex, from distances (K, V) m, [R17] Eq. 10."""
     return np.repeat(((distances / REACH) ** 2 + FLOOR).T, 9, axis=1)
 
 

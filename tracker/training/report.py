@@ -50,8 +50,6 @@ def describe_training(
             {"hand": str(hands[n]), "pose": str(used.pose_names[n]), "residual_mm": round(float(residuals[n]), 4)}
             for n in worst
         ],
-        "ridge": learnt.ridge,
-        "ridges_mm": {f"{ridge:g}": round(1e3 * error, 5) for ridge, error in learnt.ridges.items()},
         "vertices_per_joint": round(learnt.regressor.nnz / learnt.joints.shape[1], 1),
         "joint_regressor_mm": round(1e3 * float(away.mean()), 4),
         "shape_space": [round(float(share), 5) for share in shape_space.explained],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -9,10 +10,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_array
 
-from tracker.training.checkpoints import Checkpoints
+from tracker.training.checkpoints import VERSION, Checkpoints
 from tracker.training.learn import Learnt
 from tracker.training.motion import SparseSkinning
 from tracker.training.pose_fit import Poses, Rig
+
+log = logging.getLogger(__name__)
 
 FIRST, LAST = "first-poses", "last-poses"
 
@@ -42,7 +45,18 @@ def find_last(kept: Checkpoints, names: list[str], key: str) -> tuple[int, Stage
     """How many stages need not be done again, and what stands after them."""
     for done in range(len(names), 0, -1):
         arrays = kept.load(names[done - 1])
-        if arrays is not None and str(arrays.get("key", "")) == key:
+        if arrays is None:
+            continue
+        version = str(arrays.get("version", "1"))
+        if version != str(VERSION):
+            log.warning(
+                "The stage %s was kept by another version of Handloom (its checkpoints are of version %s, this one "
+                "reads version %d); the stage is done again.",
+                names[done - 1],
+                version[:20],
+                VERSION,
+            )
+        elif str(arrays.get("key", "")) == key:
             return done, unpack_stage(arrays)
     return 0, None
 
@@ -63,12 +77,11 @@ def pack_stage(stage: Stage, key: str) -> dict[str, npt.NDArray]:
         "regressor_data": learnt.regressor.data,
         "regressor_indices": learnt.regressor.indices,
         "regressor_starts": learnt.regressor.indptr,
-        "ridge": np.array([] if learnt.ridge is None else [learnt.ridge]),
-        "ridges": np.array(list(learnt.ridges.items())).reshape(-1, 2),
         "errors": np.array(stage.errors),
         "seconds_names": np.array(list(stage.seconds), dtype=str),
         "seconds": np.array(list(stage.seconds.values()), dtype=np.float64),
         "key": np.array(key),
+        "version": np.array(VERSION),
     }
     return {name: np.ascontiguousarray(array).reshape(np.shape(array)) for name, array in arrays.items()}
 
@@ -77,15 +90,12 @@ def unpack_stage(arrays: Mapping[str, npt.NDArray]) -> Stage:
     """The inverse of `pack_stage`."""
     parts = arrays["regressor_data"], arrays["regressor_indices"], arrays["regressor_starts"]
     shape = len(arrays["parents"]), arrays["templates"].shape[1]
-    ridge = arrays["ridge"]
     learnt = Learnt(
         templates=arrays["templates"],
         joints=arrays["joints"],
         poses=Poses(arrays["rotations"], arrays["translations"], arrays["pose_errors"]),
         rig=Rig(arrays["parents"], SparseSkinning(arrays["bones"], arrays["weights"]), arrays["directions"]),
         regressor=csr_array(parts, shape=shape),
-        ridge=float(ridge[0]) if len(ridge) else None,
-        ridges={float(weight): float(error) for weight, error in arrays["ridges"]},
     )
     seconds = zip(arrays["seconds_names"].tolist(), arrays["seconds"].tolist(), strict=True)
     return Stage(learnt, tuple(arrays["errors"].tolist()), dict(seconds))

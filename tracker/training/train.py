@@ -17,7 +17,7 @@ from tracker.training.learn import Data, Learnt, begin, improve_joints, improve_
 from tracker.training.local_shapes import find_local_shapes
 from tracker.training.motion import fill_skinning
 from tracker.training.options import TrainingOptions
-from tracker.training.pose_fit import fit_poses
+from tracker.training.pose_fit import Hands, fit_poses
 from tracker.training.report import describe_training
 from tracker.training.spaces import compute_rotation_vectors, find_shape_space, find_space
 from tracker.training.stages import Stage, find_last, list_stages, pack_stage, unpack_stage
@@ -74,8 +74,7 @@ def train_model(
     used = training_set.select(chosen)
     # far from the origin half of the digits would go into where a hand is
     targets = used.vertices - used.vertices.mean(1)[:, None]
-    people = np.unique(used.subjects, return_inverse=True)[1]
-    data = Data(targets, owners, people, np.asarray(initial.faces, dtype=np.int64))
+    data = Data(targets, owners)
     clock = _Clock(progress or (lambda stage, share: None), options.rounds)
     stage = _learn(data, initial, options, clock, checkpoints or NoCheckpoints(), compute_key(used, initial, options))
     clock.say("spaces", 1.0)
@@ -144,11 +143,7 @@ def _fit_last_poses(learnt: Learnt, data: Data, options: TrainingOptions, clock:
     joints = np.stack([learnt.regressor @ own for own in learnt.templates])
     poses = fit_poses(
         learnt.poses,
-        data.targets,
-        learnt.templates,
-        data.owners,
-        joints,
-        learnt.rig,
+        Hands(data.targets, data.owners, learnt.templates, joints, learnt.rig),
         4,
         options.threads,
         lambda share: clock.say("last poses", share),

@@ -25,5 +25,5 @@ def warm_up_training() -> None:
     train_model(
         TrainingSet(vertices, subjects, names, np.zeros(len(vertices), dtype=bool)),
         model,
-        TrainingOptions(rounds=1, ridges=(1e-3,)),
+        TrainingOptions(rounds=1, ridge=1e-3),
     )

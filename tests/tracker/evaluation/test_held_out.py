@@ -22,7 +22,7 @@ from tracker.training.options import TrainingOptions
 from tracker.training.train import train_model
 from tracker.training.training_set import make_training_set
 
-OPTIONS = TrainingOptions(rounds=1, num_shapes=2, ridges=(1e-3,))
+OPTIONS = TrainingOptions(rounds=1, num_shapes=2, ridge=1e-3)
 LEVEL = StudyLevel(hands=4, curve_hands=2, counts=(0, 2, 45), trains_others=True)
 
 

@@ -11,7 +11,7 @@ from tracker.training.options import TrainingOptions
 from tracker.training.stages import list_stages
 from tracker.training.train import train_model
 
-OPTIONS = TrainingOptions(rounds=2, num_shapes=3, ridges=(1e-4, 1e-3))
+OPTIONS = TrainingOptions(rounds=2, num_shapes=3, ridge=1e-4)
 ARRAYS = (
     "template",
     "shape_directions",

@@ -5,13 +5,13 @@ from tracker.training.joints import fit_joints
 from tracker.training.learn import Data, begin, improve
 from tracker.training.motion import fill_skinning, sparsen_skinning, turn
 from tracker.training.options import TrainingOptions
-from tracker.training.pose_fit import Poses, Rig
+from tracker.training.pose_fit import Hands, Poses, Rig
 
 
 def learn(fingers, rounds, **options):
     options = TrainingOptions(weight_stiffness=0.001, **options)
-    tube, faces = make_tube()
-    data = Data(fingers.targets, fingers.owners, fingers.owners, faces)
+    tube, _ = make_tube()
+    data = Data(fingers.targets, fingers.owners)
     crude = make_weights(tube[:, 0], 0.004)
     learnt = begin(data, tube, PARENTS, crude, crude_regressor(tube), options, lambda share: None)
     errors = [np.sqrt(np.mean(learnt.poses.errors**2))]
@@ -81,6 +81,7 @@ def test_where_a_hinge_tells_nothing_joints_stay_where_they_were_expected():
     expected = joints + np.array([[0, 0, 0], [0.002, 0.003, 0.002], [0.002, -0.003, 0.001], [0.001, 0.002, -0.002]])
     rig = Rig(PARENTS, skinning, nothing)
     start = Poses(rotations, np.zeros((12, 3)), np.zeros(12))
-    _, found = fit_joints(start, targets, template[None], owners, expected[None], expected[None], 1e-3, rig, 30)
+    hands = Hands(targets, owners, template[None], expected[None], rig)
+    _, found = fit_joints(start, hands, expected[None], 1e-3, 30)
     np.testing.assert_allclose(found[0, 1:, [0, 2]], joints[1:, [0, 2]].T, atol=0.1e-3)
     np.testing.assert_allclose(found[0, 1:, 1], expected[1:, 1], atol=0.1e-3)

@@ -58,7 +58,7 @@ def test_no_more_come_than_the_templates_tell_of():
 
 
 def test_a_trained_model_has_them_behind_the_principal_components():
-    options = TrainingOptions(rounds=1, num_shapes=3, ridges=(1e-3,))
+    options = TrainingOptions(rounds=1, num_shapes=3, ridge=1e-3)
     plain = train_model(make_set(), crude_finger(), options).model
     both = train_model(make_set(), crude_finger(), TrainingOptions(**{**vars(options), "num_local_shapes": 4})).model
     assert both.num_shape == 7

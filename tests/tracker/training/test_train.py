@@ -48,7 +48,7 @@ def training():
 def test_the_model_poses_unseen_people_better_than_the_crude_one(training):
     """Fitted pose by pose with a template of their own, as [R17] section 5.1 does."""
     test = make_set(people=2, seed=9)
-    again = train_model(test, training.model, TrainingOptions(rounds=1, ridges=(1e3,)))
+    again = train_model(test, training.model, TrainingOptions(rounds=1, ridge=1e3))
     assert training.report["residual_mm"] < 0.2
     assert again.report["rounds_mm"][0] < 1.5
 
@@ -121,7 +121,9 @@ def test_hands_with_too_few_registrations_are_left_out_and_named():
     assert training.report["left_out"] == {"p4": 1} and training.report["people"] == 4
 
 
-@pytest.mark.parametrize("bad", [{"rounds": 0}, {"ridges": ()}, {"num_shapes": 0}, {"threads": 0}])
+@pytest.mark.parametrize(
+    "bad", [{"rounds": 0}, {"ridge": 0.0}, {"ridge": float("nan")}, {"num_shapes": 0}, {"threads": 0}]
+)
 def test_options_out_of_range_are_refused(bad):
     with pytest.raises(TrainingError):
         TrainingOptions(**bad)

@@ -128,6 +128,7 @@ if TYPE_CHECKING:
     from tracker.model.object_files import ObjectSize
     from tracker.model.trained_hand import trained_hand
     from tracker.model.untrained_hand import untrained_hand
+    from tracker.physics.bullet import find_physics_fault
     from tracker.registration.anatomy import make_anatomical_prior
     from tracker.registration.options import RegistrationOptions
     from tracker.registration.pose_prior import make_gaussian_prior
@@ -266,6 +267,7 @@ _HOMES = {
     "HAND_LENGTHS": "tracker.capture.scan_size",
     "LONGEST_SCENE": "tracker.capture.scan_size",
     "SIZES_NEEDED": "tracker.capture.scan_size",
+    "find_physics_fault": "tracker.physics.bullet",
     "find_possible_units": "tracker.capture.scan_size",
     "find_size_fault": "tracker.capture.scan_size",
     "is_certain": "tracker.capture.scan_size",
@@ -468,6 +470,7 @@ __all__ = [
     "find_image_hands",
     "find_origin",
     "find_path_fault",
+    "find_physics_fault",
     "find_possible_units",
     "find_sightings",
     "find_size_fault",

@@ -155,9 +155,12 @@ def _describe_collisions(view: FrameView) -> dict[str, Any]:
 
 
 def _describe_contacts(view: FrameView) -> dict[str, Any]:
+    from tracker import find_physics_fault
+
     setup, found = view.aids.setup, view.contacts
     return {
         "is_of_run": "P" in setup.options.term_letters,
+        "fault": find_physics_fault(),
         "object": setup.names[found.object] if found.object >= 0 else None,
         "is_stable": found.is_stable,
         "displacement_mm": round(1000.0 * found.displacement, 2),

@@ -11,7 +11,7 @@ from server.viewer.layers import FINGER_COLORS, TERM_COLORS, WRIST_COLOR, Layers
 from server.viewer.nodes import SceneNodes
 
 if TYPE_CHECKING:
-    from tracker import FrameView
+    from tracker.inspection import FrameView
 
 FULL_MM = 10.0
 """Distance at which the colours of distances end, mm; the same as in the page's error legend."""
@@ -179,7 +179,7 @@ def _describe_contacts(view: FrameView) -> dict[str, Any]:
 
 
 def _unknown_color() -> tuple[int, int, int]:
-    from tracker import UNKNOWN_COLOR
+    from tracker.inspection import UNKNOWN_COLOR
 
     return UNKNOWN_COLOR
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
-from tracker.detection import default_detector, find_fingertips
+from tracker.detection import find_fingertips
+from tracker.detection.default_detector import default_detector
 from tracker.fitting.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
 from tracker.fitting.frame_fit import FitOptions, draw, fit_frame
 from tracker.fitting.object_quality import measure_object_quality

@@ -54,9 +54,7 @@ def test_kernels_are_compiled_and_the_measurement_with_physics_is_left_out(varia
     assert measured.stderr.startswith(f"bench: two_hands_object_physics is left out. {REASON}")
 
 
-def test_the_studio_starts_says_so_and_offers_every_term_but_physics(
-    variables: dict[str, str], rendered: Path
-) -> None:
+def test_the_studio_starts_says_so_and_offers_every_term_but_physics(variables: dict[str, str], rendered: Path) -> None:
     assert handloom(variables, "import", str(rendered)).returncode == 0
     command = [sys.executable, "-m", "server.cli", "serve", "--no-worker", "--port", "0"]
     with subprocess.Popen(

@@ -4,7 +4,8 @@
 # Bytecode is kept: without it every process compiles 4,000 modules anew, which made a worker's start twice as long.
 unexport PYTHONDONTWRITEBYTECODE
 
-PYTHON ?= python3
+# A Python 3.11 where there is one (for pybullet), else python3; `make PYTHON=python3.13` takes another.
+PYTHON ?= $(shell scripts/require.sh choose)
 BIN := .venv/bin
 DEPENDENCIES := .venv/.stamp-dependencies
 PROJECT := .venv/.stamp-project
@@ -14,7 +15,7 @@ WEB := web/dist/.stamp
 TRACKER_SOURCES := $(shell find tracker -name '*.py')
 WEB_SOURCES := $(shell find web -type f -not -path '*/node_modules/*' -not -path '*/dist/*' -not -path '*/test-results/*' -not -name '*.tsbuildinfo')
 
-.PHONY: setup demo test test-python test-rooms test-browser test-web proofs proofs-rooms proofs-browser lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies real house clean
+.PHONY: setup demo test test-python test-rooms test-browser test-web wheel proofs proofs-rooms proofs-browser lint lint-ruff lint-format lint-types lint-imports lint-web lint-api api bench studies real house clean
 .DELETE_ON_ERROR:
 
 setup: $(PROJECT) $(WEB) $(COMPILED)
@@ -49,6 +50,11 @@ $(COMPILED): $(PROJECT) $(TRACKER_SOURCES)
 
 demo: setup
 	$(BIN)/handloom demo
+
+# One file to install anywhere, the browser app in it: dist/handloom-*.whl.
+wheel: $(PROJECT) $(WEB)
+	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .
+	@ls dist/handloom-*.whl
 
 # Each process of a test run has one thread for linear algebra. OpenBLAS takes one a core otherwise, and those of two
 # processes wait for each other: beside other work such a product took ten times as long.

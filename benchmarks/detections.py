@@ -21,9 +21,10 @@ from benchmarks.result_page import RESULTS, write_result
 from tracker.capture.annotations import load_annotations
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.sequence import Sequence, load_sequence
-from tracker.detection import Forest, default_detector, find_in_image
+from tracker.detection import Forest, find_in_image
 from tracker.detection.annotated_images import AnnotatedImage, annotated_images
 from tracker.detection.confidence import C_THR, calibrate_confidence
+from tracker.detection.default_detector import default_detector
 from tracker.detection.detect import DetectOptions
 from tracker.detection.sampling import PatchOptions, join_patches, sample_patches
 from tracker.detection.training import ForestOptions, train_forest

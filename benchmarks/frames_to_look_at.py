@@ -27,7 +27,8 @@ from server.quality.find import Setting, check_labels
 from server.quality.labels import LabelReader
 from server.quality.queue import Queued, find_doubts, find_label_doubts, queue_hands
 from server.quality.witnesses import Detections, TrackedHands, read_detections, read_track
-from tracker import JointSource, Sequence, load_sequence
+from tracker import Sequence, load_sequence
+from tracker.capture import JointSource
 
 Array = npt.NDArray[np.float64]
 

@@ -31,7 +31,6 @@ from tracker import (  # noqa: E402
     add_commands,
     join_chunks,
     load_annotations,
-    load_scan,
     load_sequence,
     register_scan,
     save_registration,
@@ -39,6 +38,7 @@ from tracker import (  # noqa: E402
     track_frames,
     untrained_hand,
 )
+from tracker.capture.scan import load_scan  # noqa: E402
 
 PASSWORD = "four words in a row"
 """Of the account Admin."""

@@ -1,8 +1,18 @@
 #!/bin/sh
 # Stop with a clear line unless a tool of the needed version is here: require.sh python [COMMAND] | require.sh node
+# require.sh choose prints the Python to take: a 3.11 where one runs, since pybullet has packages for 3.11 only.
 set -eu
 
 case "$1" in
+choose)
+    for command in python3.11 python3; do
+        if "$command" -c 'import ensurepip, venv' >/dev/null 2>&1; then
+            echo "$command"
+            exit 0
+        fi
+    done
+    echo python3
+    ;;
 python)
     command="${2:-python3}"
     if ! command -v "$command" >/dev/null 2>&1; then
@@ -17,6 +27,10 @@ python)
         echo "'$command' cannot make virtual environments. On Debian and Ubuntu: apt install python3-venv" >&2
         exit 1
     fi
+    if ! "$command" -c 'import sys; sys.exit(sys.version_info >= (3, 12))'; then
+        echo "setup: '$command' is $("$command" --version 2>&1), and pybullet has packages for 3.11 only: everything but the physics term will work." >&2
+        echo "setup: For physics too, install Python 3.11, remove .venv, and run make again; or compile pybullet (7 minutes): .venv/bin/python -m pip install pybullet" >&2
+    fi
     ;;
 node)
     if ! command -v node >/dev/null 2>&1 || ! command -v npm >/dev/null 2>&1; then
@@ -29,7 +43,7 @@ node)
     fi
     ;;
 *)
-    echo "usage: require.sh python [COMMAND] | require.sh node" >&2
+    echo "usage: require.sh choose | require.sh python [COMMAND] | require.sh node" >&2
     exit 2
     ;;
 esac

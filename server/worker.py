@@ -76,7 +76,7 @@ def run_worker(settings: Settings) -> None:
 
 def _evaluate(database: Database, judge: Judge, track_id: UUID) -> None:
     """Find the error of a new track against the labels, so that every list shows it."""
-    from tracker import JUDGING
+    from tracker.capture import JUDGING
 
     try:
         with database.reading() as session:

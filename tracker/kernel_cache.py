@@ -1,7 +1,8 @@
 """Where compiled kernels are kept.
 
-numba notices when a file with kernels changes, but not when a kernel that it calls in another file does. So the folder
-of the cache carries a digest of every file whose kernels are called from elsewhere; a change there starts a new folder.
+numba notices when a file with kernels changes, but not when a kernel that it calls in another file does, or a constant
+that it takes from there. So the folder of the cache carries a digest of every file with kernels, and a change in one
+starts a new folder. A kernel takes functions and constants from such files only.
 """
 
 from __future__ import annotations
@@ -12,40 +13,23 @@ import shutil
 import sys
 from pathlib import Path
 
-SHARED_KERNELS = (
-    "detection/channels.py",
-    "detection/levels.py",
-    "geometry/exits.py",
-    "geometry/se3.py",
-    "geometry/triangle_tree.py",
-    "geometry/triangles.py",
-    "model/blend_kernels.py",
-    "observation/depth_edges.py",
-    "observation/image_edges.py",
-    "observation/observation.py",
-    "registration/curved_triangles.py",
-    "registration/nearest_grid.py",
-    "rendering/zbuffer.py",
-    "synthesis/scans/bones.py",
-    "terms/colliding_parts.py",
-    "terms/normal_equations.py",
-    "terms/residual.py",
-    "terms/surface_point.py",
-    "training/linearize.py",
-    "training/motion.py",
-)
-"""Files whose kernels, or whose constants, kernels of other files use."""
-
 ROOT = Path.home() / ".cache" / "handloom" / "kernels"
 
-KEPT = 4
-"""So many folders are kept, for those who go back and forth."""
+KEPT = 16
+"""So many folders are kept, for those who go back and forth and for clones beside each other."""
+
+
+def find_kernel_files(tracker: Path) -> dict[str, bytes]:
+    """The files with kernels, by their path below the folder `tracker`, with what they hold."""
+    paths = [path for path in tracker.rglob("*.py") if path.name != Path(__file__).name]
+    texts = {path.relative_to(tracker).as_posix(): path.read_bytes() for path in sorted(paths)}
+    return {name: text for name, text in texts.items() if b"njit" in text}
 
 
 def choose_cache_folder(root: Path) -> Path:
     """The folder below `root` that belongs to the kernels as they are now."""
-    here = Path(__file__).parent
-    digest = hashlib.sha256(b"".join((here / name).read_bytes() for name in SHARED_KERNELS)).hexdigest()[:16]
+    files = find_kernel_files(Path(__file__).parent)
+    digest = hashlib.sha256(b"".join(name.encode() + text for name, text in sorted(files.items()))).hexdigest()[:16]
     return root / digest
 
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.baselines import SwarmOptions, track_with_swarm
 from benchmarks.studies.twin_runs import Twin, find_first_motion, render_twin, start_twin
-from tracker.baselines import SwarmOptions, track_with_swarm
 from tracker.evaluation import compute_statistics, evaluate_against_truth
 from tracker.fitting.options import TrackOptions
 from tracker.fitting.setup import TrackSetup

@@ -16,8 +16,8 @@ from benchmarks.studies.blocks import Block, Picture, Table, Text
 from benchmarks.studies.plots import Lines, Series, draw_plot
 from benchmarks.studies.study import Extent, Row, Study
 from benchmarks.studies.trial import Results
-from tracker.detection import default_detector
 from tracker.detection.confidence import C_THR
+from tracker.detection.default_detector import default_detector
 from tracker.detection.detect import DetectOptions
 from tracker.evaluation.detector_study import ANY_CONFIDENCE
 

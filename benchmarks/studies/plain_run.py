@@ -18,7 +18,7 @@ import numpy as np
 from benchmarks.studies.twin_runs import find_first_motion, measure, render_twin, start_twin
 from benchmarks.studies.variants import AsPoints, CorrespondingVertices, SalientInEveryFrame
 from tracker.capture.sequence import Sequence
-from tracker.detection import default_detector
+from tracker.detection.default_detector import default_detector
 from tracker.fitting.attempt import attempt_fit, look
 from tracker.fitting.frame_fit import FitOptions
 from tracker.fitting.objective import Objective

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from tracker import JointSource, JointSources
+from tracker.capture import JointSource, JointSources
 
 JOINT_COUNT = 21
 

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Response
 from server.calibrations.schemas import BoardChoice, BoardOptions, BoardQuery, CalibrationForm, CalibrationOptions
 from server.download import name_download
 from server.errors import error_responses
-from tracker import MAX_CAMERAS, draw_board, list_dictionaries, make_board_pdf
+from tracker.calibration import MAX_CAMERAS, draw_board, list_dictionaries, make_board_pdf
 
 router = APIRouter(prefix="/calibrations", tags=["calibrations"], responses=error_responses())
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from server.calibrations.schemas import CalibrationOptions, FilmedCamera, FilmReport
-from tracker import SourceCheck, TrackerError, check_sources, list_films, load_lenses
+from tracker import TrackerError
+from tracker.calibration import SourceCheck, check_sources, list_films, load_lenses
 
 
 def check_films(folder: Path, options: CalibrationOptions) -> FilmReport:

@@ -8,7 +8,7 @@ from pathlib import Path
 from server.errors import InvalidError
 from server.storage import Storage
 from server.storage.upload import Upload, UploadLimits
-from tracker import ArchiveLimits, extract_archive
+from tracker.capture import ArchiveLimits, extract_archive
 
 AREA = "films"
 UPLOADS = "film_uploads"

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, StrictBool
 
 from server.database.numbers import Number, Whole
 from server.database.texts import Name
-from tracker import Board
+from tracker.calibration import Board
 
 BoardKind = Literal["charuco", "apriltag", "checkerboard"]
 Dictionary = Annotated[str, Field(max_length=40, pattern=r"^[A-Za-z0-9_]*$")]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from server.storage import Storage
 
 if TYPE_CHECKING:
-    from tracker import CameraCalibration
+    from tracker.calibration import CameraCalibration
 
 AREA = "calibrations"
 COVERAGE = "coverage-{}.png"
@@ -42,7 +42,8 @@ def store_result(storage: Storage, calibration_id: uuid.UUID, result: CameraCali
 
 def _encode(result: CameraCalibration) -> dict[str, bytes]:
     """Contents by file name; a format that cannot hold one of the cameras is left out."""
-    from tracker import TrackerError, encode_cameras, encode_coverage, encode_report
+    from tracker import TrackerError
+    from tracker.calibration import encode_cameras, encode_coverage, encode_report
 
     files = {
         "cameras.toml": encode_cameras(result, "anipose")[""],

@@ -102,7 +102,7 @@ def run(args: argparse.Namespace) -> int:
 def describe_refusal(told: Path, path: Path, options: dict[str, Any]) -> str:
     """What is wrong, every option that is needed, and a command that has them all; empty when no option would help."""
     from server.imports.service import measure_mesh
-    from tracker import ImportOptions, check_import
+    from tracker.capture import ImportOptions, check_import
 
     report = check_import(path, options.get("format"), ImportOptions.from_json(options), measure=measure_mesh)
     needed = [question for question in report.questions if question.is_required]
@@ -186,7 +186,7 @@ def _import_labels(args: argparse.Namespace, path: Path) -> int:
     from server.access.models import LOCAL_ACCOUNT_ID, Account
     from server.app.parts import PLACE_GUARDS
     from server.exchange.importing import apply_import, find_problems, plan_import, read_files
-    from tracker import ImportHints
+    from tracker.label_formats import ImportHints
 
     if not args.into:
         raise CommandError(f"Labels in {args.format} belong to a recording; say which with --into NAME.")

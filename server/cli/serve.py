@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import errno
 import gc
+import logging
 import signal
 import socket
 import sys
@@ -16,6 +17,8 @@ from server.cli.guarded import FAILED, CommandError, load_settings, run_guarded
 
 if TYPE_CHECKING:
     from server.settings import Settings
+
+log = logging.getLogger(__name__)
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
@@ -52,8 +55,11 @@ def serve(settings: Settings, *, with_worker: bool) -> None:
         from server.cli.studio import StudioServer
         from server.cli.supervisor import WorkerSupervisor
         from server.log import configure_logging
+        from tracker import find_physics_fault
 
         configure_logging(settings.log_level)
+        if fault := find_physics_fault():
+            log.warning(fault)
         sys.setswitchinterval(SWITCH_SECONDS)
         gc.freeze()
         gc.set_threshold(*GARBAGE)

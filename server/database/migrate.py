@@ -15,7 +15,10 @@ from sqlalchemy import Connection, text
 
 from server.database.database import Database
 
-SCRIPTS = Path(__file__).resolve().parents[2] / "migrations"
+SERVER = Path(__file__).resolve().parents[1]
+PACKAGED = SERVER / "migrations"
+"""Where a wheel carries them."""
+SCRIPTS = PACKAGED if PACKAGED.is_dir() else SERVER.parent / "migrations"
 LOCK = 0x68616E646C6F6F6D
 """PostgreSQL's advisory lock of a migration; spells `handloom`."""
 

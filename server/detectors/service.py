@@ -20,7 +20,7 @@ from server.storage import Storage
 from server.storage.digest import compute_digest
 
 if TYPE_CHECKING:
-    from tracker import OwnDetector
+    from tracker.detection import OwnDetector
 
 AREA = "detectors"
 FILE = "detector.npz"
@@ -52,7 +52,8 @@ def get_detector(session: Session, detector_id: uuid.UUID, *, deleted_too: bool 
 
 def read_upload(path: Path) -> OwnDetector:
     """The detector in a file that somebody sent; a file that is none is refused with the reason."""
-    from tracker import TrackerError, load_detector
+    from tracker import TrackerError
+    from tracker.detection import load_detector
 
     try:
         return load_detector(path)

@@ -17,7 +17,7 @@ from server.evaluations.labels import LabelsId, read_labels
 from server.storage import Storage
 
 if TYPE_CHECKING:
-    from tracker import Evaluation
+    from tracker.evaluation import Evaluation
 
 MOST = 48
 """Verdicts that stay in memory; one of 1,500 frames and two hands takes about 3 MB."""
@@ -71,7 +71,8 @@ class Judge:
             return verdict
 
     def _judge(self, track_id: uuid.UUID, which: LabelsId) -> Verdict:
-        from tracker import evaluate_track, load_track
+        from tracker import load_track
+        from tracker.evaluation import evaluate_track
 
         with self._database.reading() as session:
             labels = read_labels(session, self._storage, which)

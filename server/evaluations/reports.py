@@ -10,7 +10,7 @@ from server.storage import Storage
 from tracker import say_count
 
 if TYPE_CHECKING:
-    from tracker import JudgedTrack
+    from tracker.evaluation import JudgedTrack
 
 MOST_PICTURES = 48
 """In one report; shared out among its tracks."""
@@ -20,7 +20,7 @@ def write_html_report(
     storage: Storage, comparison: Comparison, judged: list[JudgedTrack], query: EvaluationQuery
 ) -> str:
     """One HTML file with everything in it."""
-    from tracker import write_html
+    from tracker.evaluation import write_html
 
     return write_html(
         comparison.model_dump(mode="json"),
@@ -32,7 +32,8 @@ def write_html_report(
 
 
 def _draw_pictures(storage: Storage, judged: list[JudgedTrack]) -> dict[tuple[str, int], bytes]:
-    from tracker import draw_item, encode_jpeg, load_sequence
+    from tracker import load_sequence
+    from tracker.evaluation import draw_item, encode_jpeg
 
     pictures = {}
     each = max(1, min(12, MOST_PICTURES // max(1, len(judged))))

@@ -101,7 +101,7 @@ def get_report(
     check: SightCheck,
 ) -> Response:
     """The same as a file: a page that needs nothing else, a table of every joint, or the numbers as JSON."""
-    from tracker import write_csv
+    from tracker.evaluation import write_csv
 
     comparison, judged = service.compare(database, judge, query, check)
     if not judged:

@@ -19,7 +19,7 @@ from server.storage import Storage
 from server.tracks.models import TrackRow
 
 if TYPE_CHECKING:
-    from tracker import JudgedTrack
+    from tracker.evaluation import JudgedTrack
 
 VISIBILITIES = {"occluded": 1, "visible": 2}
 
@@ -29,7 +29,7 @@ def evaluate(database: Database, judge: Judge, row: TrackRow, source: Sequence[s
 
     Its mean error by joints that no track had a part in is kept with its row.
     """
-    from tracker import JUDGING
+    from tracker.capture import JUDGING
 
     with database.reading() as session:
         labels = find_current_labels(session, row.sequence_id)
@@ -47,7 +47,7 @@ def compare(
     database: Database, judge: Judge, query: EvaluationQuery, check: Callable[[Session, uuid.UUID], None]
 ) -> tuple[Comparison, list[JudgedTrack]]:
     """The comparison that was asked for, and the tracks in it; `check` raises at a recording that must not be seen."""
-    from tracker import compare_tracks
+    from tracker.evaluation import compare_tracks
 
     with database.reading() as session:
         chosen = choose_tracks(session, query)
@@ -65,7 +65,7 @@ def compare(
 
 
 def _judge(judge: Judge, one: Chosen, query: EvaluationQuery) -> JudgedTrack:
-    from tracker import JudgedTrack
+    from tracker.evaluation import JudgedTrack
 
     verdict = judge.find(one.track.id, one.labels)
     return JudgedTrack(
@@ -93,7 +93,7 @@ def _judge(judge: Judge, one: Chosen, query: EvaluationQuery) -> JudgedTrack:
 
 def write_picture_address(one: Chosen, camera: str, frame: int, hand: str, source: Sequence[str]) -> str:
     """Where the picture of an item is; the address names the labels, so what it shows never changes."""
-    from tracker import JUDGING
+    from tracker.capture import JUDGING
 
     place = f"{quote(camera, safe='')}/{frame}/{hand}.jpg"
     chosen = "" if tuple(source) == JUDGING else "?" + urlencode({"source": source}, doseq=True)
@@ -110,7 +110,8 @@ def draw_picture(
     source: Sequence[str],
 ) -> bytes:
     """The picture of one hand in one image: marks and track, cut out."""
-    from tracker import draw_item, encode_jpeg, load_sequence
+    from tracker import load_sequence
+    from tracker.evaluation import draw_item, encode_jpeg
 
     with database.reading() as session:
         labels = _find_labels(session, track.sequence_id, labels_key)

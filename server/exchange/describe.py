@@ -18,7 +18,7 @@ from server.exchange.schemas import (
     RecordingImported,
     SnapshotOut,
 )
-from tracker import LABEL_FORMATS
+from tracker.label_formats import LABEL_FORMATS
 
 MAX_LISTED = 500
 MAX_CONFLICTS = 200

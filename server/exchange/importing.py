@@ -27,7 +27,8 @@ from server.exchange.models import SnapshotRow
 from server.exchange.snapshots import create_snapshot, hold_sequences
 from server.sequences.models import SequenceRow
 from server.storage import Storage
-from tracker import Annotation, ImportedLabels, ImportHints, import_labels, read_label_files, say_count
+from tracker import Annotation, say_count
+from tracker.label_formats import ImportedLabels, ImportHints, import_labels, read_label_files
 
 Policy = Literal["keep", "replace"]
 MAX_TOLD = 20

@@ -18,7 +18,8 @@ from server.sequences.models import SequenceRow
 from server.sequences.service import open_sequence
 from server.storage import Storage
 from server.tracks.service import get_track
-from tracker import HAND_JOINTS, Annotations, LabelSet, list_image_names, load_track
+from tracker import HAND_JOINTS, Annotations, load_track
+from tracker.label_formats import LabelSet, list_image_names
 
 
 def open_label_set(

@@ -33,7 +33,7 @@ from server.storage import Storage, StorageDep
 from server.storage.sent_json import read_options, reading_json
 from server.storage.upload import Upload, UploadLimits, work_on_upload
 from server.storage.upload_body import describe_upload_body
-from tracker import JOINT_ORDERS, LABEL_FORMATS, ExportedLabels, ImportHints, export_labels, pack_files
+from tracker.label_formats import JOINT_ORDERS, LABEL_FORMATS, ExportedLabels, ImportHints, export_labels, pack_files
 
 router = APIRouter(tags=["labels"], responses=error_responses(404))
 

@@ -73,7 +73,7 @@ def get_hand_model_report(model_id: uuid.UUID, session: SessionDep) -> HandModel
 )
 def download_hand_model_report(model_id: uuid.UUID, session: SessionDep) -> Response:
     """The same as one file with its plots, for others: nothing in it is fetched, nothing runs."""
-    from tracker import write_model_html
+    from tracker.evaluation import write_model_html
 
     row = service.get_hand_model(session, model_id)
     if row.report is None:

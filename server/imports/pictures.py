@@ -10,7 +10,9 @@ import numpy.typing as npt
 
 from server.errors import NotFoundError
 from server.sequences.depth_colors import index_depth, load_palette
-from tracker import FrameError, encode_jpeg, read_import_picture
+from tracker import FrameError
+from tracker.capture import read_import_picture
+from tracker.evaluation import encode_jpeg
 
 WIDTH = 320
 

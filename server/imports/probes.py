@@ -10,7 +10,7 @@ import uuid
 from collections import OrderedDict
 from collections.abc import Hashable
 
-from tracker import StreamProbe
+from tracker.capture import StreamProbe
 
 MAX_UPLOADS = 8
 _GUARD = threading.Lock()

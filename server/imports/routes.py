@@ -34,7 +34,7 @@ from server.sequences.summaries import SummariesDep, describe_sequences
 from server.storage import StorageDep
 from server.storage.upload import receive_upload
 from server.storage.upload_body import describe_upload_body
-from tracker import IMPORT_FORMATS, SENSOR_PRESETS, ImportOptions
+from tracker.capture import IMPORT_FORMATS, SENSOR_PRESETS, ImportOptions
 
 router = APIRouter(prefix="/imports", tags=["imports"], responses=error_responses())
 

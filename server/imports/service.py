@@ -30,16 +30,8 @@ from server.settings import Settings
 from server.storage import Storage
 from server.storage.sent_json import read_options
 from server.storage.upload import Upload
-from tracker import (
-    ArchiveLimits,
-    ImportOptions,
-    ImportReport,
-    TrackerError,
-    check_import,
-    extract_archive,
-    load_annotations,
-    run_import,
-)
+from tracker import TrackerError, load_annotations
+from tracker.capture import ArchiveLimits, ImportOptions, ImportReport, check_import, extract_archive, run_import
 
 if TYPE_CHECKING:
     from tracker import ObjectSize

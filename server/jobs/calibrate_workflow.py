@@ -20,7 +20,7 @@ from server.jobs.run import JobRun, WorkerContext
 from tracker import say_count
 
 if TYPE_CHECKING:
-    from tracker import CameraSource, FilmFolder, Sightings
+    from tracker.calibration import CameraSource, FilmFolder, Sightings
 
 LOOKING = 0.8
 """Share of the bar that looking for the board takes."""
@@ -72,7 +72,7 @@ class _CalibrateRun(JobRun):
 
     def list_films(self) -> FilmFolder:
         """What was filmed, as it was uploaded."""
-        from tracker import list_films
+        from tracker.calibration import list_films
 
         with self.context.database.reading() as session:
             row = session.get(CalibrationRow, read_calibration_id(self.row))
@@ -83,14 +83,15 @@ class _CalibrateRun(JobRun):
 
     def open_sources(self) -> list[CameraSource]:
         """The cameras in their order; the first one's frame is to be the world."""
-        from tracker import open_source
+        from tracker.calibration import open_source
 
         fps = read_calibrate_options(self.row).fps
         return [open_source(name, path, fps) for name, path in self.list_films().cameras.items()]
 
     def look(self, attempt: int, number: int) -> dict[str, Any]:
         """Look for the board in every frame of a camera; its corners are kept."""
-        from tracker import find_sightings, pack_arrays
+        from tracker.calibration import find_sightings
+        from tracker.training import pack_arrays
 
         progress, step = self.progress(attempt), f"corners-{number:04d}"
         sources = self.open_sources()
@@ -113,7 +114,7 @@ class _CalibrateRun(JobRun):
 
     def solve(self, attempt: int, count: int) -> str:
         """Calibrate the cameras from their corners, keep what was found, and end the job."""
-        from tracker import CalibrationOptions, calibrate_cameras, load_lenses
+        from tracker.calibration import CalibrationOptions, calibrate_cameras, load_lenses
 
         progress, options, films = self.progress(attempt), read_calibrate_options(self.row), self.list_films()
         sources = self.open_sources()
@@ -142,7 +143,8 @@ class _CalibrateRun(JobRun):
         return str(calibration_id)
 
     def _read_sightings(self, number: int) -> Sightings:
-        from tracker import Sightings, unpack_arrays
+        from tracker.calibration import Sightings
+        from tracker.training import unpack_arrays
 
         manifest = self.files.read_manifest(f"corners-{number:04d}")
         assert manifest is not None, "the steps before have written it"

@@ -29,7 +29,7 @@ class JobCheckpoints:
         self._files, self._prefix, self._kept, self._found = files, prefix, kept, found
 
     def load(self, stage: str) -> dict[str, npt.NDArray] | None:
-        from tracker import unpack_arrays
+        from tracker.training import unpack_arrays
 
         step = f"{self._prefix}-{stage}"
         if self._files.read_manifest(step) is None:
@@ -42,7 +42,7 @@ class JobCheckpoints:
         return arrays
 
     def save(self, stage: str, arrays: Mapping[str, npt.NDArray]) -> None:
-        from tracker import pack_arrays
+        from tracker.training import pack_arrays
 
         step = f"{self._prefix}-{stage}"
         path = self._files.folder / f"{step}.npz"

@@ -20,8 +20,8 @@ from server.jobs.progress import TRACKING_ENDS
 from server.jobs.run import JobRun, WorkerContext
 
 if TYPE_CHECKING:
-    from tracker import DetectedHand
     from tracker import Sequence as Recording
+    from tracker.landmarks import DetectedHand
 
 CHUNK_FRAMES = 20
 """Frames a step looks at; what a crash can cost."""
@@ -70,7 +70,7 @@ class _DetectRun(JobRun):
 
     def plan(self) -> dict[str, Any]:
         """Which views are looked at, and the chunks of frames."""
-        from tracker import choose_views
+        from tracker.detection import choose_views
 
         if (manifest := self.files.read_manifest("start")) is not None:
             return manifest
@@ -81,7 +81,8 @@ class _DetectRun(JobRun):
 
     def detect_chunk(self, attempt: int, planned: dict[str, Any], number: int) -> dict[str, Any]:
         """Look at one chunk of frames; its hands and those of its last frame are kept."""
-        from tracker import default_hand_detector, detect_hands
+        from tracker.detection import detect_hands
+        from tracker.landmarks import default_hand_detector
 
         progress, step = self.progress(attempt), f"chunk-{number:04d}"
         (first, end), total = planned["chunks"][number], planned["chunks"][-1][1]
@@ -104,7 +105,8 @@ class _DetectRun(JobRun):
 
     def finish(self, attempt: int, planned: dict[str, Any]) -> str:
         """Keep what was found, and end the job."""
-        from tracker import join_recorded_hands, load_recorded_hands, say_count
+        from tracker import say_count
+        from tracker.detection import join_recorded_hands, load_recorded_hands
 
         progress = self.progress(attempt)
         progress.part((TRACKING_ENDS, 1.0), "writing what was found", 0.0)
@@ -136,7 +138,7 @@ def _write_hands(last: Mapping[str, Mapping[str, DetectedHand]]) -> dict[str, di
 
 
 def _read_hands(written: dict[str, dict[str, list[float]]]) -> dict[str, dict[str, DetectedHand]]:
-    from tracker import DetectedHand
+    from tracker.landmarks import DetectedHand
 
     return {
         view: {side: DetectedHand.from_row(np.array(row)) for side, row in hands.items()}

@@ -24,14 +24,18 @@ from server.training_sets.schemas import TrainingRule
 from server.training_sets.service import get_training_set
 
 if TYPE_CHECKING:
-    from tracker import BlendModel, HeldOut, TrainingSet
+    from tracker import BlendModel
+    from tracker.evaluation import HeldOut
+    from tracker.training import TrainingSet
 
 log = logging.getLogger(__name__)
 
 
 def evaluate_model(run: ScanRun, attempt: int, model_id: UUID, parent_id: UUID, number: int, span: Span) -> bool:
     """Judge a model and add what was found to its report; whether there was anybody to judge it on."""
-    from tracker import STUDY_LEVELS, TrainingOptions, say_count, study_held_out
+    from tracker import say_count
+    from tracker.evaluation import STUDY_LEVELS, study_held_out
+    from tracker.training import TrainingOptions
 
     level = run.row.params["evaluate"]
     with run.context.database.reading() as session:
@@ -81,7 +85,7 @@ def _list_compared(learned: BlendModel, parent: BlendModel, parent_id: UUID) -> 
 
 
 def _nothing(model: BlendModel) -> TrainingSet:
-    from tracker import make_training_set
+    from tracker.training import make_training_set
 
     return make_training_set(np.empty((0, *model.template.shape)), [], [], [])
 
@@ -90,7 +94,8 @@ def _gather_held_out(
     run: ScanRun, row: HandModelRow, parent_id: UUID, number: int, most: int, progress: JobProgress
 ) -> HeldOut | None:
     """Scans with their registrations: the same ones whenever this is done again."""
-    from tracker import HeldOut, TrackerError, choose_held_out, load_registration, make_test_hand
+    from tracker import TrackerError, load_registration
+    from tracker.evaluation import HeldOut, choose_held_out, make_test_hand
 
     ids = _list_registrations(run, row, parent_id, number)
     found = [load_registration(run.context.storage.folder(registrations.AREA, id_) / registrations.FILE) for id_ in ids]

@@ -22,33 +22,54 @@ TYPE_NAMES: dict[type, Literal["integer", "number", "boolean", "text"]] = {
 
 
 def track_form(session: Session) -> JobForm:
-    """One field for each option, one for the hand model, one for the fingertip detector, and the presets."""
-    from tracker import PRESETS, USUAL_PRESET, TrackOptions
+    """One field for each option, one for the hand model, one for the fingertip detector, and the presets.
 
+    Physics is offered where it can be used; elsewhere the field of the terms says why not.
+    """
+    from tracker import PRESETS, USUAL_PRESET, TrackOptions, find_physics_fault
+
+    fault = find_physics_fault()
     defaults = TrackOptions().to_json()
+    fields = [
+        JobFormField(
+            name=option.name,
+            label=option.metadata["label"],
+            type=TYPE_NAMES[type(defaults[option.name])],
+            default=defaults[option.name],
+            help=option.metadata["help"],
+            choices=option.metadata.get("choices"),
+            choice_labels=option.metadata.get("choice_labels"),
+            low=option.metadata.get("low"),
+            high=option.metadata.get("high"),
+            unit=option.metadata.get("unit"),
+            is_advanced=option.metadata.get("is_advanced", False),
+            about=option.metadata.get("about", "method"),
+        )
+        for option in dataclasses.fields(TrackOptions)
+    ]
+    presets = [JobPreset.model_validate(preset) for preset in PRESETS]
+    if fault:
+        fields = [_without_physics(field, fault) if field.name == "terms" else field for field in fields]
+        presets = [preset for preset in presets if not _has_physics(preset.values["terms"])]
     return JobForm(
         kind="track",
-        fields=[
-            JobFormField(
-                name=option.name,
-                label=option.metadata["label"],
-                type=TYPE_NAMES[type(defaults[option.name])],
-                default=defaults[option.name],
-                help=option.metadata["help"],
-                choices=option.metadata.get("choices"),
-                choice_labels=option.metadata.get("choice_labels"),
-                low=option.metadata.get("low"),
-                high=option.metadata.get("high"),
-                unit=option.metadata.get("unit"),
-                is_advanced=option.metadata.get("is_advanced", False),
-                about=option.metadata.get("about", "method"),
-            )
-            for option in dataclasses.fields(TrackOptions)
-        ]
-        + [_choose_hand(session), _choose_detector(session)],
-        presets=[JobPreset.model_validate(preset) for preset in PRESETS],
+        fields=[*fields, _choose_hand(session), _choose_detector(session)],
+        presets=presets,
         usual_preset=USUAL_PRESET,
     )
+
+
+def _without_physics(field: JobFormField, fault: str) -> JobFormField:
+    """The field of the terms without those of physics, and why."""
+    assert field.choices is not None and field.choice_labels is not None
+    pairs = zip(field.choices, field.choice_labels, strict=True)
+    kept = {name: label for name, label in pairs if not _has_physics(name)}
+    offered = {"choices": list(kept), "choice_labels": list(kept.values()), "help": f"{field.help} {fault}"}
+    return field.model_copy(update=offered)
+
+
+def _has_physics(terms: object) -> bool:
+    return "P" in str(terms).partition("+")[2]
 
 
 MOST_OFFERED = 100

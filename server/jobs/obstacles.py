@@ -77,7 +77,7 @@ def find_register_obstacles(session: Session, storage: Storage, asked: RegisterC
 
 def find_size_obstacles(session: Session, scans: Sequence[uuid.UUID]) -> list[str]:
     """Which of these scans have a size that no hand has, so that to register them is in vain."""
-    from tracker import SIZES_NEEDED
+    from tracker.capture import SIZES_NEEDED
 
     faults: dict[str, str] = {}
     for first in range(0, len(scans), AT_ONCE):

@@ -38,7 +38,8 @@ from server.training_sets import service as training_sets
 from tracker import say_count
 
 if TYPE_CHECKING:
-    from tracker import BlendModel, Registration, RegistrationStart, Scan, Training, TrainingSet
+    from tracker import BlendModel, Registration, RegistrationStart, Scan
+    from tracker.training import Training, TrainingSet
 
 log = logging.getLogger(__name__)
 
@@ -183,7 +184,7 @@ class ScanRun(JobRun):
 
     def train(self, attempt: int, set_id: UUID, parent_id: UUID, name: str, number: int, span: Span) -> str:
         """Train a model; gives its id."""
-        from tracker import TrainingOptions, train_model
+        from tracker.training import TrainingOptions, train_model
 
         progress = self.progress(attempt)
         model_id = uuid.uuid5(NAMESPACE, f"{self.job_id}/model/{number}")
@@ -228,7 +229,7 @@ class ScanRun(JobRun):
 
     def load_training_set(self, set_id: UUID, number: int) -> TrainingSet:
         """The registrations of a set, each checked."""
-        from tracker import load_training_set
+        from tracker.training import load_training_set
 
         with self.context.database.reading() as session:
             row = training_sets.get_training_set(session, set_id)
@@ -249,7 +250,7 @@ class ScanRun(JobRun):
 
 def study_people(trained: Training) -> dict[str, Any]:
     """How well the shape space holds people that it was not made from, each left out in turn: [R17] Fig. 14."""
-    from tracker import generalize_shapes
+    from tracker.evaluation import generalize_shapes
 
     people = np.array([hand.removesuffix(" (left)") for hand in trained.report["by_hand"]])
     most = min(20, len(np.unique(people)) - 2)

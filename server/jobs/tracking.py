@@ -76,7 +76,8 @@ class TrackingJob:
             progress: Is told.
             others: Jobs that may have done just this before: what each is called, and its files.
         """
-        from tracker import load_annotations, load_detector, plan_start, start_tracking
+        from tracker import load_annotations, plan_start, start_tracking
+        from tracker.detection import load_detector
 
         manifest = self.files.read_manifest("start")
         if manifest is not None:

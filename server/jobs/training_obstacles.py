@@ -74,7 +74,7 @@ def _find_faults(
     session: Session, storage: Storage, chosen: Sequence[Chosen], model_id: uuid.UUID | None, with_mirrored: bool
 ) -> list[str]:
     """What the training itself would refuse."""
-    from tracker import TrainingHand, find_training_faults
+    from tracker.training import TrainingHand, find_training_faults
 
     counts = _count_vertices(session, {one.registration.model_id for one in chosen})
     hands = [
@@ -103,7 +103,7 @@ def _count_vertices(session: Session, model_ids: Collection[uuid.UUID]) -> dict[
 
 def _find_bend_faults(storage: Storage, chosen: Sequence[Chosen]) -> list[str]:
     """Whether fingers bend anywhere: some registrations are looked at, more only while they do not."""
-    from tracker import find_bend_fault
+    from tracker.training import find_bend_fault
 
     fault, turns = None, []
     for first in range(0, len(chosen), AT_A_TIME):
@@ -167,7 +167,7 @@ def _find_test_obstacles(
 
 def _find_scan_faults(session: Session, asked: LoopCreate, scans: Sequence[uuid.UUID]) -> list[str]:
     """What training would refuse even if every scan came out well."""
-    from tracker import TrainingHand, find_training_faults
+    from tracker.training import TrainingHand, find_training_faults
 
     name, side, vertices = _describe_first(session, asked.model_id)
     learnt = [one for one in _list_scans(session, scans) if one.subject not in asked.leave_out_subjects]

@@ -95,7 +95,7 @@ class LabelReader:
 
     def read(self, recording: Sequence, rows: Many) -> list[Label]:
         """Labels of annotation rows, in their order (by frame)."""
-        from tracker import JUDGING, find_counted
+        from tracker.capture import JUDGING, find_counted
 
         images = Images(recording)
         labels = []

@@ -39,7 +39,7 @@ class Views:
 
 def triangulate_views(marks: Marks, cameras: Mapping[str, Camera]) -> list[Views]:
     """All hands that are marked in two cameras or more, by frame."""
-    from tracker import triangulate
+    from tracker.capture import triangulate
 
     together: dict[tuple[int, str], dict[str, Array]] = defaultdict(dict)
     for (camera, frame, hand), pixels in marks.items():

@@ -74,7 +74,7 @@ def _read_depth(folder: Path, frames: list[int]) -> dict[int, float]:
 
 def read_detections(path: Path) -> Detections:
     """From the file of a job that looked through the whole recording."""
-    from tracker import load_recorded_hands
+    from tracker.detection import load_recorded_hands
 
     found = load_recorded_hands(path)
     return Detections(

@@ -137,7 +137,8 @@ def _add_one(
     database: Database, storage: Storage, path: Path, columns: dict[str, Any], account_id: uuid.UUID, moves: bool
 ) -> tuple[ScanRow, bool]:
     """Gives the scan and whether it is new. The file first, then its row; without the row no file."""
-    from tracker import find_unit, read_scan
+    from tracker import read_scan
+    from tracker.capture import find_unit
 
     digest = compute_digest(path)
     with database.reading() as session:

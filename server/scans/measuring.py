@@ -17,7 +17,8 @@ PICTURE_PX = 160
 
 def measure_scans(folder: Path) -> ScansMeasured:
     """The size of every scan that a folder holds, in the unit of its file."""
-    from tracker import HAND_LENGTHS, LONGEST_SCENE, TrackerError
+    from tracker import TrackerError
+    from tracker.capture import HAND_LENGTHS, LONGEST_SCENE
 
     found = find_scans(folder)
     measured, refused = [], []
@@ -37,7 +38,8 @@ def measure_scans(folder: Path) -> ScansMeasured:
 
 
 def _measure(name: str, path: Path, listed: float | None) -> ScanMeasure:
-    from tracker import find_possible_units, is_certain, measure_size, read_scan
+    from tracker import read_scan
+    from tracker.capture import find_possible_units, is_certain, measure_size
 
     scan = read_scan(path)
     size = measure_size(scan.points)

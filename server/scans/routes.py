@@ -38,7 +38,7 @@ from server.scans.units import find_revision_unit
 from server.storage import StorageDep
 from server.storage.upload import Upload, UploadLimits, work_on_upload
 from server.storage.upload_body import describe_upload_body
-from tracker import ArchiveLimits, extract_archive
+from tracker.capture import ArchiveLimits, extract_archive
 
 router = APIRouter(prefix="/scans", tags=["scans"], responses=error_responses())
 

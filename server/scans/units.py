@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def measure_kept(scan: Scan, flags: np.ndarray) -> list[float]:
     """Sides of a box that stands along the points that are kept, m, the longest first."""
-    from tracker import measure_size
+    from tracker.capture import measure_size
 
     kept = scan.points[flags == 0]
     return [float(side) for side in measure_size(kept if len(kept) else scan.points)]
@@ -42,7 +42,7 @@ def find_old_unit(row: ScanRow, scan: Scan) -> float:
 
 def check_size(length_m: float, metres_per_unit: float) -> None:
     """Raise when a unit makes a scan too small or too large to hold a hand."""
-    from tracker import LONGEST_SCENE, SIZES_NEEDED, find_size_fault
+    from tracker.capture import LONGEST_SCENE, SIZES_NEEDED, find_size_fault
 
     if fault := find_size_fault(length_m, LONGEST_SCENE):
         raise InvalidError(
@@ -53,7 +53,7 @@ def check_size(length_m: float, metres_per_unit: float) -> None:
 
 def find_rows_out_of_size(rows: Sequence[ScanRow]) -> dict[str, str]:
     """By name, what is wrong with the size of scans that are no hands as they are cropped now."""
-    from tracker import find_size_fault
+    from tracker.capture import find_size_fault
 
     faults = {row.name: find_size_fault(max(row.size_m or row.extent_m)) for row in rows}
     return {name: fault for name, fault in faults.items() if fault is not None}

@@ -18,7 +18,7 @@ from starlette.requests import Request
 
 from server.errors import InvalidError, StudioError, TooLargeError
 from server.storage.storage import Storage
-from tracker import find_path_fault
+from tracker.capture import find_path_fault
 
 MAX_FIELD_BYTES = 64 * 1024
 MAX_DEPTH = 12

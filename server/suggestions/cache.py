@@ -12,7 +12,8 @@ from server.jobs.detections import AREA
 from server.storage import Storage
 
 if TYPE_CHECKING:
-    from tracker import Frame, RecordedHands, Sequence, Track
+    from tracker import Frame, Sequence, Track
+    from tracker.detection import RecordedHands
 
 Thing = TypeVar("Thing")
 
@@ -44,7 +45,7 @@ class RecordingCache:
 
     def detections(self, job_id: uuid.UUID) -> RecordedHands:
         """What a job of the hand detector found."""
-        from tracker import load_recorded_hands
+        from tracker.detection import load_recorded_hands
 
         return self._get(("detections", job_id), lambda: load_recorded_hands(self._storage.document(AREA, job_id)))
 

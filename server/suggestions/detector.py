@@ -28,7 +28,7 @@ def suggest_detected(
         job_id: The job that has looked at the whole recording, where one has.
         place: The image.
     """
-    from tracker import DETECTOR_LABEL
+    from tracker.detection import DETECTOR_LABEL
 
     cache = context.keep(RecordingCache)
     found = None if job_id is None else cache.detections(job_id)
@@ -56,7 +56,8 @@ def suggest_detected(
 
 def _look(cache: RecordingCache, recorded: Recorded, place: Place) -> tuple[Annotation, ...]:
     """Look at one image, without the images before it."""
-    from tracker import default_hand_detector, find_image_hands
+    from tracker.detection import find_image_hands
+    from tracker.landmarks import default_hand_detector
 
     recording = cache.recording(recorded.id, recorded.content_key)
     camera = recording.camera(place.camera)

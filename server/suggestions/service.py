@@ -121,7 +121,9 @@ def suggest_by_fit(
 
 def warm_up(_context: ComputeContext) -> None:
     """Fit a hand and look at an image that nobody asked for: kernels and networks are loaded when somebody waits."""
-    from tracker import Camera, Frame, default_hand, default_hand_detector, find_image_hands, fit_marked
+    from tracker import Camera, Frame, default_hand, fit_marked
+    from tracker.detection import find_image_hands
+    from tracker.landmarks import default_hand_detector
 
     width, height, focal = 640, 480, 600.0
     K = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1]])

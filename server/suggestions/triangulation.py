@@ -15,7 +15,8 @@ from server.suggestions.triangulation_schemas import (
     TriangulationOut,
     TriangulationView,
 )
-from tracker import Camera, triangulate
+from tracker import Camera
+from tracker.capture import triangulate
 
 
 def triangulate_hand(sequence: SequenceRow, views: Sequence[TriangulationView]) -> TriangulationOut:

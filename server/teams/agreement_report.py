@@ -24,7 +24,8 @@ from server.sequences.models import SequenceRow
 from server.teams.agreement import Agreement, measure_agreement
 from server.teams.models import AssignmentRow, ReplicaSetRow
 from server.teams.schemas import Hand
-from tracker import HAND_JOINTS, Annotation, count_origins, describe_origin, find_counted, find_origin, say_left_out
+from tracker import HAND_JOINTS, Annotation
+from tracker.capture import count_origins, describe_origin, find_counted, find_origin, say_left_out
 
 WORST_PLACES = 50
 T16_STD_PX = 1.46

@@ -44,7 +44,7 @@ class Overlays:
         name = f"{STYLE}-{cameras.index(camera)}-{frame:06d}.png"
         path = track_folder / "overlays" / (name if kind == "mesh" else f"{kind}-{name}")
         if not path.exists():
-            from tracker import render_overlay, render_unknown
+            from tracker.inspection import render_overlay, render_unknown
 
             render = render_overlay if kind == "mesh" else render_unknown
             image = render(sequence, track.setup, track.pose[rows[frame]], frame, camera)

@@ -11,7 +11,7 @@ from server.viewer.layers import FINGER_COLORS, TERM_COLORS, WRIST_COLOR, Layers
 from server.viewer.nodes import SceneNodes
 
 if TYPE_CHECKING:
-    from tracker import FrameView
+    from tracker.inspection import FrameView
 
 FULL_MM = 10.0
 """Distance at which the colours of distances end, mm; the same as in the page's error legend."""
@@ -155,9 +155,12 @@ def _describe_collisions(view: FrameView) -> dict[str, Any]:
 
 
 def _describe_contacts(view: FrameView) -> dict[str, Any]:
+    from tracker import find_physics_fault
+
     setup, found = view.aids.setup, view.contacts
     return {
         "is_of_run": "P" in setup.options.term_letters,
+        "fault": find_physics_fault(),
         "object": setup.names[found.object] if found.object >= 0 else None,
         "is_stable": found.is_stable,
         "displacement_mm": round(1000.0 * found.displacement, 2),
@@ -176,7 +179,7 @@ def _describe_contacts(view: FrameView) -> dict[str, Any]:
 
 
 def _unknown_color() -> tuple[int, int, int]:
-    from tracker import UNKNOWN_COLOR
+    from tracker.inspection import UNKNOWN_COLOR
 
     return UNKNOWN_COLOR
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from tracker import FrameView, ModelView
+    from tracker.inspection import FrameView, ModelView
 
 Color = tuple[int, int, int]
 

@@ -86,7 +86,8 @@ def main() -> None:
 
 def _load_tracker() -> None:
     """What takes seconds, before it is needed."""
-    from tracker import describe_frame, load_track
+    from tracker import load_track
+    from tracker.inspection import describe_frame
 
     log.debug("%s and %s are ready", describe_frame, load_track)
 

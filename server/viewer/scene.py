@@ -16,7 +16,8 @@ from server.viewer.layers import Color, Layers, hand_colors, joint_colors, repea
 from server.viewer.nodes import SceneNodes
 
 if TYPE_CHECKING:
-    from tracker import Camera, FrameView
+    from tracker import Camera
+    from tracker.inspection import FrameView
 
 HAND_SPAN = 0.24
 """Height of what the first view shows at the distance of the hand, m."""

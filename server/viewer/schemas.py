@@ -106,7 +106,8 @@ class ContactsView(BaseModel):
     """Whether the object stays where it is when the frame's pose is simulated."""
 
     is_of_run: bool = Field(description="Whether the run had the physics term.")
-    object: str | None = Field(description="Null where there is no object or no hand.")
+    object: str | None = Field(description="Null where nothing was simulated.")
+    fault: str | None = Field(description="Why nothing can be simulated on this machine; null where it can.")
     is_stable: bool
     displacement_mm: float = Field(description="Of the object's centroid.")
     held_displacement_mm: float = Field(description="With the chosen parts in contact.")

@@ -18,7 +18,7 @@ from server.viewer.layers import Layers, term_color
 from server.viewer.scene import ViewerScene
 
 if TYPE_CHECKING:
-    from tracker import FrameView, ViewAids
+    from tracker.inspection import FrameView, ViewAids
 
 log = logging.getLogger(__name__)
 
@@ -98,7 +98,8 @@ class ViewSession:
                 scene.close()
 
     def _open(self) -> ViewerScene:
-        from tracker import ViewAids, load_sequence, load_track
+        from tracker import load_sequence, load_track
+        from tracker.inspection import ViewAids
 
         self._sequence = load_sequence(self._recording)
         self._track = load_track(self._track_folder)
@@ -149,7 +150,7 @@ class ViewSession:
 
     def _view(self, frame: int) -> FrameView:
         if frame not in self._views:
-            from tracker import describe_frame
+            from tracker.inspection import describe_frame
 
             row = self._rows[frame]
             pose = self._track.pose[row]

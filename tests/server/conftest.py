@@ -36,15 +36,14 @@ from tracker import (
     add_commands,
     join_chunks,
     load_annotations,
-    load_scan,
     load_sequence,
     register_scan,
     save_registration,
-    save_scan,
     start_tracking,
     track_frames,
     untrained_hand,
 )
+from tracker.capture.scan import load_scan, save_scan
 
 MakeRecording = Callable[..., Path]
 BASE_URL = "http://127.0.0.1:8000"

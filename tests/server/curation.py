@@ -30,7 +30,8 @@ from server.training_sets.schemas import TrainingRule
 from server.training_sets.service import create_training_set
 from tests.server.conftest import GeneratedHand, Studio
 from tests.server.teams.conftest import Person, join
-from tracker import Registration, Scan, load_scan, save_registration, save_scan, untrained_hand
+from tracker import Registration, Scan, save_registration, untrained_hand
+from tracker.capture.scan import load_scan, save_scan
 from tracker.evaluation.scan_fit import fit_pose_to_vertices
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan
 from tracker.synthesis.scans.scanner import Scanner

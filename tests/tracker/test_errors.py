@@ -17,7 +17,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from tests.tracker.label_formats.test_hostile import make_hand
-from tracker import Scan, load_annotations, load_scan, save_scan, untrained_hand
+from tracker import Scan, load_annotations, untrained_hand
 from tracker.calibration.board import Board
 from tracker.calibration.board_file import load_board, write_board
 from tracker.capture.archive import extract_archive
@@ -26,6 +26,7 @@ from tracker.capture.importers.anipose_calibration import parse_anipose
 from tracker.capture.importers.colmap_calibration import parse_colmap
 from tracker.capture.importers.dat_calibration import parse_dat
 from tracker.capture.importers.opencv_calibration import parse_opencv
+from tracker.capture.scan import load_scan, save_scan
 from tracker.capture.scan_ply import write_ply
 from tracker.capture.video_file import VideoFile
 from tracker.errors import AnnotationError, FileError, ScanError, TrackerError, reading, reads

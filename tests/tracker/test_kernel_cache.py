@@ -1,39 +1,61 @@
-"""No stale kernel is ever run: every file that other files' kernels depend on is in the cache's digest."""
+"""No stale kernel is ever run: every file that kernels depend on is in the cache's digest."""
+
+from __future__ import annotations
 
 import ast
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 import tracker
-from tracker.kernel_cache import SHARED_KERNELS, choose_cache_folder
+from tracker.kernel_cache import choose_cache_folder, find_kernel_files
 
-ROOT = Path(tracker.__file__).parent
+ROOT = Path(str(tracker.__file__)).parent
 
 
-def test_every_file_that_kernels_of_other_files_use_is_in_the_digest():
+def is_kernel(node: ast.AST) -> bool:
+    return isinstance(node, ast.FunctionDef) and any("njit" in ast.unparse(one) for one in node.decorator_list)
+
+
+def find_homes(path: Path) -> Iterator[tuple[str, str]]:
+    """Name and file of what the kernels of a file take from other files of the tracker."""
+    tree = ast.parse(path.read_text())
+    kernels = [node for node in ast.walk(tree) if is_kernel(node)]
+    used = {node.id for kernel in kernels for node in ast.walk(kernel) if isinstance(node, ast.Name)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("tracker."):
+            home = (node.module or "").removeprefix("tracker.").replace(".", "/")
+            for alias in node.names:
+                if (alias.asname or alias.name) in used:
+                    yield alias.name, f"{home}.py" if (ROOT / f"{home}.py").exists() else f"{home}/__init__.py"
+
+
+def test_every_kernel_and_all_that_kernels_take_from_other_files_is_in_the_digest():
+    found, shared = find_kernel_files(ROOT), 0
+    assert len(found) > 40
     for path in ROOT.rglob("*.py"):
-        tree = ast.parse(path.read_text())
-        kernels = [
-            node
-            for node in ast.walk(tree)
-            if isinstance(node, ast.FunctionDef) and any("njit" in ast.unparse(d) for d in node.decorator_list)
-        ]
-        used = {n.id for kernel in kernels for n in ast.walk(kernel) if isinstance(n, ast.Name)}
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("tracker."):
-                for alias in node.names:
-                    if alias.name in used:
-                        home = (node.module or "").removeprefix("tracker.").replace(".", "/")
-                        file = home + ".py" if (ROOT / (home + ".py")).exists() else home + f"/{home.split('/')[-1]}.py"
-                        assert file in SHARED_KERNELS, f"{path} uses {alias.name} of {file} in a kernel"
+        name = path.relative_to(ROOT).as_posix()
+        if any(is_kernel(node) for node in ast.walk(ast.parse(path.read_text()))):
+            assert name in found
+        for used, home in find_homes(path):
+            assert home in found, f"{name} uses {used} of {home} in a kernel, a file without kernels"
+            shared += 1
+    assert shared > 40
 
 
-def test_a_change_of_a_shared_kernel_starts_a_new_folder(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("name", "starts_a_new_folder"),
+    [("geometry/se3.py", True), ("terms/normal_equations.py", True), ("cli/track.py", False)],
+)
+def test_a_change_starts_a_new_folder_where_kernels_depend_on_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, starts_a_new_folder: bool
+):
     before = choose_cache_folder(tmp_path)
     copy = tmp_path / "tracker"
-    for name in SHARED_KERNELS:
-        (copy / name).parent.mkdir(parents=True, exist_ok=True)
-        (copy / name).write_bytes((ROOT / name).read_bytes())
+    shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns("data", "__pycache__"))
     monkeypatch.setattr("tracker.kernel_cache.__file__", str(copy / "kernel_cache.py"))
     assert choose_cache_folder(tmp_path) == before
-    (copy / SHARED_KERNELS[0]).write_text("changed")
-    assert choose_cache_folder(tmp_path) != before
+    (copy / name).write_text((copy / name).read_text() + "\nCHANGED = True\n")
+    assert (choose_cache_folder(tmp_path) != before) == starts_a_new_folder

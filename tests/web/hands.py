@@ -22,7 +22,8 @@ from server.registrations.models import RegistrationRow
 from server.settings import Settings
 from server.storage import Storage
 from server.storage.digest import compute_digest
-from tracker import Registration, load_scan, save_registration, save_scan, untrained_hand
+from tracker import Registration, save_registration, untrained_hand
+from tracker.capture.scan import load_scan, save_scan
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan
 from tracker.synthesis.scans.generated_scan import GeneratedScan
 from tracker.synthesis.scans.scanner import Scanner

@@ -19,7 +19,8 @@ import pytest
 
 from tests.web.conftest import ROOT, HeldBack
 from tests.web.test_accessibility import find_faults
-from tracker import Camera, load_sequence, triangulate
+from tracker import Camera, load_sequence
+from tracker.capture import triangulate
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 

@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from tests.web.hands import write_scans
-from tracker import load_scan, measure_size, save_scan
+from tracker.capture import measure_size
+from tracker.capture.scan import load_scan, save_scan
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(240)]
 

@@ -1,26 +1,49 @@
 """Cameras, frames, sequences and importers: bytes in, frames out."""
 
-from tracker.capture.annotations import Annotation as Annotation
-from tracker.capture.annotations import Annotations as Annotations
-from tracker.capture.annotations import load_annotations as load_annotations
-from tracker.capture.annotations import save_annotations as save_annotations
-from tracker.capture.archive import ArchiveLimits as ArchiveLimits
-from tracker.capture.archive import extract_archive as extract_archive
-from tracker.capture.camera import Camera as Camera
-from tracker.capture.frame import Frame as Frame
-from tracker.capture.frame_pattern import FramePattern as FramePattern
-from tracker.capture.frame_pattern import parse_pattern as parse_pattern
-from tracker.capture.import_check import IMPORT_FORMATS as IMPORT_FORMATS
-from tracker.capture.import_check import check_import as check_import
-from tracker.capture.import_options import ImportOptions as ImportOptions
-from tracker.capture.import_report import ImportReport as ImportReport
-from tracker.capture.import_run import run_import as run_import
-from tracker.capture.recorded_camera import RecordedCamera as RecordedCamera
-from tracker.capture.recorded_object import RecordedObject as RecordedObject
-from tracker.capture.relative_path import find_path_fault as find_path_fault
-from tracker.capture.sequence import Sequence as Sequence
-from tracker.capture.sequence import load_sequence as load_sequence
-from tracker.capture.sequence import save_sequence_json as save_sequence_json
-from tracker.capture.triangulation import Triangulation as Triangulation
-from tracker.capture.triangulation import triangulate as triangulate
-from tracker.capture.workplace import clean_leftovers as clean_leftovers
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tracker.lazy_names import offer
+
+if TYPE_CHECKING:
+    from tracker.capture.annotations import Annotation, Annotations, load_annotations, save_annotations
+    from tracker.capture.archive import ArchiveLimits, extract_archive
+    from tracker.capture.camera import Camera
+    from tracker.capture.frame import Frame
+    from tracker.capture.frame_pattern import FramePattern, parse_pattern
+    from tracker.capture.import_check import IMPORT_FORMATS, check_import
+    from tracker.capture.import_options import ImportOptions
+    from tracker.capture.import_picture import read_import_picture
+    from tracker.capture.import_plan import StreamProbe
+    from tracker.capture.import_report import ImportReport
+    from tracker.capture.import_run import run_import
+    from tracker.capture.joint_source import JointSource, JointSources
+    from tracker.capture.recorded_camera import RecordedCamera
+    from tracker.capture.recorded_object import RecordedObject
+    from tracker.capture.relative_path import find_path_fault
+    from tracker.capture.scan import find_unit
+    from tracker.capture.scan_size import (
+        HAND_LENGTHS,
+        LONGEST_SCENE,
+        SIZES_NEEDED,
+        find_possible_units,
+        find_size_fault,
+        is_certain,
+        measure_size,
+    )
+    from tracker.capture.sensor_presets import SENSOR_PRESETS
+    from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
+    from tracker.capture.source_choice import (
+        JUDGING,
+        choose_sources,
+        count_origins,
+        describe_origin,
+        find_counted,
+        find_origin,
+        say_left_out,
+    )
+    from tracker.capture.triangulation import Triangulation, triangulate
+    from tracker.capture.workplace import clean_leftovers
+
+__getattr__, __dir__ = offer(__name__)

@@ -19,7 +19,7 @@ from tracker.model.scene import PosedScene, Scene
 from tracker.observation import Observation
 from tracker.solver.elimination import solve_definite
 from tracker.terms.marked_joints import MarkedJoints
-from tracker.terms.residual import MILLIMETRES
+from tracker.terms.normal_equations import MILLIMETRES
 
 Array = npt.NDArray[np.float64]
 

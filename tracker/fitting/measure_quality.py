@@ -10,7 +10,7 @@ from numba import njit
 
 from tracker.fitting.quality import Quality
 from tracker.model.joints import HAND_JOINTS
-from tracker.observation import HAND, Observation
+from tracker.observation.observation import HAND, Observation
 from tracker.rendering import View
 
 ALIKE = 0.015

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numba import njit
 
-from tracker.observation import OTHER, Observation
+from tracker.observation.observation import OTHER, Observation
 from tracker.rendering import View
 
 ALIKE = 0.015

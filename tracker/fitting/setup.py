@@ -13,7 +13,8 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.capture.frame import CameraFrame, Frame
 from tracker.capture.sequence import Sequence
-from tracker.detection import Forest, OwnDetector, default_detector, load_detector, save_forest
+from tracker.detection import Forest, OwnDetector, load_detector, save_forest
+from tracker.detection.default_detector import default_detector
 from tracker.errors import TrackingError, reading
 from tracker.fitting.map_views import map_views
 from tracker.fitting.options import TrackOptions

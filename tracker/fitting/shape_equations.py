@@ -14,9 +14,10 @@ from tracker.model.hand_directions import HandDirections
 from tracker.model.scene import PosedScene, Scene
 from tracker.observation import Observation
 from tracker.solver.elimination import add_shared_rows, solve_definite, subtract_product
+from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.point_line import PointToLine
 from tracker.terms.point_plane import PointToPlane
-from tracker.terms.residual import MILLIMETRES, Residual
+from tracker.terms.residual import Residual
 
 Array = npt.NDArray[np.float64]
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from tracker.errors import TrackingError
 from tracker.fitting.options import TrackOptions
+from tracker.physics import find_physics_fault
 
 MAX_VIEWS = 16
 """Cameras of a run at most; more add time and hardly anything else."""
@@ -33,6 +34,8 @@ def find_tracking_faults(
         faults = [f"Camera {options.camera} has no depth images. Choose {' or '.join(depth_cameras)}."]
     else:
         faults = []
+    if "P" in options.term_letters and (fault := find_physics_fault()):
+        faults.append(fault)
     if not hands:
         faults.append("The recording does not say which hands it shows. Set its hands to right, left or both.")
     try:

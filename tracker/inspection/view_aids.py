@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.fitting.setup import TrackSetup
-from tracker.physics import PhysicsWorld
+from tracker.physics import PhysicsWorld, find_physics_fault
 from tracker.search.tools import Tools, make_tools
 
 
@@ -45,8 +45,8 @@ class ViewAids:
 
     @cached_property
     def world(self) -> PhysicsWorld | None:
-        """A world with the scene's hands and objects; None where there is not at least one of each."""
-        if not self.setup.hands or not self.setup.objects:
+        """A world with the scene's hands and objects; None without one of each, or without Bullet."""
+        if not self.setup.hands or not self.setup.objects or find_physics_fault():
             return None
         return self._stack.enter_context(self.setup.make_world(self._T_world_camera))
 

@@ -5,7 +5,14 @@ before. Both are those of MediaPipe Hands (Zhang et al., "MediaPipe Hands: On-de
 Apache-2.0), converted by `scripts/build_hand_networks.py`.
 """
 
-from tracker.landmarks.detected_hand import DetectedHand
-from tracker.landmarks.hand_detector import HandDetector, default_hand_detector
+from __future__ import annotations
 
-__all__ = ["DetectedHand", "HandDetector", "default_hand_detector"]
+from typing import TYPE_CHECKING
+
+from tracker.lazy_names import offer
+
+if TYPE_CHECKING:
+    from tracker.landmarks.detected_hand import DetectedHand
+    from tracker.landmarks.hand_detector import HandDetector, default_hand_detector
+
+__getattr__, __dir__ = offer(__name__)

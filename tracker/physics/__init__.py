@@ -1,6 +1,7 @@
 """Rigid-body simulation of hands and the object they hold; [T16] §3.2.6."""
 
 from tracker.capture.static_plane import StaticPlane
+from tracker.physics.bullet import find_physics_fault
 from tracker.physics.displacement import Displacement, measure_displacement, simulate
 from tracker.physics.plane_search import find_plane
 from tracker.physics.protocol import SD_OBMAN, SD_SEED, SEARCH, Protocol, find_down
@@ -30,6 +31,7 @@ __all__ = [
     "choose_down",
     "find_down",
     "find_part_bones",
+    "find_physics_fault",
     "find_plane",
     "find_settled_displacement",
     "find_support",

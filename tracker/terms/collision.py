@@ -9,9 +9,10 @@ from numba import njit
 
 from tracker.model.scene import PosedScene
 from tracker.terms.colliding_parts import find_crossings
+from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.penetration import find_swallowed
 from tracker.terms.point_plane import PointToPlane
-from tracker.terms.residual import MILLIMETRES, FrameContext
+from tracker.terms.residual import FrameContext
 
 REACH = 4.0
 """A field ends so many circumradii from its triangle; two crossing triangles of about one size are within three."""

@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
-from tracker.observation import HAND
 from tracker.observation.depth_edges import find_fall
+from tracker.observation.observation import HAND
 from tracker.terms.drawn_frame import Matches
 from tracker.terms.nearby_pixels import find_nearby_pixels
 from tracker.terms.point_line import PointToLine

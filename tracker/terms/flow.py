@@ -12,8 +12,9 @@ import numpy.typing as npt
 from tracker.model.scene import PosedScene
 from tracker.observation.image_flow import ImageFlow
 from tracker.rendering import render_view
+from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.point_line import PointToLine
-from tracker.terms.residual import MILLIMETRES, FrameContext
+from tracker.terms.residual import FrameContext
 
 Array = npt.NDArray[np.float64]
 

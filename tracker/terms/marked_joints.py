@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.model.scene import PosedScene, Scene
+from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.point_line import PointToLine
-from tracker.terms.residual import MILLIMETRES, FrameContext
+from tracker.terms.residual import FrameContext
 
 Array = npt.NDArray[np.float64]
 
@@ -69,17 +69,6 @@ def mark_joints(
     moments = np.cross(np.broadcast_to(origin, directions.shape), directions)
     own = np.ones(len(ids)) if beliefs is None else beliefs[marked]
     return MarkedJoints(ids, directions, moments, own, reach=reach)
-
-
-def join_joints(parts: Sequence[MarkedJoints]) -> MarkedJoints:
-    """The rays of several images or hands in one term, with the weight and reach of the first."""
-    return replace(
-        parts[0],
-        ids=np.concatenate([part.ids for part in parts]),
-        directions=np.concatenate([part.directions for part in parts]),
-        moments=np.concatenate([part.moments for part in parts]),
-        beliefs=np.concatenate([part.beliefs for part in parts]),
-    )
 
 
 def find_rays(points: Array, camera: Camera) -> Array:

@@ -18,6 +18,9 @@ from tracker.model.scene import PosedScene, Scene
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 
+MILLIMETRES = 1000.0
+"""Residuals are in mm: the paper's weights and thresholds mean something only there."""
+
 MAX_BONES = 12
 """Bones that one surface point can follow: three vertices of four each."""
 

@@ -10,8 +10,8 @@ from numba import njit
 
 from tracker.model.kinematics import vertex_jacobian
 from tracker.model.scene import PosedScene
-from tracker.terms.normal_equations import MAX_BONES, NormalEquations, add_row, gather_bones
-from tracker.terms.residual import MILLIMETRES, ResidualBlock
+from tracker.terms.normal_equations import MAX_BONES, MILLIMETRES, NormalEquations, add_row, gather_bones
+from tracker.terms.residual import ResidualBlock
 
 Array = npt.NDArray[np.float64]
 

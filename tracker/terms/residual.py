@@ -17,9 +17,6 @@ from tracker.terms.normal_equations import NormalEquations
 
 Array = npt.NDArray[np.float64]
 
-MILLIMETRES = 1000.0
-"""Residuals are in mm: the paper's weights and thresholds mean something only there."""
-
 
 @dataclass(frozen=True)
 class ResidualBlock:

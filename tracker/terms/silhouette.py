@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
-from tracker.observation import HAND
+from tracker.observation.observation import HAND
 from tracker.terms.drawn_frame import Matches
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext

@@ -14,7 +14,7 @@ from tracker.capture.camera import Camera
 from tracker.capture.triangulation import triangulate
 from tracker.fitting.view_hands import REACH
 from tracker.geometry import se3
-from tracker.terms.residual import MILLIMETRES
+from tracker.terms.normal_equations import MILLIMETRES
 from tracker.tracking.arrays_file import load_arrays, save_arrays
 
 Array = npt.NDArray[np.float64]

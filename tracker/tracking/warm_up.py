@@ -8,7 +8,8 @@ import numpy as np
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
-from tracker.detection import default_detector, find_fingertips
+from tracker.detection import find_fingertips
+from tracker.detection.default_detector import default_detector
 from tracker.fitting.calibration import CalibrationFrame, CalibrationOptions, calibrate_shapes
 from tracker.fitting.frame_fit import FitOptions, draw, fit_frame
 from tracker.fitting.object_quality import measure_object_quality
@@ -20,7 +21,7 @@ from tracker.model.ball import make_ball
 from tracker.model.default_hand import default_hand
 from tracker.model.scene import Scene
 from tracker.observation import Preprocessing, observe
-from tracker.physics import PhysicsWorld, find_down, find_support
+from tracker.physics import PhysicsWorld, find_down, find_physics_fault, find_support
 from tracker.rendering import render_depth
 from tracker.search.find_object import ObjectSearch, find_object
 from tracker.search.start_automatic import Search, find_hand
@@ -69,9 +70,10 @@ def warm_up(progress: Callable[[str, float], None] | None = None) -> None:
     tell("compiling the physics", 0.8)
     held = Scene((model, ball))
     beside = np.r_[start, T[:3, 3] - np.array([0.0, 0.0, 0.06]), np.zeros(3)]
-    with PhysicsWorld(held, down=find_down(np.eye(4))) as world:
-        support = find_support(world, held.pose_at(beside))
-    Physics(support.candidates).find(held.pose_at(beside))
+    if not find_physics_fault():
+        with PhysicsWorld(held, down=find_down(np.eye(4))) as world:
+            support = find_support(world, held.pose_at(beside))
+        Physics(support.candidates).find(held.pose_at(beside))
     measure_object_quality(draw(held.pose_at(beside), seen), seen, 1)
     remove_old_caches()
     tell("kernels are compiled", 1.0)

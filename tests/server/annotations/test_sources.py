@@ -13,7 +13,8 @@ from server.annotations.models import AnnotationRow
 from server.annotations.schemas import AnnotationOut, JointSourceOut
 from server.annotations.sources import count_decided
 from server.database import Database
-from tracker import JointSource, load_annotations
+from tracker import load_annotations
+from tracker.capture import JointSource
 
 FIRST = {"If-None-Match": "*"}
 TRACK = {"kind": "track", "label": "Track 2", "track_id": str(uuid.UUID(int=7)), "model": "hand"}

@@ -19,8 +19,8 @@ def measure(capsys: pytest.CaptureFixture[str], *options: str) -> tuple[int, dic
 
 @pytest.mark.slow
 def test_annotators_lose_nothing_when_the_studio_is_killed_under_them(capsys) -> None:
-    # The first kill comes after 5 s: on a busy machine the annotators' first look takes more than 1.5 s, and then no
-    # save is under way.
+    # The first kill comes after 5 s: on a busy machine the annotators' first look takes more than 1.5 s, and before it
+    # no save is under way.
     code, result = measure(capsys, "--annotators", "6", "--seconds", "15", "--kill-every", "5", "--listeners", "3")
     assert code == 0 and result["faults"] == []
     assert result["restarts"] >= 1 and result["sent_again"] > 0 and result["gestures"] > 0

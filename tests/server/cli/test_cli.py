@@ -251,7 +251,7 @@ def test_the_demo_makes_its_samples_once_and_tracks_one(tmp_path: Path) -> None:
 
 
 def test_the_help_of_import_names_the_formats_there_are() -> None:
-    from tracker import IMPORT_FORMATS
+    from tracker.capture import IMPORT_FORMATS
 
     command = [sys.executable, "-m", "server.cli", "import", "--help"]
     shown = subprocess.run(command, capture_output=True, text=True, check=True).stdout

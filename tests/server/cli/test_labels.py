@@ -12,7 +12,9 @@ import pytest
 from server.cli import main
 from server.cli.export_command import LABELS
 from tests.server.conftest import MakeRecording
-from tracker import HAND_JOINTS, LABEL_FORMATS, Annotation, load_annotations, save_annotations
+from tracker import HAND_JOINTS, Annotation, load_annotations
+from tracker.capture.annotations import save_annotations
+from tracker.label_formats import LABEL_FORMATS
 
 
 @pytest.fixture

@@ -17,7 +17,8 @@ from sqlalchemy import select
 from server.access.models import AuditRow
 from tests.server.conftest import AddRecording, Studio
 from tests.server.jobs.test_worker import Bench, bench
-from tracker import TrackSetup, load_detector
+from tracker import TrackSetup
+from tracker.detection import load_detector
 from tracker.detection.default_detector import DATA as DETECTOR
 from tracker.landmarks.network import DATA as NETWORKS
 

@@ -14,7 +14,7 @@ from fastapi.testclient import TestClient
 from server.annotations.schemas import SourceChoice
 from tests.server.conftest import Studio, Tracked
 from tests.server.evaluations.conftest import AddShifted
-from tracker import SOURCE_CHOICES
+from tracker.capture.source_choice import SOURCE_CHOICES
 
 API = "/api/v1"
 OFF = 7.0

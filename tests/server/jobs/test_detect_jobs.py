@@ -15,7 +15,7 @@ from server.jobs.detections import AREA, find_detections
 from server.jobs.restarting import list_kept
 from tests.server.conftest import BASE_URL, AddRecording
 from tests.server.jobs.test_worker import Bench, bench, bench_on_both, wait_for_failure
-from tracker import load_recorded_hands
+from tracker.detection import load_recorded_hands
 
 __all__ = ["bench", "bench_on_both"]
 

@@ -11,7 +11,8 @@ import pytest
 from server.database import utc_now
 from server.jobs.detections import AREA
 from server.jobs.service import create_job
-from tracker import Annotation, Annotations, RecordedHands
+from tracker import Annotation, Annotations
+from tracker.detection import RecordedHands
 
 Keep = Callable[[uuid.UUID, RecordedHands], None]
 

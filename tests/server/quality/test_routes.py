@@ -17,7 +17,9 @@ from server.jobs.service import create_job
 from server.quality import service
 from server.suggestions.service import warm_up
 from tests.server.quality.errors import Item, inject
-from tracker import default_hand_detector, detect_hands, load_sequence
+from tracker import load_sequence
+from tracker.detection import detect_hands
+from tracker.landmarks import default_hand_detector
 
 
 @pytest.fixture

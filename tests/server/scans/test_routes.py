@@ -16,7 +16,7 @@ from server.scans.geometry import CROPPED, LEFT_OUT, pack_arrays, unpack_arrays
 from tests.server.conftest import Studio
 from tests.server.curation import API, make_ball, send_scans
 from tests.server.teams.conftest import Join, join
-from tracker import save_scan
+from tracker.capture.scan import save_scan
 
 __all__ = ["join"]
 

@@ -7,7 +7,8 @@ import dataclasses
 import numpy as np
 
 from server.sequences.content_key import compute_content_key
-from tracker import Annotation, load_sequence, save_annotations, save_sequence_json
+from tracker import Annotation, load_sequence, save_sequence_json
+from tracker.capture.annotations import save_annotations
 
 
 def test_any_byte_of_an_image_changes_it(make_recording) -> None:

@@ -10,7 +10,7 @@ import zipfile
 from pathlib import Path
 
 from tests.server.curation import API, Curation, curation, join
-from tracker import load_training_set
+from tracker.training import load_training_set
 
 __all__ = ["curation", "join"]
 

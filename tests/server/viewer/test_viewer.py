@@ -200,7 +200,8 @@ def test_the_scene_itself_ignores_a_request_for_a_tunnel(studio, tracked_folder,
     from viser import _messages
 
     from server.viewer.scene import ViewerScene
-    from tracker import describe_frame, load_sequence, load_track
+    from tracker import load_sequence, load_track
+    from tracker.inspection import describe_frame
 
     sequence, track = load_sequence(rendered), load_track(tracked_folder)
     view = describe_frame(sequence, track.setup, track.pose[0], 0)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tracker.detection import default_detector
 from tracker.detection.annotated_images import annotated_images
+from tracker.detection.default_detector import default_detector
 from tracker.evaluation.detector_study import judge_detector, judge_image
 from tracker.synthesis.fingertip_images import render_fingertip_images
 from tracker.synthesis.random_hands import RandomHands

@@ -9,7 +9,8 @@ import pytest
 
 from tracker.capture.camera import Camera
 from tracker.capture.frame import Frame
-from tracker.detection import default_detector, find_fingertips
+from tracker.detection import find_fingertips
+from tracker.detection.default_detector import default_detector
 from tracker.detection.detection import Detection
 from tracker.fitting.frame_fit import label_scene
 from tracker.fitting.region import region_around

@@ -11,7 +11,8 @@ import pytest
 from tests.tracker.grips import ball
 from tracker.capture.annotations import Annotations
 from tracker.capture.recorded_object import RecordedObject
-from tracker.detection import OwnDetector, default_detector
+from tracker.detection import OwnDetector
+from tracker.detection.default_detector import default_detector
 from tracker.errors import TrackingError
 from tracker.fitting.options import TrackOptions
 from tracker.fitting.setup import TrackSetup

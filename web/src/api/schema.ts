@@ -5024,6 +5024,11 @@ export interface components {
              */
             displacement_mm: number;
             /**
+             * Fault
+             * @description Why nothing can be simulated on this machine; null where it can.
+             */
+            fault: string | null;
+            /**
              * Held Displacement Mm
              * @description With the chosen parts in contact.
              */
@@ -5037,7 +5042,7 @@ export interface components {
             is_stable: boolean;
             /**
              * Object
-             * @description Null where there is no object or no hand.
+             * @description Null where nothing was simulated.
              */
             object: string | null;
             /**

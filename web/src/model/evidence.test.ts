@@ -2,13 +2,14 @@ import { expect, test } from "vitest";
 import type { ViewerSession } from "../api/types";
 import { countOf, describeCollisions, describeContacts, describeDetections, describeOrigin, describeUnknown } from "./evidence";
 
-const contacts = { is_of_run: true, object: "pipe", is_stable: false, displacement_mm: 36, held_displacement_mm: 36, simulated: 4, parts: [] };
+const contacts = { is_of_run: true, fault: null, object: "pipe", is_stable: false, displacement_mm: 36, held_displacement_mm: 36, simulated: 4, parts: [] };
 const part = { hand: "right", part: "index distal", distance_mm: 2, is_chosen: false };
 
 test("a frame where nothing is found says so", () => {
   expect(describeDetections({ is_of_run: true, own_detector: null, items: [] })).toContain("No fingertip was found");
   expect(describeCollisions({ is_of_run: true, triangles: 0, vertices: 0, deepest_mm: 0, full_mm: 5, pairs: [] })).toBe("Nothing stands in anything else here.");
   expect(describeContacts({ ...contacts, object: null })).toContain("needs an object and a hand");
+  expect(describeContacts({ ...contacts, object: null, fault: "Physics needs pybullet." })).toBe("Physics needs pybullet.");
 });
 
 test("an object is held, or falls for want of fingers, or would be held by those chosen", () => {

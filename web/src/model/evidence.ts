@@ -28,7 +28,8 @@ export function describeCollisions({ pairs, vertices, deepest_mm: deepest }: Col
   return `${formatCount(vertices, "vertex is", "vertices are")} inside, ${mm(deepest)} deep at most.`;
 }
 
-export function describeContacts({ object, is_stable: isStable, displacement_mm: moved, held_displacement_mm: held, parts }: Contacts): string {
+export function describeContacts({ fault, object, is_stable: isStable, displacement_mm: moved, held_displacement_mm: held, parts }: Contacts): string {
+  if (fault !== null) return fault;
   if (object === null) return "There is nothing to hold: physics needs an object and a hand.";
   const thing = `The ${object.replaceAll("_", " ")}`;
   if (isStable) return `${thing} is held: simulated, it moves ${mm(moved)} (less than ${STABLE_BELOW_MM} mm).`;

@@ -7,9 +7,9 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from benchmarks.baselines import SwarmOptions, track_with_swarm
+from benchmarks.baselines.swarm_tracker import search_pose, thin_to
 from tests.tracker.scenes import drawn_tube
-from tracker.baselines import SwarmOptions, track_with_swarm
-from tracker.baselines.swarm_tracker import search_pose, thin_to
 from tracker.capture.annotations import load_annotations
 from tracker.capture.truth import load_truth
 from tracker.evaluation import evaluate_against_truth

@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from tracker.baselines.discrepancy import Discrepancy
-from tracker.baselines.swarm import Bounds, Found, search_with_swarm
-from tracker.baselines.swarm_options import SwarmOptions
+from benchmarks.baselines.discrepancy import Discrepancy
+from benchmarks.baselines.swarm import Bounds, Found, search_with_swarm
+from benchmarks.baselines.swarm_options import SwarmOptions
 from tracker.capture.sequence import Sequence
 from tracker.fitting.frame_fit import draw
 from tracker.fitting.measure_quality import measure_quality

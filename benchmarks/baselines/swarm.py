@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 import numpy.typing as npt
 
-from tracker.baselines.swarm_options import SwarmOptions
+from benchmarks.baselines.swarm_options import SwarmOptions
 
 Array = npt.NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from time import perf_counter
 import numpy as np
 import pytest
 
-from tracker.baselines.swarm import Bounds, search_with_swarm
-from tracker.baselines.swarm_options import SwarmOptions
+from benchmarks.baselines.swarm import Bounds, search_with_swarm
+from benchmarks.baselines.swarm_options import SwarmOptions
 from tracker.errors import TrackingError
 
 GOAL = np.array([0.3, -0.2, 0.1, 0.4])

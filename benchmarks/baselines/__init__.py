@@ -1,6 +1,6 @@
 """Trackers of others, written anew on our model, renderer and data, to compare ours with."""
 
-from tracker.baselines.swarm_options import SwarmOptions
-from tracker.baselines.swarm_tracker import track_with_swarm
+from benchmarks.baselines.swarm_options import SwarmOptions
+from benchmarks.baselines.swarm_tracker import track_with_swarm
 
 __all__ = ["SwarmOptions", "track_with_swarm"]

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from benchmarks.baselines.discrepancy import ALIKE, CUT, SILHOUETTE_WEIGHT, Discrepancy
 from tests.tracker.scenes import drawn_tube
-from tracker.baselines.discrepancy import ALIKE, CUT, SILHOUETTE_WEIGHT, Discrepancy
 from tracker.fitting.frame_fit import draw, label_scene
 from tracker.observation import HAND
 

@@ -1,0 +1,1 @@
+"""Scans of whole people with their hands, still and moving: [R17] section 4."""

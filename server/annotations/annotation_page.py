@@ -10,11 +10,11 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
+from server.access.places import HiddenPlaces
 from server.access.service import find_names
 from server.annotations import service
 from server.annotations.models import AnnotationRow
 from server.annotations.schemas import SOURCE_DEFAULTS
-from server.annotations.service import HiddenPlaces
 from server.compute import ComputeContext
 
 

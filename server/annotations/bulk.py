@@ -11,8 +11,8 @@ from sqlalchemy import select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
+from server.access.places import Place
 from server.annotations.models import Act, AnnotationRevisionRow, AnnotationRow
-from server.annotations.service import Place
 from server.annotations.sources import count_decided, settle_sources
 from server.database import utc_now
 from server.errors import ConflictError

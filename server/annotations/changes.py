@@ -1,7 +1,7 @@
 """Changes of annotations. Fifty people who click make one a second each, so a change is four plain statements.
 
-One looks up all that there is at the place, one what the assignments say (`guards.py`), two store the change. They are
-written once: to put them together anew, and to keep the rows as objects, took longer than the database.
+One looks up all that there is at the place, one what the assignments say (`access/policy.py`), two store the change.
+They are written once: to put them together anew, and to keep the rows as objects, took longer than the database.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from server.access.models import Account
+from server.access.places import Place
 from server.annotations.models import Act, AnnotationRevisionRow, AnnotationRow
-from server.annotations.service import Extent, Place, check_place, check_points
+from server.annotations.service import Extent, check_place, check_points
 from server.annotations.sources import count_decided, imported_sources, settle_sources, write_sources
 from server.database import Base, utc_now
 from server.errors import ConflictError, InvalidError, NotFoundError
@@ -141,7 +142,7 @@ def change_annotation(
     """Do it, if the annotation is as expected. A repeated operation does nothing and gives what it made at first.
 
     Args:
-        check: Raises when it must not be done (`guards.check_change`). A repeated operation is not asked again: its
+        check: Raises when it must not be done (`policy.check_change`). A repeated operation is not asked again: its
             work may have been locked since.
     """
     found = look_up(session, place, change.operation_id)

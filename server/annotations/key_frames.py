@@ -9,8 +9,8 @@ from sqlalchemy import delete, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
+from server.access.places import HiddenPlaces, Place
 from server.annotations.models import KeyFrameRow
-from server.annotations.service import HiddenPlaces, Place
 
 MAX_KEY_FRAMES = 100_000
 """Of one recording; more are no help."""

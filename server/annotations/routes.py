@@ -11,12 +11,13 @@ from fastapi import APIRouter, Depends, Path, Query, Response
 from fastapi.responses import JSONResponse
 from sqlalchemy.orm import Session
 
+from server.access import policy
 from server.access.models import Account
+from server.access.places import HiddenPlaces, Place
 from server.access.service import CurrentAccount, find_names
-from server.annotations import guards, key_frames, service
+from server.annotations import key_frames, service
 from server.annotations.annotation_page import AnnotationQuestion, make_annotation_page
 from server.annotations.changes import Change, Marked, StaleAnnotationError, change_annotation, look_up
-from server.annotations.guards import GuardsDep, PlaceGuard
 from server.annotations.models import AnnotationRevisionRow
 from server.annotations.schemas import (
     AnnotationConflict,
@@ -29,7 +30,6 @@ from server.annotations.schemas import (
     KeyFrame,
     KeyFrames,
 )
-from server.annotations.service import HiddenPlaces, Place
 from server.compute import ComputeDep
 from server.database import AdmissionDep, SessionDep
 from server.database.frames import FramePath
@@ -84,9 +84,9 @@ async def get_place(address: AddressDep, sequence: SequenceDep) -> Place:
 PlaceDep = Annotated[Place, Depends(get_place)]
 
 
-def get_readable_place(place: PlaceDep, session: SessionDep, account: CurrentAccount, guarding: GuardsDep) -> Place:
+def get_readable_place(place: PlaceDep, session: SessionDep, account: CurrentAccount) -> Place:
     """The place of the address, if whoever asks may read it."""
-    guards.check_read(guarding, session, account, place)
+    policy.check_read(session, account, place)
     return place
 
 
@@ -99,7 +99,6 @@ async def list_annotations(
     admission: AdmissionDep,
     compute: ComputeDep,
     account: CurrentAccount,
-    guarding: GuardsDep,
     replica: ReplicaQuery = None,
     camera: Annotated[str | None, Query(max_length=64)] = None,
     from_: Annotated[FrameQuery, Query(alias="from", description="First frame.")] = None,
@@ -112,7 +111,7 @@ async def list_annotations(
 
     def look(session: Session) -> Sequence[HiddenPlaces]:
         get_sequence(session, sequence_id)
-        return guards.find_hidden(guarding, session, account, sequence_id, name)
+        return policy.find_hidden(session, account, sequence_id, name)
 
     hidden = await admission.read(look)
     asked = AnnotationQuestion(sequence_id, hidden, name, camera, (from_, to), cursor, limit)
@@ -124,24 +123,21 @@ def get_annotation_file(
     sequence: SequenceDep,
     session: SessionDep,
     account: CurrentAccount,
-    guarding: GuardsDep,
     replica: ReplicaDep,
 ) -> JSONResponse:
     """All annotations as the file `annotations.json` of a recording folder."""
-    hidden = guards.find_hidden(guarding, session, account, sequence.id, replica)
+    hidden = policy.find_hidden(session, account, sequence.id, replica)
     headers = name_download(sequence.name, "annotations", suffix=".json")
     return JSONResponse(service.export_annotations(session, sequence.id, replica, hidden), headers=headers)
 
 
 @router.get("/annotations/{camera}/{frame}/{hand}", response_model=AnnotationOut)
-async def get_annotation(
-    place: AddressDep, admission: AdmissionDep, account: CurrentAccount, guarding: GuardsDep
-) -> Response:
+async def get_annotation(place: AddressDep, admission: AdmissionDep, account: CurrentAccount) -> Response:
     """One annotation; its `ETag` is what a change must send as `If-Match`."""
 
     def read(session: Session) -> Marked:
         now = look_up(session, place).now
-        guards.check_read(guarding, session, account, place)
+        policy.check_read(session, account, place)
         if now is None or now.points is None:
             raise NotFoundError(f"There is no annotation of {place}.")
         return now
@@ -155,7 +151,6 @@ async def put_annotation(
     body: AnnotationPut,
     admission: AdmissionDep,
     account: CurrentAccount,
-    guarding: GuardsDep,
     if_match: IfMatch = None,
     if_none_match: IfNoneMatch = None,
 ) -> Response:
@@ -168,7 +163,7 @@ async def put_annotation(
     if body.sources is not None:
         sources = [source and source.model_dump(mode="json", exclude_defaults=True) for source in body.sources]
     change = Change("put", body.points, expected, body.operation_id, account.id, sources)
-    made = await admission.write(lambda session: _change(session, account, guarding, place, change))
+    made = await admission.write(lambda session: _change(session, account, place, change))
     return _answer(place, made)
 
 
@@ -177,7 +172,6 @@ def delete_annotation(
     place: PlaceDep,
     session: SessionDep,
     account: CurrentAccount,
-    guarding: GuardsDep,
     response: Response,
     if_match: IfMatch = None,
     operation_id: Annotated[uuid.UUID | None, Query(description="As in PUT.")] = None,
@@ -185,7 +179,7 @@ def delete_annotation(
     """Delete an annotation; its history stays, and every revision of it can be restored."""
     expected = read_if_match(if_match)
     change = Change("delete", None, expected, operation_id or uuid.uuid4(), account.id)
-    response.headers["ETag"] = write_etag(_change(session, account, guarding, place, change).revision)
+    response.headers["ETag"] = write_etag(_change(session, account, place, change).revision)
 
 
 @router.get("/annotations/{camera}/{frame}/{hand}/history")
@@ -211,7 +205,6 @@ def restore_annotation(
     body: AnnotationRestore,
     session: SessionDep,
     account: CurrentAccount,
-    guarding: GuardsDep,
     if_match: IfMatch = None,
 ) -> Response:
     """Make an earlier revision the current one again, as a new revision."""
@@ -219,30 +212,30 @@ def restore_annotation(
     past = service.get_past(session, row, revision)
     expected = read_if_match(if_match)
     change = Change("restore", past.points, expected, body.operation_id, account.id, past.sources)
-    return _answer(place, _change(session, account, guarding, place, change))
+    return _answer(place, _change(session, account, place, change))
 
 
 @router.get("/key-frames")
 def list_key_frames(
-    sequence: SequenceDep, session: SessionDep, account: CurrentAccount, guarding: GuardsDep, replica: ReplicaDep
+    sequence: SequenceDep, session: SessionDep, account: CurrentAccount, replica: ReplicaDep
 ) -> KeyFrames:
     """Hands that people made key frames: between two of them the annotator proposes the rest."""
-    hidden = guards.find_hidden(guarding, session, account, sequence.id, replica)
+    hidden = policy.find_hidden(session, account, sequence.id, replica)
     rows = key_frames.list_key_frames(session, sequence.id, replica, hidden)
     return KeyFrames(items=[KeyFrame.model_validate(row) for row in rows])
 
 
 @router.put("/key-frames/{camera}/{frame}/{hand}", status_code=204)
-def add_key_frame(place: PlaceDep, session: SessionDep, account: CurrentAccount, guarding: GuardsDep) -> None:
+def add_key_frame(place: PlaceDep, session: SessionDep, account: CurrentAccount) -> None:
     """Make the hand a key frame; who may mark it may do this. Twice does no harm."""
-    guards.check_change(guarding, session, account, place)
+    policy.check_change(session, account, place)
     key_frames.add_key_frame(session, place, account.id)
 
 
 @router.delete("/key-frames/{camera}/{frame}/{hand}", status_code=204)
-def remove_key_frame(place: PlaceDep, session: SessionDep, account: CurrentAccount, guarding: GuardsDep) -> None:
+def remove_key_frame(place: PlaceDep, session: SessionDep, account: CurrentAccount) -> None:
     """The hand is a key frame no more; its joints stay. Twice does no harm."""
-    guards.check_change(guarding, session, account, place)
+    policy.check_change(session, account, place)
     key_frames.remove_key_frame(session, place)
 
 
@@ -254,10 +247,10 @@ def _read_expected(if_match: str | None, if_none_match: str | None) -> int | Non
     return None
 
 
-def _change(session: Session, account: Account, guarding: Sequence[PlaceGuard], place: Place, change: Change) -> Marked:
+def _change(session: Session, account: Account, place: Place, change: Change) -> Marked:
     """Do it; when somebody else was first, the answer carries theirs."""
     try:
-        made = change_annotation(session, place, change, lambda: guards.check_change(guarding, session, account, place))
+        made = change_annotation(session, place, change, lambda: policy.check_change(session, account, place))
     except StaleAnnotationError as stale:
         now = stale.now
         theirs = None if now is None or now.points is None else _describe_marked(place, now).model_dump(mode="json")

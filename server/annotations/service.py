@@ -11,26 +11,13 @@ import numpy as np
 from sqlalchemy import Label, and_, case, distinct, func, not_, null, select, tuple_
 from sqlalchemy.orm import Session
 
+from server.access.places import HiddenPlaces, Place
 from server.annotations.models import AnnotationRevisionRow, AnnotationRow
 from server.annotations.sources import JOINT_COUNT, read_sources
 from server.database.paging import read_cursor, write_cursor
 from server.errors import InvalidError, NotFoundError
 from server.sequences.models import SequenceRow
 from tracker import Annotation, Annotations
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where an annotation belongs: one hand in one image, in a blind replica or (empty) for everybody."""
-
-    sequence_id: uuid.UUID
-    camera: str
-    frame: int
-    hand: str
-    replica: str = ""
-
-    def __str__(self) -> str:
-        return f"the {self.hand} hand in frame {self.frame} of {self.camera}"
 
 
 @dataclass(frozen=True)
@@ -41,18 +28,6 @@ class Extent:
     name: str
     frame_count: int
     cameras: list[Any]
-
-
-@dataclass(frozen=True)
-class HiddenPlaces:
-    """Places that somebody must not read: every one of these hands in every one of these cameras and frames."""
-
-    frames: frozenset[int]
-    cameras: frozenset[str]
-    hands: frozenset[str]
-
-    def __contains__(self, place: Place) -> bool:
-        return place.frame in self.frames and place.camera in self.cameras and place.hand in self.hands
 
 
 def check_place(sequence: SequenceRow | Extent, camera: str, frame: int, hand: str, replica: str = "") -> Place:

@@ -20,15 +20,12 @@ from server.app.document import DocumentedApp
 from server.app.error_handler import install_error_handler
 from server.app.methods import Methods
 from server.app.parts import (
-    BIN_KINDS,
     LIFESPANS,
     PAGE_ROUTERS,
-    PLACE_GUARDS,
     ROUTERS,
     SCAN_RESIZED,
     SCAN_SUMMARIES,
     SEQUENCE_SUMMARIES,
-    SIGHT_GUARDS,
 )
 from server.app.request_checks import RequestChecks
 from server.compute import Compute
@@ -62,10 +59,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.login_throttle = LoginThrottle()
     app.state.visits = Visits()
     app.state.watches = Watches()
-    app.state.place_guards = PLACE_GUARDS
-    app.state.sight_guards = SIGHT_GUARDS
     app.state.sequence_summaries = SEQUENCE_SUMMARIES
-    app.state.bin_kinds = BIN_KINDS
     app.state.scan_summaries = SCAN_SUMMARIES
     app.state.scan_resized = SCAN_RESIZED
     install_error_handler(app)

@@ -10,52 +10,41 @@ from fastapi import APIRouter, FastAPI
 from server.access import login_routes, people_routes, token_routes
 from server.access import routes as accounts
 from server.annotations import routes as annotations
-from server.annotations.guards import PlaceGuard
 from server.annotations.service import find_annotated_frames
 from server.app import health
 from server.bin import routes as bin_routes
-from server.bin.kinds import BinKind
 from server.calibrations import board_routes
 from server.calibrations import routes as calibrations
-from server.calibrations.bin import CALIBRATIONS
 from server.calibrations.lifespan import clean_films
-from server.decisions import routes as decisions
 from server.detectors import routes as detectors
-from server.detectors.bin import DETECTORS
 from server.evaluations import routes as evaluations
 from server.exchange import routes as exchange
 from server.exchange import snapshot_routes
 from server.hand_models import routes as hand_models
-from server.hand_models.bin import HAND_MODELS
 from server.imports import routes as imports
 from server.imports.lifespan import clean_imports
 from server.jobs import routes as jobs
-from server.lineage import routes as lineage
 from server.live import routes as live
 from server.quality import queue_routes as quality_queue
 from server.quality import routes as quality
 from server.refinements import routes as refinements
+from server.registrations import decision_routes as decisions
+from server.registrations import lineage_routes as lineage
 from server.registrations import model_routes
 from server.registrations import routes as registrations
+from server.registrations import training_set_routes as training_sets
 from server.registrations.service import find_newest, settle_current
 from server.scans import routes as scans
-from server.scans.bin import SCANS
 from server.scans.summaries import Resized
 from server.scans.summaries import SummaryFinder as ScanSummaryFinder
 from server.sequences import frame_routes
 from server.sequences import routes as sequences
-from server.sequences.bin import RECORDINGS
 from server.sequences.summaries import SummaryFinder
 from server.suggestions import routes as suggestions
 from server.suggestions import triangulation_routes
 from server.teams import routes as teams
-from server.teams.bin import PROJECTS, REPLICA_SETS
-from server.teams.guard import ASSIGNMENTS, check_sees_tracks
 from server.tracks import routes as tracks
 from server.tracks.best_tracks import find_best_tracks
-from server.tracks.bin import TRACKS
-from server.tracks.guard import SightGuard
-from server.training_sets import routes as training_sets
 from server.viewer import routes as viewer
 
 Lifespan = Callable[[FastAPI], AbstractAsyncContextManager[None]]
@@ -111,21 +100,3 @@ SCAN_SUMMARIES: tuple[ScanSummaryFinder, ...] = (find_newest,)
 
 SCAN_RESIZED: tuple[Resized, ...] = (settle_current,)
 """What rooms above the scans do when the size of one was corrected."""
-
-BIN_KINDS: tuple[BinKind, ...] = (
-    RECORDINGS,
-    TRACKS,
-    SCANS,
-    HAND_MODELS,
-    DETECTORS,
-    CALIBRATIONS,
-    PROJECTS,
-    REPLICA_SETS,
-)
-"""What is put into the bin instead of being destroyed."""
-
-PLACE_GUARDS: tuple[PlaceGuard, ...] = (ASSIGNMENTS,)
-"""What rooms above the annotations forbid at a place."""
-
-SIGHT_GUARDS: tuple[SightGuard, ...] = (check_sees_tracks,)
-"""What rooms above the tracks forbid to look at."""

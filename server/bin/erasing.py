@@ -93,9 +93,9 @@ def _find_reach(kind: BinKind, id_: uuid.UUID) -> Reach:
     return reach
 
 
-def describe(session: Session, storage: Storage, kinds: Sequence[BinKind], name: str, id_: uuid.UUID) -> BinErasure:
+def describe(session: Session, storage: Storage, name: str, id_: uuid.UUID) -> BinErasure:
     """What would go with a thing in the bin, and why it cannot go if it cannot."""
-    kind = _find_binned(session, kinds, name, id_)
+    kind = _find_binned(session, name, id_)
     return _describe(session, storage, kind, id_, _find_reach(kind, id_))
 
 
@@ -117,10 +117,10 @@ def _describe(session: Session, storage: Storage, kind: BinKind, id_: uuid.UUID,
 
 
 def erase(
-    session: Session, storage: Storage, kinds: Sequence[BinKind], account: Account, name: str, id_: uuid.UUID
+    session: Session, storage: Storage, account: Account, name: str, id_: uuid.UUID
 ) -> list[tuple[str, uuid.UUID]]:
     """Delete the rows; gives the folders and documents that are left without one, to be removed after the commit."""
-    kind = _find_binned(session, kinds, name, id_)
+    kind = _find_binned(session, name, id_)
     reach = _find_reach(kind, id_)
     told = _describe(session, storage, kind, id_, reach)
     if told.obstacle is not None:
@@ -146,8 +146,8 @@ def remove_files(storage: Storage, left: Sequence[tuple[str, uuid.UUID]]) -> Non
             storage.remove(area, id_)
 
 
-def _find_binned(session: Session, kinds: Sequence[BinKind], name: str, id_: uuid.UUID) -> BinKind:
-    kind = find_kind(kinds, name)
+def _find_binned(session: Session, name: str, id_: uuid.UUID) -> BinKind:
+    kind = find_kind(name)
     if not is_deleted(session, kind, id_):
         raise NotFoundError(f"The bin holds no {kind.word} {id_}. Somebody may have brought it back, or deleted it.")
     return kind

@@ -1,20 +1,32 @@
-"""What a kind of thing tells of itself, so that the bin can show it, bring it back and delete it for good."""
+"""The kinds of things that are put into the bin: how each is shown, brought back and deleted for good."""
 
 from __future__ import annotations
 
 import uuid
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import Depends
 from sqlalchemy import SQLColumnExpression
 from sqlalchemy.orm import Session
-from starlette.requests import HTTPConnection
 
 from server.access.audit import record_act
 from server.access.models import Account
+from server.access.project_models import ProjectRow, ReplicaSetRow
+from server.calibrations.models import CalibrationRow
+from server.calibrations.storing import AREA as CALIBRATION_AREA
 from server.database import Base
+from server.detectors.models import DetectorRow
+from server.detectors.service import AREA as DETECTOR_AREA
+from server.hand_models.models import HandModelRow
+from server.hand_models.service import AREA as HAND_MODEL_AREA
+from server.scans.models import ScanRow
+from server.scans.service import AREA as SCAN_AREA
+from server.sequences.models import SequenceRow
+from server.sequences.service import AREA as RECORDING_AREA
+from server.teams import projects, replicas
+from server.tracks.models import TrackRow
+from server.tracks.service import AREA as TRACK_AREA
 
 
 @dataclass(frozen=True)
@@ -58,9 +70,29 @@ def make_kind(
     return BinKind(kind, word, row, row.deleted_at, restore, parent, area)  # pyright: ignore[reportAttributeAccessIssue]
 
 
-async def get_bin_kinds(connection: HTTPConnection) -> tuple[BinKind, ...]:
-    """Those the app was put together with."""
-    return connection.app.state.bin_kinds
-
-
-BinKindsDep = Annotated[tuple[BinKind, ...], Depends(get_bin_kinds)]
+BIN_KINDS: tuple[BinKind, ...] = (
+    make_kind("recording", "recording", SequenceRow, RECORDING_AREA),
+    make_kind("track", "track", TrackRow, TRACK_AREA, ("recording", TrackRow.sequence_id)),
+    make_kind("scan", "scan", ScanRow, SCAN_AREA),
+    make_kind("hand_model", "hand model", HandModelRow, HAND_MODEL_AREA),
+    make_kind("detector", "fingertip detector", DetectorRow, DETECTOR_AREA),
+    make_kind("calibration", "camera calibration", CalibrationRow, CALIBRATION_AREA),
+    BinKind(
+        kind="project",
+        word="project",
+        row=ProjectRow,
+        deleted_at=ProjectRow.archived_at,
+        restore=lambda session, account, id_: projects.archive_project(session, account, id_, is_archived=False),
+    ),
+    BinKind(
+        kind="replica_set",
+        word="blind replica",
+        row=ReplicaSetRow,
+        deleted_at=ReplicaSetRow.deleted_at,
+        restore=lambda session, account, id_: replicas.withdraw_replica_set(
+            session, account, replicas.get_replica_set(session, id_, hold=True, deleted_too=True), is_withdrawn=False
+        ),
+        parent=("project", ReplicaSetRow.project_id),
+    ),
+)
+"""In the order in which a message lists them."""

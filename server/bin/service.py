@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from server.access.models import Account, AuditRow
 from server.access.service import find_names
-from server.bin.kinds import BinKind
+from server.bin.kinds import BIN_KINDS, BinKind
 from server.bin.schemas import BinItem
 from server.database.paging import read_moment_cursor, write_cursor
 from server.errors import ConflictError, NotFoundError
@@ -20,11 +20,11 @@ ACTS = ("delete", "archive", "withdraw")
 
 
 def list_bin(
-    session: Session, storage: Storage, kinds: Sequence[BinKind], only: str | None, cursor: str | None, limit: int
+    session: Session, storage: Storage, only: str | None, cursor: str | None, limit: int
 ) -> tuple[list[BinItem], str | None]:
     """What was deleted, the last first; with `only`, of one kind."""
-    by_name = {kind.kind: kind for kind in kinds}
-    chosen = kinds if only is None else [find_kind(kinds, only)]
+    by_name = {kind.kind: kind for kind in BIN_KINDS}
+    chosen = list(BIN_KINDS) if only is None else [find_kind(only)]
     together = union_all(
         *(
             select(
@@ -58,13 +58,13 @@ def list_bin(
     return items, write_cursor(items[-1].deleted_at.isoformat(), str(items[-1].id))
 
 
-def restore(session: Session, kinds: Sequence[BinKind], account: Account, name: str, id_: uuid.UUID) -> None:
+def restore(session: Session, account: Account, name: str, id_: uuid.UUID) -> None:
     """Bring a thing back. What it is part of must be there: that is brought back first."""
-    kind = find_kind(kinds, name)
+    kind = find_kind(name)
     if not is_deleted(session, kind, id_):
         raise NotFoundError(f"The bin holds no {kind.word} {id_}. Somebody may have brought it back.")
     if kind.parent is not None:
-        parent = find_kind(kinds, kind.parent[0])
+        parent = find_kind(kind.parent[0])
         parent_id = session.scalar(select(kind.parent[1]).where(kind.row.id == id_))
         if parent_id is not None and is_deleted(session, parent, parent_id):
             called = session.scalar(select(parent.row.name).where(parent.row.id == parent_id))
@@ -74,11 +74,11 @@ def restore(session: Session, kinds: Sequence[BinKind], account: Account, name: 
     kind.restore(session, account, id_)
 
 
-def find_kind(kinds: Sequence[BinKind], name: str) -> BinKind:
-    for kind in kinds:
+def find_kind(name: str) -> BinKind:
+    for kind in BIN_KINDS:
         if kind.kind == name:
             return kind
-    raise NotFoundError(f"The bin knows no {name[:40]!r}; it has {', '.join(kind.kind for kind in kinds)}.")
+    raise NotFoundError(f"The bin knows no {name[:40]!r}; it has {', '.join(kind.kind for kind in BIN_KINDS)}.")
 
 
 def is_deleted(session: Session, kind: BinKind, id_: uuid.UUID) -> bool:

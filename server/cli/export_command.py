@@ -107,8 +107,8 @@ def find_recording(session: Session, name: str) -> SequenceRow:
 
 
 def _export_labels(session: Session, storage: Storage, args: argparse.Namespace, out: Path) -> dict[str, Any]:
+    from server.annotations.snapshots import find_snapshot
     from server.exchange.label_sets import check_track, open_label_set, read_labels
-    from server.exchange.snapshots import find_snapshot
     from tracker.capture import choose_sources
     from tracker.label_formats import export_labels, save_label_files
 

@@ -184,7 +184,6 @@ def _import_scans(args: argparse.Namespace, path: Path) -> int:
 
 def _import_labels(args: argparse.Namespace, path: Path) -> int:
     from server.access.models import LOCAL_ACCOUNT_ID, Account
-    from server.app.parts import PLACE_GUARDS
     from server.exchange.importing import apply_import, find_problems, plan_import, read_files
     from tracker.label_formats import ImportHints
 
@@ -200,7 +199,7 @@ def _import_labels(args: argparse.Namespace, path: Path) -> int:
         for warning in labels.found.warnings:
             sys.stderr.write(f"handloom: {warning}\n")
         with studio.database.writing() as session:
-            plans = plan_import(session, rows, labels, account, PLACE_GUARDS)
+            plans = plan_import(session, rows, labels, account)
             if problems := find_problems(labels, plans):
                 raise CommandError(f"{args.path}: nothing was imported. {' '.join(problems)}")
             conflicts = [f"frame {c.frame} of {c.camera}, {c.hand}" for p in plans for c in p.conflicts.values()]
@@ -210,9 +209,7 @@ def _import_labels(args: argparse.Namespace, path: Path) -> int:
                     f"{args.path}: {hands} labelled otherwise already ({'; '.join(conflicts[:5])}); "
                     "nothing was imported. Say --policy keep to leave those as they are, or --policy replace."
                 )
-            done = apply_import(
-                session, studio.storage, rows, labels, account, PLACE_GUARDS, args.policy or "keep", None
-            )
+            done = apply_import(session, studio.storage, rows, labels, account, args.policy or "keep", None)
     recordings = [
         {
             "id": str(item.sequence.id),

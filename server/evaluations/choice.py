@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from server.access.project_models import ProjectRow, ProjectSequenceRow
 from server.errors import InvalidError, NotFoundError
 from server.evaluations.labels import LabelsId, find_current_labels, find_snapshots
 from server.evaluations.schemas import MAX_TRACKS, EvaluationQuery
 from server.jobs.models import JobRow
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
-from server.teams.models import ProjectRow, ProjectSequenceRow
 from server.tracks.models import TrackRow
 from server.tracks.service import get_track
 

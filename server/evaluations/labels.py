@@ -13,8 +13,8 @@ from sqlalchemy.orm import Session
 
 from server.annotations.models import AnnotationRow
 from server.annotations.service import load_annotations
+from server.annotations.snapshot_models import SnapshotRow
 from server.errors import NotFoundError
-from server.exchange.models import SnapshotRow
 from server.storage import Storage
 from tracker import Annotations
 from tracker import load_annotations as read_annotations

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-import uuid
-from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Path, Query, Request, Response
-from sqlalchemy.orm import Session
+from fastapi import APIRouter, Path, Query, Request, Response
 
 from server.access.service import CurrentAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
@@ -21,7 +18,7 @@ from server.evaluations.judge import JudgeDep
 from server.evaluations.reports import write_html_report
 from server.evaluations.schemas import Comparison, EvaluationQuery, Hand
 from server.storage import StorageDep
-from server.tracks.guard import SeenTrack, SightDep, check_sight
+from server.tracks.seen_track import SeenTrack
 
 router = APIRouter(tags=["evaluations"], responses=error_responses(404))
 
@@ -30,12 +27,6 @@ SourceQuery = Annotated[list[SourceChoice], Query(min_length=1, max_length=10, d
 JUDGING: list[SourceChoice] = ["independent"]
 
 
-async def get_sight_check(account: CurrentAccount, guards: SightDep) -> Callable[[Session, uuid.UUID], None]:
-    """Raises at a recording in which whoever asks must not see tracks."""
-    return lambda session, sequence_id: check_sight(guards, session, account, sequence_id)
-
-
-SightCheck = Annotated[Callable[[Session, uuid.UUID], None], Depends(get_sight_check)]
 IMMUTABLE = "private, max-age=31536000, immutable"
 MEDIA_TYPES = {"html": "text/html; charset=utf-8", "csv": "text/csv; charset=utf-8", "json": "application/json"}
 REPORT_POLICY = "sandbox; default-src 'none'; img-src data:; style-src 'unsafe-inline'"
@@ -82,9 +73,9 @@ def get_evaluation_picture(
 
 
 @router.get("/evaluations")
-def compare_tracks(query: QueryDep, database: DatabaseDep, judge: JudgeDep, check: SightCheck) -> Comparison:
+def compare_tracks(query: QueryDep, database: DatabaseDep, judge: JudgeDep, account: CurrentAccount) -> Comparison:
     """Tracks judged by annotations, side by side: tables, curves, worst frames, differences against one of them."""
-    return service.compare(database, judge, query, check)[0]
+    return service.compare(database, judge, query, account)[0]
 
 
 @router.get(
@@ -98,12 +89,12 @@ def get_report(
     database: DatabaseDep,
     storage: StorageDep,
     judge: JudgeDep,
-    check: SightCheck,
+    account: CurrentAccount,
 ) -> Response:
     """The same as a file: a page that needs nothing else, a table of every joint, or the numbers as JSON."""
     from tracker.evaluation import write_csv
 
-    comparison, judged = service.compare(database, judge, query, check)
+    comparison, judged = service.compare(database, judge, query, account)
     if not judged:
         raise InvalidError("A report needs at least one track: give `track`, `sequence` or `project`.")
     if kind == "html":

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote, urlencode
 
-from sqlalchemy.orm import Session
-
+from server.access.models import Account
+from server.access.policy import check_sees_tracks
 from server.database import Database, utc_now
 from server.errors import NotFoundError
 from server.evaluations.choice import Chosen, choose_tracks
@@ -44,15 +44,15 @@ def evaluate(database: Database, judge: Judge, row: TrackRow, source: Sequence[s
 
 
 def compare(
-    database: Database, judge: Judge, query: EvaluationQuery, check: Callable[[Session, uuid.UUID], None]
+    database: Database, judge: Judge, query: EvaluationQuery, account: Account
 ) -> tuple[Comparison, list[JudgedTrack]]:
-    """The comparison that was asked for, and the tracks in it; `check` raises at a recording that must not be seen."""
+    """The comparison that was asked for, and the tracks in it; raises at a recording that the account must not see."""
     from tracker.evaluation import compare_tracks
 
     with database.reading() as session:
         chosen = choose_tracks(session, query)
         for sequence_id in dict.fromkeys(one.sequence.id for one in chosen):
-            check(session, sequence_id)
+            check_sees_tracks(session, account, sequence_id)
     judged = [_judge(judge, one, query) for one in chosen]
     reference = query.reference or next((one.track.id for one in chosen), None)
     document = compare_tracks(judged, reference=None if reference is None else str(reference), within_px=query.within)

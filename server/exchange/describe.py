@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from sqlalchemy.orm import Session
 
 from server.access.service import find_names
+from server.annotations.snapshot_models import SnapshotRow
 from server.exchange.comparison import HandChange
 from server.exchange.importing import Imported, ImportPlan, ReadLabels, find_problems, write_check
-from server.exchange.models import SnapshotRow
 from server.exchange.schemas import (
     HandChangeOut,
     LabelComparison,

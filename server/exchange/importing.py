@@ -15,16 +15,17 @@ from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.access.models import Account
+from server.access.places import Place
+from server.access.policy import check_change
 from server.annotations.bulk import BulkChange, Key, change_annotations, find_annotations
-from server.annotations.guards import PlaceGuard, check_change
 from server.annotations.models import AnnotationRow
-from server.annotations.service import Place, check_points
+from server.annotations.service import check_points
+from server.annotations.snapshot_models import SnapshotRow
+from server.annotations.snapshots import create_snapshot, hold_sequences
 from server.annotations.sources import imported_sources, write_sources
 from server.errors import ConflictError, ForbiddenError, InvalidError, NotFoundError
 from server.exchange.comparison import HandChange, compare_hands
 from server.exchange.label_sets import open_label_set
-from server.exchange.models import SnapshotRow
-from server.exchange.snapshots import create_snapshot, hold_sequences
 from server.sequences.models import SequenceRow
 from server.storage import Storage
 from tracker import Annotation, say_count
@@ -116,12 +117,11 @@ def plan_import(
     rows: Sequence[SequenceRow],
     labels: ReadLabels,
     account: Account,
-    guards: Sequence[PlaceGuard],
     held: dict[uuid.UUID, dict[Key, AnnotationRow]] | None = None,
 ) -> list[ImportPlan]:
     """What would happen to each recording."""
     held = held if held is not None else {row.id: find_annotations(session, row.id) for row in rows}
-    return [_plan(session, row, labels, account, guards, held[row.id]) for row in rows]
+    return [_plan(session, row, labels, account, held[row.id]) for row in rows]
 
 
 def _plan(
@@ -129,7 +129,6 @@ def _plan(
     sequence: SequenceRow,
     labels: ReadLabels,
     account: Account,
-    guards: Sequence[PlaceGuard],
     held: dict[Key, AnnotationRow],
 ) -> ImportPlan:
     plan = ImportPlan(sequence)
@@ -147,7 +146,7 @@ def _plan(
             plan.same.append(key)
             continue
         try:
-            check_change(guards, session, account, place)
+            check_change(session, account, place)
         except (ForbiddenError, NotFoundError) as error:
             plan.locked.append(key)
             if error.detail not in plan.reasons:
@@ -193,14 +192,13 @@ def apply_import(
     rows: Sequence[SequenceRow],
     labels: ReadLabels,
     account: Account,
-    guards: Sequence[PlaceGuard],
     policy: Policy,
     check: str | None,
 ) -> list[Imported]:
     """Take the labels in. With `check`, only if everything is as it was when the report of that check was made."""
     hold_sequences(session, [row.id for row in rows])
     held = {row.id: find_annotations(session, row.id, hold=True) for row in rows}
-    plans = plan_import(session, rows, labels, account, guards, held)
+    plans = plan_import(session, rows, labels, account, held)
     if problems := find_problems(labels, plans):
         raise InvalidError("Nothing was imported: " + " ".join(problems))
     if check is not None and check != write_check(labels, plans):

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Sequence
 
 import numpy as np
 from sqlalchemy.orm import Session
 
 from server.access.models import Account
-from server.annotations.guards import PlaceGuard, find_hidden
-from server.annotations.service import Place, load_annotations
+from server.access.places import Place
+from server.access.policy import find_hidden
+from server.annotations.service import load_annotations
+from server.annotations.snapshot_models import SnapshotRow
+from server.annotations.snapshots import read_snapshot
 from server.errors import ForbiddenError, InvalidError
-from server.exchange.models import SnapshotRow
-from server.exchange.snapshots import read_snapshot
 from server.sequences.models import SequenceRow
 from server.sequences.service import open_sequence
 from server.storage import Storage
@@ -57,11 +57,9 @@ def read_labels(
     return read_snapshot(storage, snapshot)
 
 
-def keep_visible(
-    guards: Sequence[PlaceGuard], session: Session, account: Account, sequence_id: uuid.UUID, annotations: Annotations
-) -> Annotations:
+def keep_visible(session: Session, account: Account, sequence_id: uuid.UUID, annotations: Annotations) -> Annotations:
     """The labels without those that the account must not see, since it marks the same places blindly itself."""
-    hidden = find_hidden(guards, session, account, sequence_id)
+    hidden = find_hidden(session, account, sequence_id)
     if not hidden:
         return annotations
     kept = []
@@ -72,9 +70,9 @@ def keep_visible(
     return Annotations(tuple(kept))
 
 
-def check_sees_all(guards: Sequence[PlaceGuard], session: Session, account: Account, sequence_id: uuid.UUID) -> None:
+def check_sees_all(session: Session, account: Account, sequence_id: uuid.UUID) -> None:
     """Raise when some of the labels are hidden from the account."""
-    if find_hidden(guards, session, account, sequence_id):
+    if find_hidden(session, account, sequence_id):
         raise ForbiddenError(
             "You mark frames of this recording blindly: its labels are shown to you whole when your work is accepted."
         )

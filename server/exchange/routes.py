@@ -11,8 +11,8 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 
 from server.access.service import CurrentAccount, LeadAccount
-from server.annotations.guards import GuardsDep
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
+from server.annotations.snapshots import get_snapshot
 from server.database import Database, DatabaseDep
 from server.download import make_file_name, name_download
 from server.errors import InvalidError, error_responses
@@ -27,7 +27,6 @@ from server.exchange.schemas import (
     LabelImportOptions,
     LabelImportReport,
 )
-from server.exchange.snapshots import get_snapshot
 from server.sequences.service import get_sequence
 from server.storage import Storage, StorageDep
 from server.storage.sent_json import read_options, reading_json
@@ -96,16 +95,13 @@ def export_recording_labels(
     database: DatabaseDep,
     storage: StorageDep,
     account: CurrentAccount,
-    guards: GuardsDep,
     format_: FormatQuery,
     snapshot_id: SnapshotQuery = None,
     track_id: TrackQuery = None,
     source: SourceQuery = ALL,
 ) -> Response:
     """The labels of a recording in a format, as one file: a zip where the format has several."""
-    made = _export(
-        database, storage, account, guards, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id)
-    )
+    made = _export(database, storage, account, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id))
     return _answer(database, made, format_, [sequence_id])
 
 
@@ -115,16 +111,13 @@ def preview_export(
     database: DatabaseDep,
     storage: StorageDep,
     account: CurrentAccount,
-    guards: GuardsDep,
     format_: FormatQuery,
     snapshot_id: SnapshotQuery = None,
     track_id: TrackQuery = None,
     source: SourceQuery = ALL,
 ) -> ExportNotes:
     """What the export would hold and what would be lost in it."""
-    made = _export(
-        database, storage, account, guards, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id)
-    )
+    made = _export(database, storage, account, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id))
     return ExportNotes(
         format=format_,
         file=make_file_name(_name_export(database, format_, [sequence_id]), Path(LABEL_FORMATS[format_].file).suffix),
@@ -140,7 +133,6 @@ def export_several(
     database: DatabaseDep,
     storage: StorageDep,
     account: CurrentAccount,
-    guards: GuardsDep,
     format_: FormatQuery,
     sequence_ids: SequencesQuery,
     source: SourceQuery = ALL,
@@ -148,7 +140,7 @@ def export_several(
     """The labels of several recordings in one file, in a format that can hold several."""
     if len(set(sequence_ids)) != len(sequence_ids):
         raise InvalidError("A recording is named twice.")
-    made = _export(database, storage, account, guards, sequence_ids, ExportChoice(format_, source))
+    made = _export(database, storage, account, sequence_ids, ExportChoice(format_, source))
     return _answer(database, made, format_, sequence_ids)
 
 
@@ -163,7 +155,7 @@ class ExportChoice:
 
 
 def _export(
-    database: Database, storage: Storage, account: Any, guards: Any, ids: Sequence[uuid.UUID], choice: ExportChoice
+    database: Database, storage: Storage, account: Any, ids: Sequence[uuid.UUID], choice: ExportChoice
 ) -> ExportedLabels:
     labels = []
     with database.reading() as session:
@@ -173,7 +165,7 @@ def _export(
             if choice.track_id is not None:
                 check_track(session, sequence_id, choice.track_id)
             annotations = read_labels(session, storage, sequence_id, snapshot)
-            labels.append((row, keep_visible(guards, session, account, sequence_id, annotations)))
+            labels.append((row, keep_visible(session, account, sequence_id, annotations)))
     sets = [open_label_set(storage, row, found, choice.track_id) for row, found in labels]
     return export_labels(choice.format, sets, choice.source)
 
@@ -206,10 +198,9 @@ async def check_recording_labels(
     database: DatabaseDep,
     storage: StorageDep,
     account: LeadAccount,
-    guards: GuardsDep,
 ) -> LabelImportReport:
     """Look at files of labels: what is new, what is labelled otherwise, what is lost. Nothing is stored."""
-    return await _check([sequence_id], request, database, storage, account, guards)
+    return await _check([sequence_id], request, database, storage, account)
 
 
 @router.post(
@@ -221,10 +212,9 @@ async def import_recording_labels(
     database: DatabaseDep,
     storage: StorageDep,
     account: LeadAccount,
-    guards: GuardsDep,
 ) -> LabelImportDone:
     """Take files of labels into a recording, as their report said: with its `check`, and a `policy` for conflicts."""
-    return await _import([sequence_id], request, database, storage, account, guards)
+    return await _import([sequence_id], request, database, storage, account)
 
 
 @router.post("/labels/check", responses=error_responses(403, 413, 507), openapi_extra=_CHECK_BODY)
@@ -233,11 +223,10 @@ async def check_several(
     database: DatabaseDep,
     storage: StorageDep,
     account: LeadAccount,
-    guards: GuardsDep,
     sequence_ids: SequencesQuery,
 ) -> LabelImportReport:
     """Look at files with labels of several recordings. Stores nothing."""
-    return await _check(sequence_ids, request, database, storage, account, guards)
+    return await _check(sequence_ids, request, database, storage, account)
 
 
 @router.post("/labels/import", responses=error_responses(403, 409, 413, 507), openapi_extra=_IMPORT_BODY)
@@ -246,28 +235,27 @@ async def import_several(
     database: DatabaseDep,
     storage: StorageDep,
     account: LeadAccount,
-    guards: GuardsDep,
     sequence_ids: SequencesQuery,
 ) -> LabelImportDone:
     """Take files with labels of several recordings in: into all of them or none."""
-    return await _import(sequence_ids, request, database, storage, account, guards)
+    return await _import(sequence_ids, request, database, storage, account)
 
 
 async def _check(
-    ids: Sequence[uuid.UUID], request: Request, database: Database, storage: Storage, account: Any, guards: Any
+    ids: Sequence[uuid.UUID], request: Request, database: Database, storage: Storage, account: Any
 ) -> LabelImportReport:
     def work(folder: Path, upload: Upload) -> LabelImportReport:
         with database.reading() as session:
             rows = [get_sequence(session, id_) for id_ in dict.fromkeys(ids)]
         labels = _read(storage, folder, rows, upload.fields)
         with database.reading() as session:
-            return describe_report(labels, importing.plan_import(session, rows, labels, account, guards))
+            return describe_report(labels, importing.plan_import(session, rows, labels, account))
 
     return await work_on_upload(request, storage, AREA, LIMITS, work)
 
 
 async def _import(
-    ids: Sequence[uuid.UUID], request: Request, database: Database, storage: Storage, account: Any, guards: Any
+    ids: Sequence[uuid.UUID], request: Request, database: Database, storage: Storage, account: Any
 ) -> LabelImportDone:
     def work(folder: Path, upload: Upload) -> LabelImportDone:
         policy, check = upload.fields.get("policy", ""), upload.fields.get("check", "")
@@ -279,7 +267,7 @@ async def _import(
             rows = [get_sequence(session, id_) for id_ in dict.fromkeys(ids)]
         labels = _read(storage, folder, rows, upload.fields)
         with database.writing() as session:
-            done = importing.apply_import(session, storage, rows, labels, account, guards, policy, check)
+            done = importing.apply_import(session, storage, rows, labels, account, policy, check)
             return LabelImportDone(format=labels.format, recordings=describe_imported(session, done))
 
     return await work_on_upload(request, storage, AREA, LIMITS, work)

@@ -8,17 +8,16 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Query, Response
 
 from server.access.service import CurrentAccount, LeadAccount
-from server.annotations.guards import GuardsDep
+from server.annotations import snapshots
+from server.annotations.restore_snapshot import restore_snapshot
 from server.annotations.service import load_annotations
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.download import name_download
 from server.errors import InvalidError, error_responses
-from server.exchange import snapshots
 from server.exchange.comparison import compare_labels
 from server.exchange.describe import describe_comparison, describe_snapshots
 from server.exchange.label_sets import check_sees_all, keep_visible
-from server.exchange.restoring import restore_snapshot
 from server.exchange.schemas import (
     LabelComparison,
     SnapshotCreate,
@@ -70,11 +69,11 @@ def get_snapshot(snapshot_id: uuid.UUID, session: SessionDep) -> SnapshotOut:
     responses={200: {"content": {"application/json": {}}}, **error_responses(403, 409)},
 )
 def download_snapshot(
-    snapshot_id: uuid.UUID, session: SessionDep, storage: StorageDep, account: CurrentAccount, guards: GuardsDep
+    snapshot_id: uuid.UUID, session: SessionDep, storage: StorageDep, account: CurrentAccount
 ) -> Response:
     """The file, as `annotations.json` of a recording folder; its SHA-256 is `content_hash`."""
     row = snapshots.get_snapshot(session, snapshot_id)
-    check_sees_all(guards, session, account, row.sequence_id)
+    check_sees_all(session, account, row.sequence_id)
     recording = get_sequence(session, row.sequence_id, deleted_too=True).name
     what = f"labels-v{row.version}-{row.content_hash[:12]}"
     headers = name_download(recording, what, suffix=".json") | {"ETag": f'"{row.content_hash}"'}
@@ -95,7 +94,6 @@ def compare_snapshot(
     session: SessionDep,
     storage: StorageDep,
     account: CurrentAccount,
-    guards: GuardsDep,
     with_: Annotated[
         uuid.UUID | Literal["now"], Query(alias="with", description="`now`, or a later or earlier snapshot.")
     ] = "now",
@@ -110,18 +108,16 @@ def compare_snapshot(
         if other.sequence_id != row.sequence_id:
             raise InvalidError("The two snapshots are of different recordings; compare two of the same one.")
         after = snapshots.read_snapshot(storage, other)
-    before, after = (keep_visible(guards, session, account, row.sequence_id, labels) for labels in (before, after))
+    before, after = (keep_visible(session, account, row.sequence_id, labels) for labels in (before, after))
     return describe_comparison(compare_labels(before, after))
 
 
 @router.post("/snapshots/{snapshot_id}/restore", responses=error_responses(403, 409))
-def restore(
-    snapshot_id: uuid.UUID, session: SessionDep, storage: StorageDep, account: LeadAccount, guards: GuardsDep
-) -> SnapshotRestored:
+def restore(snapshot_id: uuid.UUID, session: SessionDep, storage: StorageDep, account: LeadAccount) -> SnapshotRestored:
     """Make its labels the current ones again, as new revisions. What was there is kept as the snapshot `before`."""
     row = snapshots.get_snapshot(session, snapshot_id)
     sequence = get_sequence(session, row.sequence_id)
-    done = restore_snapshot(session, storage, sequence, row, account, guards)
+    done = restore_snapshot(session, storage, sequence, row, account)
     return SnapshotRestored(
         changed=done.changed, deleted=done.deleted, before=describe_snapshots(session, [done.before])[0]
     )

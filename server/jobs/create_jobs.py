@@ -16,9 +16,9 @@ from server.jobs.obstacles import find_register_obstacles, refuse_at
 from server.jobs.scan_choice import choose_scans, list_loop_scans
 from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate
 from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles, list_test_subjects
+from server.registrations.training_set_schemas import TrainingRule
+from server.registrations.training_sets import create_training_set, get_training_set
 from server.storage import Storage
-from server.training_sets.schemas import TrainingRule
-from server.training_sets.service import create_training_set, get_training_set
 from tracker import say_count
 
 

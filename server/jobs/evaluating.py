@@ -18,10 +18,10 @@ from server.jobs.restarting import read_loop
 from server.jobs.scan_run import ScanRun, Span
 from server.jobs.schemas import TrainingParams
 from server.registrations import service as registrations
+from server.registrations.training_set_schemas import TrainingRule
+from server.registrations.training_sets import get_training_set
 from server.scans import service as scans
 from server.scans.cropping import find_cropped
-from server.training_sets.schemas import TrainingRule
-from server.training_sets.service import get_training_set
 
 if TYPE_CHECKING:
     from tracker import BlendModel

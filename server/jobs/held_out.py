@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from sqlalchemy.orm import Session
 
 from server.jobs.schemas import LoopCreate
-from server.training_sets.schemas import TrainingRule
-from server.training_sets.service import Chosen, choose_registrations
+from server.registrations.training_set_schemas import TrainingRule
+from server.registrations.training_sets import Chosen, choose_registrations
 
 
 def make_rule(asked: LoopCreate, model_id: uuid.UUID | None) -> TrainingRule:

@@ -28,13 +28,13 @@ from server.jobs.restarting import read_loop
 from server.jobs.run import JobRun, WorkerContext
 from server.jobs.schemas import TrainingParams
 from server.registrations import service as registrations
+from server.registrations import training_sets
 from server.registrations.models import RegistrationRow
 from server.scans import service as scans
 from server.scans.cropping import find_cropped
 from server.scans.models import ScanRow
 from server.scans.schemas import ScanCrop
 from server.storage.digest import compute_digest
-from server.training_sets import service as training_sets
 from tracker import say_count
 
 if TYPE_CHECKING:

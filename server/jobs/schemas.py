@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, StrictBool, model_validator
 
 from server.database.numbers import Whole
 from server.database.texts import Label, Name
-from server.training_sets.schemas import TrainingRule
+from server.registrations.training_set_schemas import TrainingRule
 
 JobKind = Literal["track", "detect", "register", "train", "loop", "calibrate"]
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]

@@ -16,10 +16,10 @@ from server.jobs.held_out import choose_held_out, make_rule
 from server.jobs.obstacles import find_model_obstacles, find_size_obstacles
 from server.jobs.schemas import LoopCreate, TrainCreate
 from server.registrations import service as registrations
+from server.registrations.training_set_schemas import TrainingRule
+from server.registrations.training_sets import Chosen, choose_members, choose_registrations, get_training_set, preview
 from server.scans.models import ScanRow
 from server.storage import Storage
-from server.training_sets.schemas import TrainingRule
-from server.training_sets.service import Chosen, choose_members, choose_registrations, get_training_set, preview
 
 NOBODY_LEFT_OUT = "Nobody is kept for testing, so there is nobody to evaluate on. Leave subjects out."
 

@@ -10,10 +10,10 @@ from datetime import datetime
 from typing import Any
 
 from server.access.models import Account
-from server.annotations.guards import PlaceGuard, find_hidden
+from server.access.places import HiddenPlaces
+from server.access.policy import find_hidden
 from server.annotations.key_frames import list_key_frames
 from server.annotations.schemas import KeyFrame, KeyFrames
-from server.annotations.service import HiddenPlaces
 from server.database import Database
 from server.errors import StudioError
 from server.jobs.events import AllJobsFeed, encode_event
@@ -30,7 +30,6 @@ class Listener:
 
     account: Account
     replica: str
-    guards: Sequence[PlaceGuard]
     visit_id: uuid.UUID | None = None
 
 
@@ -126,9 +125,7 @@ class RecordingFeed:
     def _see(self, database: Database) -> list[tuple[str, str]]:
         """What the listener must not read may be other places now."""
         with database.reading() as session:
-            self._hidden = find_hidden(
-                self.listener.guards, session, self.listener.account, self.watch.sequence_id, self.listener.replica
-            )
+            self._hidden = find_hidden(session, self.listener.account, self.watch.sequence_id, self.listener.replica)
         places = sorted((sorted(one.frames), sorted(one.cameras), sorted(one.hands)) for one in self._hidden)
         digest = hashlib.sha256(repr(places).encode()).hexdigest()[:16]
         if digest == self._digest:

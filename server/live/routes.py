@@ -9,8 +9,8 @@ from fastapi import APIRouter, Depends, Header, Query, Request
 from fastapi.responses import StreamingResponse
 from starlette.requests import HTTPConnection
 
+from server.access.policy import find_hidden
 from server.access.service import CurrentAccount
-from server.annotations.guards import GuardsDep, find_hidden
 from server.annotations.routes import ReplicaDep
 from server.annotations.service import check_place
 from server.database import DatabaseDep
@@ -44,7 +44,6 @@ def stream_recording(
     request: Request,
     database: DatabaseDep,
     account: CurrentAccount,
-    guarding: GuardsDep,
     replica: ReplicaDep,
     watches: Annotated[Watches, Depends(get_watches)],
     visits: VisitsDep,
@@ -62,8 +61,8 @@ def stream_recording(
         raise OtherAccountError("This page belongs to somebody else. Log in again, or load the page.")
     with database.reading() as session:
         get_sequence(session, sequence_id)
-        find_hidden(guarding, session, account, sequence_id, replica)
-    listener = Listener(account, replica, guarding, visit)
+        find_hidden(session, account, sequence_id, replica)
+    listener = Listener(account, replica, visit)
     return answer_stream(
         request, database, RecordingFeed.after(last_event_id or after, watches.of(sequence_id), visits, listener)
     )
@@ -76,12 +75,11 @@ def put_visit(
     body: VisitPut,
     database: DatabaseDep,
     account: CurrentAccount,
-    guarding: GuardsDep,
     visits: VisitsDep,
 ) -> None:
     """Say where one is in a recording; a page says it when it moves, and every 10 s. Who marks blindly is not shown."""
     with database.reading() as session:
         check_place(get_sequence(session, sequence_id), body.camera, body.frame, body.hand)
-        is_blind = bool(find_hidden(guarding, session, account, sequence_id))
+        is_blind = bool(find_hidden(session, account, sequence_id))
     if not is_blind:
         visits.put(visit_id, Visit(sequence_id, account.id, account.name, **body.model_dump()))

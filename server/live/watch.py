@@ -18,15 +18,15 @@ from typing import Any
 from sqlalchemy import Select, bindparam, func, select
 from sqlalchemy.orm import Session
 
+from server.access.places import Place
+from server.access.project_models import AssignmentRow, CommentRow, ProjectRow
 from server.access.service import find_names
 from server.annotations.models import AnnotationRow, KeyFrameRow
-from server.annotations.service import Place
 from server.database import Database, utc_now
 from server.jobs.events import OVERLAP
 from server.jobs.models import JobRow
 from server.live.schemas import LabelChange
 from server.sequences.models import SequenceRow
-from server.teams.models import AssignmentRow, CommentRow, ProjectRow
 
 LOOK_SECONDS = 0.2
 """At most so often the database is asked about one recording, however many listen."""

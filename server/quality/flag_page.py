@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from server.annotations.service import HiddenPlaces, Place
+from server.access.places import HiddenPlaces, Place
 from server.compute import ComputeContext
 from server.database.paging import read_cursor, write_cursor
 from server.quality import service

@@ -18,10 +18,11 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
+from server.access.places import HiddenPlaces, Place
+from server.access.policy import find_hidden
 from server.access.service import CurrentAccount
-from server.annotations.guards import GuardsDep, find_hidden
 from server.annotations.models import AnnotationRow
-from server.annotations.service import HiddenPlaces, Place, find_revisions, get_annotation, list_annotations
+from server.annotations.service import find_revisions, get_annotation, list_annotations
 from server.database import AdmissionDep, Database
 from server.errors import ConflictError
 from server.jobs.detections import AREA, find_detections
@@ -242,14 +243,12 @@ def restore(session: Session, place: Place, kind: str, revision: int) -> None:
     )
 
 
-async def get_hidden(
-    sequence_id: uuid.UUID, admission: AdmissionDep, account: CurrentAccount, guards: GuardsDep
-) -> list[HiddenPlaces]:
+async def get_hidden(sequence_id: uuid.UUID, admission: AdmissionDep, account: CurrentAccount) -> list[HiddenPlaces]:
     """Places of the address's recording that whoever asks must not read."""
 
     def look(session: Session) -> list[HiddenPlaces]:
         get_sequence(session, sequence_id)
-        return find_hidden(guards, session, account, sequence_id)
+        return find_hidden(session, account, sequence_id)
 
     return await admission.read(look)
 

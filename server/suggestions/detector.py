@@ -5,7 +5,7 @@ from __future__ import annotations
 import uuid
 from typing import TYPE_CHECKING
 
-from server.annotations.service import Place
+from server.access.places import Place
 from server.compute import ComputeContext
 from server.suggestions.cache import RecordingCache
 from server.suggestions.schemas import SuggestedJoint, Suggestion

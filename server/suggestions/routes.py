@@ -10,11 +10,12 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from sqlalchemy.orm import Session
 
+from server.access.places import HiddenPlaces, Place
+from server.access.policy import check_read, find_hidden
 from server.access.service import CurrentAccount
-from server.annotations.guards import GuardsDep, check_read, find_hidden
 from server.annotations.routes import CameraPath, get_annotated_sequence
 from server.annotations.schemas import Hand
-from server.annotations.service import HiddenPlaces, Place, check_place, check_points
+from server.annotations.service import check_place, check_points
 from server.compute import ComputeDep
 from server.database import AdmissionDep
 from server.database.frames import FramePath
@@ -44,7 +45,6 @@ async def list_suggestions(
     admission: AdmissionDep,
     compute: ComputeDep,
     account: CurrentAccount,
-    guards: GuardsDep,
     track_id: TrackQuery = None,
 ) -> Page[Suggestion]:
     """The hands of an image as a track has them; empty where it was lost, where there is none, or one marks blindly."""
@@ -53,7 +53,7 @@ async def list_suggestions(
         sequence = get_annotated_sequence(sequence_id, session)
         place = check_place(sequence, camera, frame, "right")
         chosen = service.choose_track(session, sequence_id, track_id)
-        return place, service.Recorded.of(sequence), chosen, find_hidden(guards, session, account, sequence_id)
+        return place, service.Recorded.of(sequence), chosen, find_hidden(session, account, sequence_id)
 
     place, recorded, chosen, hidden = await admission.read(look)
     items = [] if chosen is None else await compute.run(service.suggest_from_track, recorded, chosen, place)
@@ -68,7 +68,6 @@ async def list_detected(
     admission: AdmissionDep,
     compute: ComputeDep,
     account: CurrentAccount,
-    guards: GuardsDep,
 ) -> Page[Suggestion]:
     """The hands of an image as the hand detector sees them; empty where it sees none, or where one marks blindly.
 
@@ -79,7 +78,7 @@ async def list_detected(
         sequence = get_annotated_sequence(sequence_id, session)
         place = check_place(sequence, camera, frame, "right")
         job_id = find_detections(session, sequence_id)
-        return place, service.Recorded.of(sequence), job_id, find_hidden(guards, session, account, sequence_id)
+        return place, service.Recorded.of(sequence), job_id, find_hidden(session, account, sequence_id)
 
     place, recorded, job_id, hidden = await admission.read(look)
     return _show(await compute.run(suggest_detected, recorded, job_id, place), place, hidden)
@@ -101,7 +100,6 @@ async def fit_suggestion(
     admission: AdmissionDep,
     compute: ComputeDep,
     account: CurrentAccount,
-    guards: GuardsDep,
 ) -> Suggestion:
     """A hand model fitted to the joints placed so far (at least 4), and to the depth image where there is one.
 
@@ -111,7 +109,7 @@ async def fit_suggestion(
     def look(session: Session) -> tuple[service.Recorded, service.ChosenTrack | None, Place, list[list[float]]]:
         sequence = get_annotated_sequence(sequence_id, session)
         place = check_place(sequence, camera, frame, hand)
-        check_read(guards, session, account, place)
+        check_read(session, account, place)
         points = check_points(sequence, place, body.points)
         return service.Recorded.of(sequence), service.choose_track(session, sequence_id, None), place, points
 

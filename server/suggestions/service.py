@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from sqlalchemy.orm import Session
 
-from server.annotations.service import Place
+from server.access.places import Place
 from server.compute import ComputeContext
 from server.errors import InvalidError, NotFoundError
 from server.sequences.models import SequenceRow

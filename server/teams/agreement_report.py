@@ -16,13 +16,13 @@ from pydantic import BaseModel, Field
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from server.access.project_models import AssignmentRow, ReplicaSetRow
 from server.access.service import find_names
 from server.annotations.schemas import JointsOfSource, SourceChoice
 from server.annotations.service import load_annotations
 from server.database import utc_now
 from server.sequences.models import SequenceRow
 from server.teams.agreement import Agreement, measure_agreement
-from server.teams.models import AssignmentRow, ReplicaSetRow
 from server.teams.schemas import Hand
 from tracker import HAND_JOINTS, Annotation
 from tracker.capture import count_origins, describe_origin, find_counted, find_origin, say_left_out

@@ -10,13 +10,13 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 from sqlalchemy.orm import Session
 
+from server.access.project_models import AssignmentRow, AssignmentState
 from server.access.service import CurrentAccount, LeadAccount, ReviewerAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.database.revision import IfMatch, read_if_match, write_etag
 from server.errors import ConflictError, error_responses
 from server.teams import assignments, comments
-from server.teams.models import AssignmentRow, AssignmentState
 from server.teams.schemas import (
     AssignmentMake,
     AssignmentOut,

@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.access.models import Account
+from server.access.project_models import AssignmentRow, AssignmentState, CommentRow, ProjectRow, ReplicaSetRow
 from server.access.service import find_names, has_role
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor
@@ -17,7 +18,6 @@ from server.errors import ConflictError, ForbiddenError, InvalidError, NotFoundE
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
 from server.teams import projects
-from server.teams.models import AssignmentRow, AssignmentState, CommentRow, ProjectRow, ReplicaSetRow
 from server.teams.progress import find_progress
 from server.teams.schemas import AssignmentMake, AssignmentOut, AssignmentPatch
 

@@ -10,14 +10,14 @@ from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.access.models import Account
+from server.access.policy import check_sees_set
+from server.access.project_models import AssignmentRow, CommentRow, ReplicaSetRow
 from server.access.service import find_names, has_role
 from server.annotations.service import check_place
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor
 from server.errors import ForbiddenError, InvalidError, NotFoundError
 from server.sequences.service import get_sequence
-from server.teams.guard import check_sees_set
-from server.teams.models import AssignmentRow, CommentRow, ReplicaSetRow
 from server.teams.schemas import CommentMake, CommentOut
 
 

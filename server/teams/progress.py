@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from sqlalchemy import and_, select
 from sqlalchemy.orm import Session
 
+from server.access.project_models import AssignmentRow, ReplicaSetRow
 from server.annotations.models import AnnotationRow
 from server.annotations.service import is_frame_done, measure_frame
 from server.annotations.sources import JOINT_COUNT
 from server.sequences.models import SequenceRow
-from server.teams.models import AssignmentRow, ReplicaSetRow
 
 
 @dataclass(frozen=True)

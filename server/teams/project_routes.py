@@ -10,6 +10,7 @@ from sqlalchemy import select, tuple_
 from sqlalchemy.orm import Session
 
 from server.access.models import Account
+from server.access.project_models import ProjectRow
 from server.access.service import CurrentAccount, LeadAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page, read_id_cursor, write_cursor
@@ -17,7 +18,6 @@ from server.database.revision import IfMatch, read_if_match, write_etag
 from server.errors import ConflictError, error_responses
 from server.sequences.service import get_sequence
 from server.teams import projects
-from server.teams.models import ProjectRow
 from server.teams.schemas import Person, ProjectMake, ProjectOut, ProjectPatch, ProjectRecording
 
 router = APIRouter(tags=["projects"], responses=error_responses(404))

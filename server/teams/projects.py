@@ -11,11 +11,11 @@ from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.access.models import Account
+from server.access.project_models import AssignmentRow, ProjectRow, ProjectSequenceRow
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor
 from server.errors import ConflictError, NotFoundError
 from server.sequences.models import SequenceRow
-from server.teams.models import AssignmentRow, ProjectRow, ProjectSequenceRow
 from server.teams.schemas import ProjectMake, ProjectOut, ProjectPatch, ProjectRecording, StateCounts
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Response
 
+from server.access.policy import check_sees_set
 from server.access.service import CurrentAccount, LeadAccount, ReviewerAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import SessionDep
@@ -16,7 +17,6 @@ from server.errors import error_responses
 from server.teams import projects, replicas
 from server.teams.agreement_report import AgreementReport, make_report, write_csv, write_html
 from server.teams.assignments import describe_assignments
-from server.teams.guard import check_sees_set
 from server.teams.schemas import AssignmentOut, ReplicaAnnotator, ReplicaSetMake, ReplicaSetOut
 
 router = APIRouter(tags=["replica sets"], responses=error_responses(404))

@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.access.models import Account
+from server.access.project_models import AssignmentRow, ProjectRow, ReplicaSetRow
 from server.annotations.service import check_place
 from server.database import utc_now
 from server.database.paging import read_moment_cursor, write_cursor
@@ -18,7 +19,6 @@ from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
 from server.teams import projects
 from server.teams.assignments import check_worker
-from server.teams.models import AssignmentRow, ProjectRow, ReplicaSetRow
 from server.teams.schemas import ReplicaSetMake, ReplicaSetOut
 
 

@@ -9,9 +9,9 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from server.access.models import Role
+from server.access.project_models import AssignmentState
 from server.database.numbers import FrameNumber, Joint
 from server.database.texts import Name, Text, Words
-from server.teams.models import AssignmentState
 
 Hand = Literal["right", "left"]
 

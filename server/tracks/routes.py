@@ -22,10 +22,10 @@ from server.errors import NotFoundError, error_responses
 from server.storage import StorageDep
 from server.tracks import service
 from server.tracks.exports import MEDIA_TYPES, find_export
-from server.tracks.guard import SeenTrack
 from server.tracks.models import TrackRow
 from server.tracks.overlay import Overlays
 from server.tracks.schemas import FrameEnergy, TrackFrames, TrackJoints, TrackOut
+from server.tracks.seen_track import SeenTrack
 
 router = APIRouter(tags=["tracks"], responses=error_responses())
 

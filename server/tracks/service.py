@@ -17,6 +17,8 @@ from server.database.paging import read_moment_cursor, write_cursor
 from server.errors import ConflictError, NotFoundError
 from server.tracks.models import TrackRow
 
+AREA = "tracks"
+
 FILES = ("track.npz", "summary.json")
 """Those that can be downloaded."""
 

@@ -16,7 +16,7 @@ from server.access.service import CurrentAccount
 from server.database import DatabaseDep
 from server.errors import StudioError, error_responses
 from server.storage import StorageDep
-from server.tracks.guard import SightDep, get_seen_track
+from server.tracks.seen_track import get_seen_track
 from server.viewer import proxy
 from server.viewer.schemas import Show, ViewerSessionChange, ViewerSessionCreate, ViewerSessionOut
 from server.viewer.sessions import OpenSession, ViewerSessions
@@ -50,10 +50,9 @@ def create_viewer_session(
     storage: StorageDep,
     sessions: SessionsDep,
     account: CurrentAccount,
-    guards: SightDep,
 ) -> ViewerSessionOut:
     """Open a track in 3D."""
-    track = get_seen_track(body.track_id, database, account, guards)
+    track = get_seen_track(body.track_id, database, account)
     recording, folder = storage.folder("sequences", track.sequence_id), storage.folder("tracks", track.id)
     return _out(*sessions.open(track.id, recording, folder, body.frame, _changes(body.show)))
 

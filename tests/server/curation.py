@@ -16,18 +16,18 @@ from fastapi import FastAPI
 from scipy.spatial import KDTree
 from sqlalchemy.orm import Session
 
-from server.decisions.schemas import DecisionMake
-from server.decisions.service import decide
 from server.hand_models.storing import UNTRAINED_ID, resolve_model
 from server.jobs.scan_run import measure_errors
 from server.registrations import service as registrations
+from server.registrations.decision_schemas import DecisionMake
+from server.registrations.decisions import decide
 from server.registrations.models import RegistrationRow
+from server.registrations.training_set_schemas import TrainingRule
+from server.registrations.training_sets import create_training_set
 from server.scans.models import ScanRow
 from server.scans.service import write_geometry_key
 from server.storage import Storage
 from server.storage.digest import compute_digest
-from server.training_sets.schemas import TrainingRule
-from server.training_sets.service import create_training_set
 from tests.server.conftest import GeneratedHand, Studio
 from tests.server.teams.conftest import Person, join
 from tracker import Registration, Scan, save_registration, untrained_hand

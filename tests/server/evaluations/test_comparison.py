@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from server.exchange.models import SnapshotRow
-from server.teams.models import ProjectRow, ProjectSequenceRow
+from server.access.project_models import ProjectRow, ProjectSequenceRow
+from server.annotations.snapshot_models import SnapshotRow
 from tests.server.conftest import Studio, Tracked
 from tests.server.evaluations.conftest import AddShifted
 

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 from server.access.models import LOCAL_ACCOUNT_ID
+from server.access.project_models import AssignmentRow, ProjectRow
 from server.exchange import routes
-from server.teams.models import AssignmentRow, ProjectRow
 from tests.server.conftest import AddRecording, Studio, Tracked
 from tests.server.exchange.labels import API, get_labels, make_points, put, send, take_in
 

@@ -13,8 +13,8 @@ from server.hand_models.storing import UNTRAINED_ID, add_uploaded
 from server.jobs import create_jobs
 from server.jobs.schemas import LoopCreate, RegisterCreate, TrainingParams
 from server.registrations.models import RegistrationRow
+from server.registrations.training_set_models import TrainingMemberRow
 from server.scans.models import ScanRow
-from server.training_sets.models import TrainingMemberRow
 from tests.server.conftest import GeneratedHand
 from tests.server.curation import add_registered, make_true_hand
 from tests.server.jobs.scan_bench import ScanBench, bench

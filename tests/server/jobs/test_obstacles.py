@@ -11,10 +11,10 @@ from fastapi.testclient import TestClient
 from sqlalchemy import select
 
 from server.access.models import LOCAL_ACCOUNT_ID
-from server.decisions.schemas import DecisionMake
-from server.decisions.service import decide
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID
+from server.registrations.decision_schemas import DecisionMake
+from server.registrations.decisions import decide
 from server.registrations.models import RegistrationRow
 from tests.server.conftest import AddRecording, GeneratedHand, Studio
 from tests.server.curation import add_registered, make_true_hand

@@ -21,9 +21,9 @@ from server.jobs.scan_workflow import plan_loop
 from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate, TrainingParams
 from server.jobs.tracking import TrackingJob
 from server.registrations.models import RegistrationRow
+from server.registrations.training_set_schemas import TrainingRule
+from server.registrations.training_sets import create_training_set
 from server.scans.models import ScanRow
-from server.training_sets.schemas import TrainingRule
-from server.training_sets.service import create_training_set
 from tests.server.conftest import GeneratedHand, Studio, Tracked
 from tests.server.curation import add_registered
 from tests.server.jobs.scan_bench import ScanBench, bench

@@ -19,9 +19,9 @@ from server.jobs.run import WorkerContext
 from server.jobs.scan_run import ModelCache, ScanRun
 from server.jobs.schemas import LoopCreate, TrainCreate, TrainingParams
 from server.registrations.models import RegistrationRow
+from server.registrations.training_set_schemas import TrainingRule
+from server.registrations.training_sets import create_training_set
 from server.scans.models import ScanRow
-from server.training_sets.schemas import TrainingRule
-from server.training_sets.service import create_training_set
 from tests.server.conftest import BASE_URL, GeneratedHand
 from tests.server.curation import add_registered, make_true_hand
 from tests.server.jobs.scan_bench import ScanBench, bench

@@ -11,7 +11,6 @@ import pytest
 from sqlalchemy import event
 
 from server.access.models import Account
-from server.app.parts import PLACE_GUARDS
 from server.jobs.models import JobRow
 from server.live import watch as watching
 from server.live.feed import Listener, RecordingFeed
@@ -39,7 +38,7 @@ def listen(studio: Any, project: Any) -> Listen:
         role = {"lea": "lead", "rob": "reviewer"}.get(person.name, "annotator")
         account = Account(id=uuid.UUID(person.id), name=person.name, role=role)
         state = studio.app.state
-        listener = Listener(account, replica, PLACE_GUARDS, visit)
+        listener = Listener(account, replica, visit)
         return RecordingFeed.after(last_id, state.watches.of(uuid.UUID(project.sequence)), state.visits, listener)
 
     return made

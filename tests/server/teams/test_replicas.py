@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from server.access.models import LOCAL_ACCOUNT_ID
+from server.access.places import Place
 from server.annotations.changes import Change, change_annotation
-from server.annotations.service import Place
 
 
 def assignments_of(person: Any, made: dict[str, Any]) -> dict[str, Any]:

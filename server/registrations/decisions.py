@@ -11,10 +11,10 @@ from sqlalchemy.orm import Session
 
 from server.access.service import find_names
 from server.database.paging import read_moment_cursor, write_cursor
-from server.decisions.models import DecisionRow
-from server.decisions.schemas import DecisionMake, DecisionOut
 from server.errors import ConflictError, ForbiddenError, InvalidError, NotFoundError
 from server.hand_models.models import HandModelRow
+from server.registrations.decision_models import DecisionRow
+from server.registrations.decision_schemas import DecisionMake, DecisionOut
 from server.registrations.models import RegistrationRow
 from server.registrations.service import get_registration, is_hidden
 

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from sqlalchemy import func, select
 
 from server.database import utc_now
-from server.decisions.models import DecisionRow
-from server.decisions.review import compute_kappa
-from server.decisions.service import find_standing
+from server.registrations.decision_models import DecisionRow
+from server.registrations.decisions import find_standing
+from server.registrations.review import compute_kappa
 from tests.server.curation import Curation, curation, join
 
 __all__ = ["curation", "join"]

@@ -1,4 +1,4 @@
-"""What assignments forbid: finished work is locked, work of others is theirs, blind replicas stay blind."""
+"""Who may read and change which annotations: submitted work is locked, others' work is theirs, replicas stay blind."""
 
 from __future__ import annotations
 
@@ -10,12 +10,11 @@ from sqlalchemy import and_, bindparam, or_, select
 from sqlalchemy.orm import Session
 
 from server.access.models import Account
+from server.access.places import HiddenPlaces, Place
+from server.access.project_models import AssignmentRow, ProjectRow, ReplicaSetRow
 from server.access.service import find_names, has_role
-from server.annotations.guards import PlaceGuard
-from server.annotations.service import HiddenPlaces, Place
 from server.database import Base
 from server.errors import ForbiddenError, NotFoundError
-from server.teams.models import AssignmentRow, ProjectRow, ReplicaSetRow
 
 
 class LockedError(ForbiddenError):
@@ -112,12 +111,23 @@ def _check_shared_change(session: Session, account: Account, place: Place) -> No
         )
 
 
-def find_hidden(session: Session, account: Account, sequence_id: uuid.UUID, replica: str) -> Sequence[HiddenPlaces]:
-    """Places that the account must not read: those it marks blindly itself. Raises at somebody else's replica."""
+def find_hidden(session: Session, account: Account, sequence_id: uuid.UUID, replica: str = "") -> list[HiddenPlaces]:
+    """Places of a recording that the account must not read: those it marks blindly itself.
+
+    With a replica, those of that one; raises when it is somebody else's. Empty is what everybody sees.
+    """
     if replica:
         check_replica_read(session, account, *_get_replica(session, sequence_id, replica))
         return []
     return [_places(replicas) for replicas in _find_blind_sets(session, account, sequence_id)]
+
+
+def check_read(session: Session, account: Account, place: Place) -> None:
+    """Raise when the account must not read the place."""
+    if any(place in hidden for hidden in find_hidden(session, account, place.sequence_id, place.replica)):
+        raise ForbiddenError(
+            f"You mark {place} blindly, so nobody else's joints are shown to you there until your work is accepted."
+        )
 
 
 def check_replica_read(session: Session, account: Account, assignment: AssignmentRow, replicas: ReplicaSetRow) -> None:
@@ -200,6 +210,3 @@ def _find_blind_sets(session: Session, account: Account, sequence_id: uuid.UUID)
 
 def _places(replicas: Any) -> HiddenPlaces:
     return HiddenPlaces(frozenset(replicas.frames), frozenset(replicas.cameras), frozenset(replicas.hands))
-
-
-ASSIGNMENTS = PlaceGuard(check_change=check_change, find_hidden=find_hidden)

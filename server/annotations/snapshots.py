@@ -14,10 +14,10 @@ from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.annotations.service import load_annotations
+from server.annotations.snapshot_models import SnapshotRow
 from server.annotations.sources import read_sources
 from server.database.paging import read_cursor, write_cursor
 from server.errors import ConflictError, NotFoundError
-from server.exchange.models import SnapshotRow
 from server.sequences.models import SequenceRow
 from server.storage import Storage
 from tracker import Annotation, Annotations

@@ -10,7 +10,7 @@ from sqlalchemy import ForeignKey, Index, String, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
-from server.decisions.models import DecisionRow
+from server.registrations.decision_models import DecisionRow
 from server.registrations.models import RegistrationRow
 
 

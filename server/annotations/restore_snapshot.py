@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,12 +9,12 @@ from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.access.models import Account
+from server.access.places import Place
+from server.access.policy import check_change
 from server.annotations.bulk import BulkChange, change_annotations, find_annotations
-from server.annotations.guards import PlaceGuard, check_change
-from server.annotations.service import Place
+from server.annotations.snapshot_models import SnapshotRow
+from server.annotations.snapshots import create_snapshot, read_snapshot
 from server.annotations.sources import write_sources
-from server.exchange.models import SnapshotRow
-from server.exchange.snapshots import create_snapshot, read_snapshot
 from server.sequences.models import SequenceRow
 from server.storage import Storage
 
@@ -41,7 +40,6 @@ def restore_snapshot(
     sequence: SequenceRow,
     snapshot: SnapshotRow,
     account: Account,
-    guards: Sequence[PlaceGuard],
 ) -> Restored:
     """All of it or nothing: a place that is locked refuses the whole."""
     kept = {item.key: item for item in read_snapshot(storage, snapshot).items}
@@ -56,7 +54,7 @@ def restore_snapshot(
         if wanted.get(key) != current.get(key):
             frame, camera, hand = key
             place = Place(sequence.id, camera, frame, hand)
-            check_change(guards, session, account, place)
+            check_change(session, account, place)
             if key in kept:
                 changes.append(BulkChange(place, "restore", wanted[key], write_sources(kept[key].sources)))
             else:

@@ -10,14 +10,14 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.access.service import find_names
-from server.decisions.models import DecisionRow
 from server.errors import NotFoundError
 from server.hand_models.models import HandModelRow
-from server.lineage.schemas import Kind, Lineage, LineageGroup, LineageItem
+from server.registrations.decision_models import DecisionRow
+from server.registrations.lineage_schemas import Kind, Lineage, LineageGroup, LineageItem
 from server.registrations.models import RegistrationRow
 from server.registrations.service import is_hidden_from
+from server.registrations.training_set_models import TrainingMemberRow, TrainingSetRow
 from server.scans.models import ScanRow
-from server.training_sets.models import TrainingMemberRow, TrainingSetRow
 from tracker import say_count
 
 Ids = set[uuid.UUID]

@@ -11,9 +11,9 @@ import pytest
 
 from server.database.database import Database
 from server.errors import InvalidError, NotFoundError
+from server.registrations import training_sets as service
+from server.registrations.training_set_schemas import TrainingRule
 from server.storage import Storage
-from server.training_sets import service
-from server.training_sets.schemas import TrainingRule
 from tests.server.curation import Curation, curation, join
 
 __all__ = ["curation", "join"]

@@ -21,17 +21,17 @@ from server.errors import ConflictError, InvalidError, NotFoundError
 from server.hand_models.models import HandModelRow
 from server.registrations import service as registrations
 from server.registrations.models import RegistrationRow
-from server.scans.models import ScanRow
-from server.storage import Storage
-from server.storage.digest import compute_digest
-from server.training_sets.models import TrainingMemberRow, TrainingSetRow
-from server.training_sets.schemas import (
+from server.registrations.training_set_models import TrainingMemberRow, TrainingSetRow
+from server.registrations.training_set_schemas import (
     TrainingMember,
     TrainingPreview,
     TrainingRule,
     TrainingSetOut,
     TrainingVerification,
 )
+from server.scans.models import ScanRow
+from server.storage import Storage
+from server.storage.digest import compute_digest
 
 AREA = "training_sets"
 MOST_DAMAGED = 100

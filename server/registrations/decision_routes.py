@@ -13,9 +13,11 @@ from server.access.audit import record_act
 from server.access.service import AccountIdDep, CurrentAccount, LeadAccount, ReviewerAccount
 from server.database import SessionDep, utc_now
 from server.database.paging import Cursor, Limit, Page
-from server.decisions import review, service
-from server.decisions.models import DecisionRow
-from server.decisions.schemas import (
+from server.errors import error_responses
+from server.registrations import decisions as service
+from server.registrations import review
+from server.registrations.decision_models import DecisionRow
+from server.registrations.decision_schemas import (
     REASONS,
     DecisionDone,
     DecisionMake,
@@ -27,7 +29,6 @@ from server.decisions.schemas import (
     SecondReviewAsked,
     Throughput,
 )
-from server.errors import error_responses
 from server.registrations.models import RegistrationRow
 from server.registrations.service import describe_registrations, get_registration
 

@@ -15,9 +15,8 @@ from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.download import name_download
 from server.errors import error_responses
-from server.storage import StorageDep
-from server.training_sets import service
-from server.training_sets.schemas import (
+from server.registrations import training_sets as service
+from server.registrations.training_set_schemas import (
     TrainingMember,
     TrainingPreview,
     TrainingRule,
@@ -25,6 +24,7 @@ from server.training_sets.schemas import (
     TrainingSetOut,
     TrainingVerification,
 )
+from server.storage import StorageDep
 
 router = APIRouter(prefix="/training-sets", tags=["training sets"], responses=error_responses())
 

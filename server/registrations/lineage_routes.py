@@ -9,8 +9,8 @@ from fastapi import APIRouter
 from server.access.service import AccountIdDep
 from server.database import SessionDep
 from server.errors import error_responses
-from server.lineage import service
-from server.lineage.schemas import Kind, Lineage
+from server.registrations import lineage as service
+from server.registrations.lineage_schemas import Kind, Lineage
 
 router = APIRouter(prefix="/lineage", tags=["curation"], responses=error_responses(404))
 

@@ -12,8 +12,8 @@ from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
 from server.access.service import find_names
-from server.decisions.models import DecisionRow
-from server.decisions.schemas import (
+from server.registrations.decision_models import DecisionRow
+from server.registrations.decision_schemas import (
     PersonThroughput,
     ReviewAgreement,
     ReviewerPair,

@@ -1,1 +1,0 @@
-"""Registrations that a hand model is trained from, kept as they are."""

@@ -10,7 +10,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.access.models import AuditRow
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 
 
 def record_act(
@@ -47,7 +47,7 @@ def list_acts(
     session: Session, which: AuditFilter, cursor: str | None, limit: int
 ) -> tuple[list[AuditRow], str | None]:
     """Lines of the trail, the newest first. `act` finds `assignment.submit` by `assignment` too."""
-    query = select(AuditRow).order_by(AuditRow.time.desc(), AuditRow.id.desc()).limit(limit + 1)
+    query = select(AuditRow)
     if which.account_id is not None:
         query = query.where(AuditRow.account_id == which.account_id)
     if which.act is not None:
@@ -56,11 +56,4 @@ def list_acts(
         query = query.where(AuditRow.subject == which.subject)
     if which.subject_id is not None:
         query = query.where(AuditRow.subject_id == which.subject_id)
-    if cursor is not None:
-        time, id_ = read_moment_cursor(cursor)
-        query = query.where((AuditRow.time < time) | ((AuditRow.time == time) & (AuditRow.id < id_)))
-    rows = list(session.scalars(query))
-    if len(rows) <= limit:
-        return rows, None
-    last = rows[limit - 1]
-    return rows[:limit], write_cursor(last.time.isoformat(), str(last.id))
+    return fetch_page(session, query, (AuditRow.time, AuditRow.id), cursor, limit)

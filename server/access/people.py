@@ -13,7 +13,7 @@ from server.access.audit import record_act
 from server.access.logins import count_admins_who_can_log_in, end_logins
 from server.access.models import LOCAL_ACCOUNT_ID, ROLES, Account, LoginRow, PasswordCodeRow, Role
 from server.database import utc_now
-from server.database.paging import read_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, ForbiddenError, InvalidError, NotFoundError
 
 NAME = re.compile(r"[\w][\w .@+'-]{0,78}[\w.]|\w", re.UNICODE)
@@ -122,15 +122,8 @@ def check_an_admin_is_left(session: Session) -> None:
 
 def list_accounts(session: Session, cursor: str | None, limit: int) -> tuple[list[Account], str | None]:
     """Accounts by name."""
-    query = select(Account).order_by(func.lower(Account.name), Account.id).limit(limit + 1)
-    if cursor is not None:
-        (name,) = read_cursor(cursor, str)
-        query = query.where(func.lower(Account.name) > name.replace("\0", ""))
-    rows = list(session.scalars(query))
-    if len(rows) <= limit:
-        return rows, None
-    last = session.scalar(select(func.lower(Account.name)).where(Account.id == rows[limit - 1].id))
-    return rows[:limit], write_cursor(str(last))
+    order = (func.lower(Account.name), Account.id)
+    return fetch_page(session, select(Account), order, cursor, limit, is_falling=False)
 
 
 def find_last_seen(session: Session, account_ids: list[uuid.UUID]) -> dict:

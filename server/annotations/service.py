@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from sqlalchemy import Label, and_, case, distinct, func, not_, null, select, tuple_
+from sqlalchemy import Label, and_, case, distinct, func, not_, null, select
 from sqlalchemy.orm import Session
 
 from server.access.places import HiddenPlaces, Place
 from server.annotations.models import AnnotationRevisionRow, AnnotationRow
 from server.annotations.sources import JOINT_COUNT, read_sources
-from server.database.paging import read_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import InvalidError, NotFoundError
 from server.sequences.models import SequenceRow
 from tracker import Annotation, Annotations
@@ -133,14 +133,9 @@ def list_annotations(
                 )
             )
         )
-    if cursor is not None:
-        query = query.where(tuple_(*order) > tuple(read_cursor(cursor, int, str, str)))
-    query = query.order_by(*order)
-    rows = session.scalars(query if limit is None else query.limit(limit + 1)).all()
-    if limit is None or len(rows) <= limit:
-        return rows, None
-    last = rows[limit - 1]
-    return rows[:limit], write_cursor(last.frame, last.camera, last.hand)
+    if limit is None:
+        return session.scalars(query.order_by(*order)).all(), None
+    return fetch_page(session, query, order, cursor, limit, is_falling=False)
 
 
 def load_annotations(

@@ -9,14 +9,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from sqlalchemy import func, select, tuple_
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.annotations.service import load_annotations
 from server.annotations.snapshot_models import SnapshotRow
 from server.annotations.sources import read_sources
-from server.database.paging import read_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, NotFoundError
 from server.sequences.models import SequenceRow
 from server.storage import Storage
@@ -107,12 +107,7 @@ def list_snapshots(
 ) -> tuple[Sequence[SnapshotRow], str | None]:
     """Newest first."""
     query = select(SnapshotRow).where(SnapshotRow.sequence_id == sequence_id)
-    if cursor is not None:
-        query = query.where(tuple_(SnapshotRow.version) < tuple_(*read_cursor(cursor, int)))
-    rows = session.scalars(query.order_by(SnapshotRow.version.desc()).limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    return rows[:limit], write_cursor(rows[limit - 1].version)
+    return fetch_page(session, query, (SnapshotRow.version,), cursor, limit)
 
 
 def verify_snapshot(storage: Storage, row: SnapshotRow) -> Verification:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import uuid
 from collections.abc import Sequence
 
-from sqlalchemy import literal, select, tuple_, union_all
+from sqlalchemy import literal, select, union_all
 from sqlalchemy.orm import Session
 
 from server.access.models import Account, AuditRow
 from server.access.service import find_names
 from server.bin.kinds import BIN_KINDS, BinKind
 from server.bin.schemas import BinItem
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, NotFoundError
 from server.storage import Storage
 
@@ -36,26 +36,22 @@ def list_bin(
             for kind in chosen
         )
     ).subquery()
-    query = select(together).order_by(together.c.deleted_at.desc(), together.c.id.desc()).limit(limit + 1)
-    if cursor is not None:
-        query = query.where(tuple_(together.c.deleted_at, together.c.id) < read_moment_cursor(cursor))
-    rows = session.execute(query).all()
-    people = _find_deleters(session, [row.id for row in rows])
+    order = (together.c.deleted_at, together.c.id)
+    rows, next_cursor = fetch_page(session, select(together), order, cursor, limit)
+    people = _find_deleters(session, [id_ for _, id_, _, _ in rows])
     items = [
         BinItem(
-            kind=row.kind,
-            word=by_name[row.kind].word,
-            id=row.id,
-            name=row.name,
-            deleted_at=row.deleted_at,
-            deleted_by_name=people.get(row.id),
-            byte_count=_measure(storage, by_name[row.kind], row.id),
+            kind=name,
+            word=by_name[name].word,
+            id=id_,
+            name=called,
+            deleted_at=deleted_at,
+            deleted_by_name=people.get(id_),
+            byte_count=_measure(storage, by_name[name], id_),
         )
-        for row in rows[:limit]
+        for name, id_, called, deleted_at in rows
     ]
-    if len(rows) <= limit:
-        return items, None
-    return items, write_cursor(items[-1].deleted_at.isoformat(), str(items[-1].id))
+    return items, next_cursor
 
 
 def restore(session: Session, account: Account, name: str, id_: uuid.UUID) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import timedelta
 from pathlib import Path
 
-from sqlalchemy import select, tuple_
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
@@ -16,7 +16,7 @@ from server.calibrations.checking import check_films
 from server.calibrations.models import CalibrationRow
 from server.calibrations.schemas import CalibrationCheck, CalibrationOptions, FilmReport
 from server.database import Database, utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, NotFoundError
 from server.storage import Storage
 from server.storage.upload import Upload
@@ -27,13 +27,7 @@ GONE = "Its films were removed, as they are when nobody has used them for long. 
 def list_calibrations(session: Session, cursor: str | None, limit: int) -> tuple[Sequence[CalibrationRow], str | None]:
     """Those that are not deleted, the newest first."""
     query = select(CalibrationRow).where(CalibrationRow.deleted_at.is_(None))
-    if cursor is not None:
-        query = query.where(tuple_(CalibrationRow.created_at, CalibrationRow.id) < read_moment_cursor(cursor))
-    ordered = query.order_by(CalibrationRow.created_at.desc(), CalibrationRow.id.desc())
-    rows = session.scalars(ordered.limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+    return fetch_page(session, query, (CalibrationRow.created_at, CalibrationRow.id), cursor, limit)
 
 
 def get_calibration(session: Session, calibration_id: uuid.UUID) -> CalibrationRow:

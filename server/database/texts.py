@@ -6,6 +6,8 @@ import re
 from typing import Annotated
 
 from pydantic import AfterValidator, WithJsonSchema
+from sqlalchemy import ColumnElement, or_
+from sqlalchemy.orm import InstrumentedAttribute
 
 _HIDDEN = r"\x00-\x1f\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\uffff"
 """Control characters, and those that hide others or turn them round."""
@@ -30,3 +32,8 @@ Label = Annotated[str, *_text(LABEL, 100, "needed at most 100 printable characte
 LongLabel = Annotated[str, *_text(LABEL, 200, "needed at most 200 printable characters")]
 Text = Annotated[str, *_text(TEXT, 4000, "needed at most 4000 characters, none of them NUL")]
 Words = Annotated[str, *_text(WORDS, 4000, "needed 1 to 4000 characters, none of them NUL")]
+
+
+def match_words(search: str | None, *columns: InstrumentedAttribute[str]) -> list[ColumnElement[bool]]:
+    """Conditions for rows in which each word that is searched for stands in one of the columns, in any case."""
+    return [or_(*(column.icontains(word, autoescape=True) for column in columns)) for word in (search or "").split()]

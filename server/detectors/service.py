@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sqlalchemy import select, tuple_
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.detectors.models import DetectorRow
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.storage import Storage
@@ -33,12 +33,7 @@ class DamagedDetectorError(ConflictError):
 def list_detectors(session: Session, cursor: str | None, limit: int) -> tuple[Sequence[DetectorRow], str | None]:
     """Those that are not deleted, the newest first."""
     query = select(DetectorRow).where(DetectorRow.deleted_at.is_(None))
-    if cursor is not None:
-        query = query.where(tuple_(DetectorRow.created_at, DetectorRow.id) < read_moment_cursor(cursor))
-    rows = session.scalars(query.order_by(DetectorRow.created_at.desc(), DetectorRow.id.desc()).limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+    return fetch_page(session, query, (DetectorRow.created_at, DetectorRow.id), cursor, limit)
 
 
 def get_detector(session: Session, detector_id: uuid.UUID, *, deleted_too: bool = False) -> DetectorRow:

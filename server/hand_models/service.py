@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
-from sqlalchemy import Uuid, column, func, select, table, tuple_
+from sqlalchemy import Uuid, column, func, select, table
 from sqlalchemy.orm import Session
 
 from server.access.service import find_names
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import NotFoundError
 from server.hand_models.models import HandModelRow
 from server.hand_models.schemas import HandModelOut
@@ -53,13 +53,7 @@ def _describe_default(model: ArticulatedModel) -> HandModelOut:
 def list_hand_models(session: Session, cursor: str | None, limit: int) -> tuple[Sequence[HandModelRow], str | None]:
     """Those that were trained or uploaded, the newest first."""
     query = select(HandModelRow).where(HandModelRow.deleted_at.is_(None))
-    if cursor is not None:
-        query = query.where(tuple_(HandModelRow.created_at, HandModelRow.id) < read_moment_cursor(cursor))
-    query = query.order_by(HandModelRow.created_at.desc(), HandModelRow.id.desc())
-    rows = session.scalars(query.limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+    return fetch_page(session, query, (HandModelRow.created_at, HandModelRow.id), cursor, limit)
 
 
 def get_hand_model(session: Session, model_id: uuid.UUID, *, deleted_too: bool = False) -> HandModelRow:

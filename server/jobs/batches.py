@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from typing import Any
 from uuid import UUID, uuid4
 
-from sqlalchemy import func, select, tuple_
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session, aliased
 
 from server.access.service import find_names
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import InvalidError, NotFoundError, StudioError
 from server.jobs import service
 from server.jobs.models import ENDED_STATES, STATES, JobRow
@@ -70,16 +70,9 @@ def get_batch(session: Session, batch_id: UUID) -> BatchOut:
 def list_batches(session: Session, cursor: str | None, limit: int) -> tuple[list[BatchOut], str | None]:
     """Newest first."""
     began = func.min(JobRow.created_at)
-    query = select(JobRow.batch_id, began).where(JobRow.batch_id.is_not(None)).group_by(JobRow.batch_id)
-    if cursor is not None:
-        query = query.having(tuple_(began, JobRow.batch_id) < read_moment_cursor(cursor))
-    places = session.execute(query.order_by(began.desc(), JobRow.batch_id.desc()).limit(limit + 1)).all()
-    ids = [id_ for id_, _ in places[:limit] if id_ is not None]
-    batches = _summarize(session, ids)
-    if len(places) <= limit:
-        return batches, None
-    last = places[limit - 1]
-    return batches, write_cursor(last[1].isoformat(), str(last[0]))
+    query = select(JobRow.batch_id).where(JobRow.batch_id.is_not(None)).group_by(JobRow.batch_id)
+    ids, next_cursor = fetch_page(session, query, (began, JobRow.batch_id), cursor, limit)
+    return _summarize(session, ids), next_cursor
 
 
 def _summarize(session: Session, batch_ids: Sequence[UUID]) -> list[BatchOut]:

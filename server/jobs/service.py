@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import CursorResult, Select, case, func, select, tuple_, update
+from sqlalchemy import CursorResult, Select, case, func, select, update
 from sqlalchemy.orm import Session
 
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
+from server.database.texts import match_words
 from server.detectors.models import DetectorRow
 from server.detectors.service import get_detector
 from server.errors import ConflictError, InvalidError, NotFoundError
@@ -84,12 +85,8 @@ class JobFilter:
                 query = query.where(column == wanted)
         if self.states:
             query = query.where(JobRow.state.in_(self.states))
-        words = (self.search or "").split()
-        if words:
-            query = query.outerjoin(SequenceRow, SequenceRow.id == JobRow.sequence_id)
-        for word in words:
-            named = SequenceRow.name.icontains(word, autoescape=True)
-            query = query.where(named | JobRow.title.icontains(word, autoescape=True))
+        if found := match_words(self.search, SequenceRow.name, JobRow.title):
+            query = query.outerjoin(SequenceRow, SequenceRow.id == JobRow.sequence_id).where(*found)
         return query
 
 
@@ -97,13 +94,8 @@ def list_jobs(
     session: Session, wanted: JobFilter, cursor: str | None, limit: int
 ) -> tuple[Sequence[JobRow], str | None]:
     """Newest first."""
-    query = wanted.apply(select(JobRow)).order_by(JobRow.created_at.desc(), JobRow.id.desc())
-    if cursor is not None:
-        query = query.where(tuple_(JobRow.created_at, JobRow.id) < read_moment_cursor(cursor))
-    rows = session.scalars(query.limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+    query = wanted.apply(select(JobRow))
+    return fetch_page(session, query, (JobRow.created_at, JobRow.id), cursor, limit)
 
 
 def create_job(

@@ -5,12 +5,12 @@ from __future__ import annotations
 import uuid
 from collections.abc import Callable, Sequence
 
-from sqlalchemy import func, select, tuple_
+from sqlalchemy import func, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from server.access.service import find_names
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, ForbiddenError, InvalidError, NotFoundError
 from server.hand_models.models import HandModelRow
 from server.registrations.decision_models import DecisionRow
@@ -160,13 +160,7 @@ def list_decisions(
         query = query.where(DecisionRow.account_id == author_id)
     if registration_id is not None:
         query = query.where(DecisionRow.registration_id == registration_id)
-    if cursor is not None:
-        query = query.where(tuple_(DecisionRow.created_at, DecisionRow.id) < read_moment_cursor(cursor))
-    query = query.order_by(DecisionRow.created_at.desc(), DecisionRow.id.desc())
-    rows = list(session.scalars(query.limit(limit + 1)))
-    if len(rows) <= limit:
-        return rows, None
-    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+    return fetch_page(session, query, (DecisionRow.created_at, DecisionRow.id), cursor, limit)
 
 
 def describe_decisions(session: Session, rows: Sequence[DecisionRow]) -> list[DecisionOut]:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from sqlalchemy import ColumnElement, Select, and_, func, not_, or_, select, tuple_
+from sqlalchemy import ColumnElement, Select, and_, func, not_, or_, select
 from sqlalchemy.orm import Session
 
-from server.database.paging import read_id_cursor, read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import NotFoundError
 from server.hand_models.models import HandModelRow
 from server.registrations.models import RegistrationRow
@@ -105,21 +105,7 @@ def list_registrations(
     """A page of a queue. Who decides about what they see finds the rest by the cursor all the same."""
     query = wanted.apply(select(RegistrationRow), account_id).where(in_queue(queue, account_id))
     column = RegistrationRow.score if order == "likely_failures" else RegistrationRow.created_at
-    if cursor is not None:
-        query = query.where(tuple_(column, RegistrationRow.id) < _read_place(cursor, order))
-    query = query.order_by(column.desc(), RegistrationRow.id.desc())
-    rows = session.scalars(query.limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    last = rows[limit - 1]
-    place = last.score if order == "likely_failures" else last.created_at.isoformat()
-    return rows[:limit], write_cursor(place, str(last.id))  # pyright: ignore[reportArgumentType]
-
-
-def _read_place(cursor: str, order: Order) -> tuple[Any, uuid.UUID]:
-    if order == "newest":
-        return read_moment_cursor(cursor)
-    return read_id_cursor(cursor, float)
+    return fetch_page(session, query, (column, RegistrationRow.id), cursor, limit)
 
 
 def count_registrations(session: Session, wanted: RegistrationFilter, account_id: uuid.UUID) -> RegistrationCounts:

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import IO, Any
 
 import numpy as np
-from sqlalchemy import func, select, tuple_
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.access.service import find_names
-from server.database.paging import read_id_cursor, read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.hand_models.models import HandModelRow
 from server.registrations import service as registrations
@@ -183,13 +183,7 @@ def write_canonical(chosen: Sequence[Chosen], model_digests: dict[uuid.UUID, str
 
 def list_training_sets(session: Session, cursor: str | None, limit: int) -> tuple[Sequence[TrainingSetRow], str | None]:
     """Newest first."""
-    query = select(TrainingSetRow).order_by(TrainingSetRow.created_at.desc(), TrainingSetRow.id.desc())
-    if cursor is not None:
-        query = query.where(tuple_(TrainingSetRow.created_at, TrainingSetRow.id) < read_moment_cursor(cursor))
-    rows = session.scalars(query.limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+    return fetch_page(session, select(TrainingSetRow), (TrainingSetRow.created_at, TrainingSetRow.id), cursor, limit)
 
 
 def get_training_set(session: Session, set_id: uuid.UUID) -> TrainingSetRow:
@@ -225,11 +219,9 @@ def list_members(
         .join(RegistrationRow, RegistrationRow.id == TrainingMemberRow.registration_id)
         .join(ScanRow, ScanRow.id == RegistrationRow.scan_id)
         .where(TrainingMemberRow.training_set_id == set_id)
-        .order_by(ScanRow.name, TrainingMemberRow.id)
     )
-    if cursor is not None:
-        query = query.where(tuple_(ScanRow.name, TrainingMemberRow.id) > read_id_cursor(cursor, str))
-    found = session.execute(query.limit(limit + 1)).all()
+    order = (ScanRow.name, TrainingMemberRow.id)
+    found, next_cursor = fetch_page(session, query, order, cursor, limit, is_falling=False)
     items = [
         TrainingMember.model_validate(
             {
@@ -243,12 +235,9 @@ def list_members(
                 "decision_id": member.decision_id,
             }
         )
-        for member, row, scan in found[:limit]
+        for member, row, scan in found
     ]
-    if len(found) <= limit:
-        return items, None
-    member, _, scan = found[limit - 1]
-    return items, write_cursor(scan.name, str(member.id))
+    return items, next_cursor
 
 
 def read_list(storage: Storage, row: TrainingSetRow) -> dict[str, Any]:

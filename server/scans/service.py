@@ -11,11 +11,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from sqlalchemy import CursorResult, Select, func, select, tuple_, update
+from sqlalchemy import CursorResult, Select, func, select, update
 from sqlalchemy.orm import Session
 
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
+from server.database.texts import match_words
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.scans.cropping import LEAST_LEFT, check_crop, find_flags
 from server.scans.geometry import pack_scan
@@ -52,22 +53,15 @@ class ScanFilter:
         for name in ("collection", "subject", "pose", "side", "state"):
             if (wanted := getattr(self, name)) is not None:
                 query = query.where(getattr(ScanRow, name) == wanted)
-        for word in (self.search or "").split():
-            query = query.where(ScanRow.name.icontains(word, autoescape=True))
-        return query
+        return query.where(*match_words(self.search, ScanRow.name))
 
 
 def list_scans(
     session: Session, wanted: ScanFilter, cursor: str | None, limit: int
 ) -> tuple[Sequence[ScanRow], str | None]:
     """Newest first."""
-    query = wanted.apply(select(ScanRow)).order_by(ScanRow.created_at.desc(), ScanRow.id.desc())
-    if cursor is not None:
-        query = query.where(tuple_(ScanRow.created_at, ScanRow.id) < read_moment_cursor(cursor))
-    rows = session.scalars(query.limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+    query = wanted.apply(select(ScanRow))
+    return fetch_page(session, query, (ScanRow.created_at, ScanRow.id), cursor, limit)
 
 
 def list_collections(session: Session) -> list[CollectionOut]:

@@ -7,11 +7,12 @@ import uuid
 from collections.abc import Sequence as Many
 from typing import Any
 
-from sqlalchemy import select, tuple_, update
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
+from server.database.texts import match_words
 from server.errors import ConflictError, NotFoundError
 from server.sequences.content_key import compute_content_key
 from server.sequences.depth_range import measure_depth_range
@@ -68,17 +69,8 @@ def list_sequences(
     session: Session, search: str | None, cursor: str | None, limit: int
 ) -> tuple[Many[SequenceRow], str | None]:
     """Newest first; with `search`, those whose name holds each of its words, upper and lower case alike."""
-    query = select(SequenceRow).where(SequenceRow.deleted_at.is_(None))
-    for word in (search or "").split():
-        query = query.where(SequenceRow.name.icontains(word, autoescape=True))
-    if cursor is not None:
-        query = query.where(tuple_(SequenceRow.created_at, SequenceRow.id) < read_moment_cursor(cursor))
-    query = query.order_by(SequenceRow.created_at.desc(), SequenceRow.id.desc()).limit(limit + 1)
-    rows = session.scalars(query).all()
-    if len(rows) <= limit:
-        return rows, None
-    last = rows[limit - 1]
-    return rows[:limit], write_cursor(last.created_at.isoformat(), str(last.id))
+    query = select(SequenceRow).where(SequenceRow.deleted_at.is_(None), *match_words(search, SequenceRow.name))
+    return fetch_page(session, query, (SequenceRow.created_at, SequenceRow.id), cursor, limit)
 
 
 def get_sequence(session: Session, id_: uuid.UUID, *, deleted_too: bool = False) -> SequenceRow:

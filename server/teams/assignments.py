@@ -5,7 +5,7 @@ from __future__ import annotations
 import uuid
 from collections.abc import Sequence
 
-from sqlalchemy import ColumnElement, func, or_, select, tuple_
+from sqlalchemy import ColumnElement, func, or_, select
 from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
@@ -13,7 +13,7 @@ from server.access.models import Account
 from server.access.project_models import AssignmentRow, AssignmentState, CommentRow, ProjectRow, ReplicaSetRow
 from server.access.service import find_names, has_role
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, ForbiddenError, InvalidError, NotFoundError
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
@@ -48,13 +48,7 @@ def list_assignments(
             *conditions,
         )
     )
-    if cursor is not None:
-        query = query.where(tuple_(*order) > read_moment_cursor(cursor))
-    rows = session.scalars(query.order_by(*order).limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    last = rows[limit - 1]
-    return rows[:limit], write_cursor(last.created_at.isoformat(), str(last.id))
+    return fetch_page(session, query, order, cursor, limit, is_falling=False)
 
 
 def describe_assignments(session: Session, rows: Sequence[AssignmentRow]) -> list[AssignmentOut]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import uuid
 from collections.abc import Sequence
 
-from sqlalchemy import select, tuple_
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
@@ -15,7 +15,7 @@ from server.access.project_models import AssignmentRow, CommentRow, ReplicaSetRo
 from server.access.service import find_names, has_role
 from server.annotations.service import check_place
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ForbiddenError, InvalidError, NotFoundError
 from server.sequences.service import get_sequence
 from server.teams.schemas import CommentMake, CommentOut
@@ -39,13 +39,7 @@ def list_comments(
     """Comments on an assignment, the oldest first."""
     order = (CommentRow.created_at, CommentRow.id)
     query = select(CommentRow).where(CommentRow.assignment_id == row.id)
-    if cursor is not None:
-        query = query.where(tuple_(*order) > read_moment_cursor(cursor))
-    rows = session.scalars(query.order_by(*order).limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    last = rows[limit - 1]
-    return rows[:limit], write_cursor(last.created_at.isoformat(), str(last.id))
+    return fetch_page(session, query, order, cursor, limit, is_falling=False)
 
 
 def make_comment(session: Session, account: Account, row: AssignmentRow, body: CommentMake) -> CommentRow:

@@ -6,14 +6,14 @@ import uuid
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
-from sqlalchemy import select, tuple_
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from server.access.models import Account
 from server.access.project_models import ProjectRow
 from server.access.service import CurrentAccount, LeadAccount
 from server.database import SessionDep
-from server.database.paging import Cursor, Limit, Page, read_id_cursor, write_cursor
+from server.database.paging import Cursor, Limit, Page, fetch_page
 from server.database.revision import IfMatch, read_if_match, write_etag
 from server.errors import ConflictError, error_responses
 from server.sequences.service import get_sequence
@@ -29,11 +29,8 @@ def list_people(
 ) -> Page[Person]:
     """Everybody who can be given work, by name."""
     query = select(Account).where(Account.disabled_at.is_(None))
-    if cursor is not None:
-        query = query.where(tuple_(Account.name, Account.id) > read_id_cursor(cursor, str))
-    rows = session.scalars(query.order_by(Account.name, Account.id).limit(limit + 1)).all()
-    items = [Person(id=row.id, name=row.name, role=row.role) for row in rows[:limit]]
-    return Page(items=items, next_cursor=write_cursor(items[-1].name, str(items[-1].id)) if len(rows) > limit else None)
+    rows, next_cursor = fetch_page(session, query, (Account.name, Account.id), cursor, limit, is_falling=False)
+    return Page(items=[Person(id=row.id, name=row.name, role=row.role) for row in rows], next_cursor=next_cursor)
 
 
 @router.get("/projects")

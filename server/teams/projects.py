@@ -5,7 +5,7 @@ from __future__ import annotations
 import uuid
 from collections.abc import Sequence
 
-from sqlalchemy import func, select, tuple_
+from sqlalchemy import func, select
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
@@ -13,7 +13,7 @@ from server.access.audit import record_act
 from server.access.models import Account
 from server.access.project_models import AssignmentRow, ProjectRow, ProjectSequenceRow
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, NotFoundError
 from server.sequences.models import SequenceRow
 from server.teams.schemas import ProjectMake, ProjectOut, ProjectPatch, ProjectRecording, StateCounts
@@ -33,14 +33,7 @@ def list_projects(
     """Newest first, either those at work or those archived."""
     gone = ProjectRow.archived_at.is_not(None) if archived else ProjectRow.archived_at.is_(None)
     query = select(ProjectRow).where(gone)
-    if cursor is not None:
-        query = query.where(tuple_(ProjectRow.created_at, ProjectRow.id) < read_moment_cursor(cursor))
-    query = query.order_by(ProjectRow.created_at.desc(), ProjectRow.id.desc()).limit(limit + 1)
-    rows = session.scalars(query).all()
-    if len(rows) <= limit:
-        return rows, None
-    last = rows[limit - 1]
-    return rows[:limit], write_cursor(last.created_at.isoformat(), str(last.id))
+    return fetch_page(session, query, (ProjectRow.created_at, ProjectRow.id), cursor, limit)
 
 
 def describe_projects(session: Session, rows: Sequence[ProjectRow]) -> list[ProjectOut]:
@@ -183,10 +176,7 @@ def list_recordings(
         .join(SequenceRow, SequenceRow.id == ProjectSequenceRow.sequence_id)
         .where(ProjectSequenceRow.project_id == project.id, SequenceRow.deleted_at.is_(None))
     )
-    if cursor is not None:
-        query = query.where(tuple_(*order) > read_moment_cursor(cursor))
-    found = session.execute(query.order_by(*order).limit(limit + 1)).all()
-    page = found[:limit]
+    page, next_cursor = fetch_page(session, query, order, cursor, limit, is_falling=False)
     frames = _count_frames(session, project.id, [sequence.id for _, sequence in page])
     items = [
         ProjectRecording.model_validate(
@@ -203,10 +193,7 @@ def list_recordings(
         )
         for member, sequence in page
     ]
-    if len(found) <= limit:
-        return items, None
-    last = page[-1][0]
-    return items, write_cursor(last.added_at.isoformat(), str(last.id))
+    return items, next_cursor
 
 
 def _count_frames(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import uuid
 from collections.abc import Sequence
 
-from sqlalchemy import func, select, tuple_
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
@@ -13,7 +13,7 @@ from server.access.models import Account
 from server.access.project_models import AssignmentRow, ProjectRow, ReplicaSetRow
 from server.annotations.service import check_place
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, InvalidError, NotFoundError
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
@@ -28,13 +28,7 @@ def list_replica_sets(
     """Replica sets of a project, the newest first."""
     order = (ReplicaSetRow.created_at, ReplicaSetRow.id)
     query = select(ReplicaSetRow).where(ReplicaSetRow.project_id == project.id, ReplicaSetRow.deleted_at.is_(None))
-    if cursor is not None:
-        query = query.where(tuple_(*order) < read_moment_cursor(cursor))
-    rows = session.scalars(query.order_by(*(column.desc() for column in order)).limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    last = rows[limit - 1]
-    return rows[:limit], write_cursor(last.created_at.isoformat(), str(last.id))
+    return fetch_page(session, query, order, cursor, limit)
 
 
 def describe_replica_sets(session: Session, rows: Sequence[ReplicaSetRow]) -> list[ReplicaSetOut]:

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from sqlalchemy import func, select, tuple_
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from server.database import utc_now
-from server.database.paging import read_moment_cursor, write_cursor
+from server.database.paging import fetch_page
 from server.errors import ConflictError, NotFoundError
 from server.tracks.models import TrackRow
 
@@ -42,13 +42,7 @@ def list_tracks(
     query = select(TrackRow).where(TrackRow.deleted_at.is_(None))
     if sequence_id is not None:
         query = query.where(TrackRow.sequence_id == sequence_id)
-    if cursor is not None:
-        query = query.where(tuple_(TrackRow.created_at, TrackRow.id) < read_moment_cursor(cursor))
-    query = query.order_by(TrackRow.created_at.desc(), TrackRow.id.desc())
-    rows = session.scalars(query.limit(limit + 1)).all()
-    if len(rows) <= limit:
-        return rows, None
-    return rows[:limit], write_cursor(rows[limit - 1].created_at.isoformat(), str(rows[limit - 1].id))
+    return fetch_page(session, query, (TrackRow.created_at, TrackRow.id), cursor, limit)
 
 
 def add_track(

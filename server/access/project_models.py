@@ -1,4 +1,7 @@
-"""Tables of projects, assignments, comments and replica sets."""
+"""Tables of projects, assignments, comments and replica sets.
+
+The room of the recordings stands above this one, so the type of their ids is said here.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import uuid
 from datetime import datetime
 from typing import Any, Literal
 
-from sqlalchemy import CheckConstraint, ForeignKey, Index, String, Text, UniqueConstraint
+from sqlalchemy import CheckConstraint, ForeignKey, Index, String, Text, UniqueConstraint, Uuid
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
@@ -34,7 +37,7 @@ class ProjectSequenceRow(Base):
     __table_args__ = (UniqueConstraint("project_id", "sequence_id"),)
 
     project_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("projects.id"))
-    sequence_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("sequences.id"))
+    sequence_id: Mapped[uuid.UUID] = mapped_column(Uuid, ForeignKey("sequences.id"))
     added_at: Mapped[datetime] = mapped_column(default=utc_now)
 
 
@@ -44,7 +47,7 @@ class ReplicaSetRow(Base):
     __tablename__ = "replica_sets"
 
     project_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("projects.id"))
-    sequence_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("sequences.id"))
+    sequence_id: Mapped[uuid.UUID] = mapped_column(Uuid, ForeignKey("sequences.id"))
     name: Mapped[str] = mapped_column(String(200))
     frames: Mapped[list[Any]]
     cameras: Mapped[list[Any]]
@@ -66,7 +69,7 @@ class AssignmentRow(Base):
     )
 
     project_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("projects.id"))
-    sequence_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("sequences.id"))
+    sequence_id: Mapped[uuid.UUID] = mapped_column(Uuid, ForeignKey("sequences.id"))
     account_id: Mapped[uuid.UUID] = mapped_column(ForeignKey("accounts.id"))
     replica_set_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("replica_sets.id"))
     """With one, the annotations go into the replica named by this assignment's id."""

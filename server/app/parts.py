@@ -23,6 +23,7 @@ from server.exchange import snapshot_routes
 from server.hand_models import routes as hand_models
 from server.imports import routes as imports
 from server.imports.lifespan import clean_imports
+from server.jobs import old_routes as old_jobs
 from server.jobs import routes as jobs
 from server.live import routes as live
 from server.quality import queue_routes as quality_queue
@@ -64,6 +65,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     frame_routes.router,
     imports.router,
     jobs.router,
+    old_jobs.router,
     tracks.router,
     viewer.router,
     evaluations.router,

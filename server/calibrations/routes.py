@@ -56,7 +56,7 @@ def list_calibrations(session: SessionDep, cursor: Cursor = None, limit: Limit =
 async def create_calibration(
     request: Request, database: DatabaseDep, storage: StorageDep, account_id: AccountIdDep
 ) -> CalibrationOut:
-    """Upload what cameras filmed of a board, and have it checked. `POST /jobs/calibrate` calibrates them."""
+    """Upload what cameras filmed of a board, and have it checked. A job of the kind `calibrate` calibrates them."""
     settings = request.app.state.settings
     limits = UploadLimits(settings.max_upload_files, settings.max_upload_bytes)
 

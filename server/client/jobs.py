@@ -47,17 +47,17 @@ class Jobs:
 
     def register(self, **asked: Any) -> dict[str, Any]:
         """Start registering scans: a `collection`, or `scan_ids`; `only` is `new`, `not_accepted` or `all`."""
-        return self._link.send("POST", "/jobs/register", json=asked).json()
+        return self._link.send("POST", "/jobs", json={"kind": "register", **asked}).json()
 
     def train(self, training_set_id: str, name: str, **asked: Any) -> dict[str, Any]:
         """Start training a hand model, which will be the job's `hand_model_id`."""
         return self._link.send(
-            "POST", "/jobs/train", json={"training_set_id": training_set_id, "name": name, **asked}
+            "POST", "/jobs", json={"kind": "train", "training_set_id": training_set_id, "name": name, **asked}
         ).json()
 
     def loop(self, name: str, **asked: Any) -> dict[str, Any]:
         """Start register, choose, train, register again."""
-        return self._link.send("POST", "/jobs/loop", json={"name": name, **asked}).json()
+        return self._link.send("POST", "/jobs", json={"kind": "loop", "name": name, **asked}).json()
 
     def cancel(self, job_id: str) -> dict[str, Any]:
         return self._link.send("POST", f"/jobs/{job_id}/cancel", is_repeatable=True).json()

@@ -11,6 +11,7 @@ from server.access.audit import record_act
 from server.access.service import AccountIdDep, LeadAccount, require_lead
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
+from server.deprecation import deprecated
 from server.download import name_download
 from server.errors import NotFoundError, error_responses
 from server.hand_models import service, storing
@@ -116,7 +117,11 @@ def delete_hand_model(model_id: uuid.UUID, session: SessionDep, lead: LeadAccoun
     record_act(session, lead.id, "hand_model.delete", "hand_model", model_id)
 
 
-@router.post("/hand-models/{model_id}/restore", responses=error_responses(404))
+@router.post(
+    "/hand-models/{model_id}/restore",
+    responses=error_responses(404),
+    **deprecated("/bin/hand_model/{model_id}/restore"),
+)
 def restore_hand_model(model_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> HandModelOut:
     """Undo a deletion."""
     row = service.get_hand_model(session, model_id, deleted_too=True)

@@ -12,25 +12,22 @@ from sqlalchemy.orm import Session
 
 from server.access.audit import record_act
 from server.access.service import ReviewerAccount
-from server.calibrations.service import get_calibration
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import StudioError, error_responses
 from server.jobs import batches, create_jobs, events, restarting, service, workers
 from server.jobs.calibrating import KIND as CALIBRATE
-from server.jobs.calibrating import find_calibrate_obstacles, follow_job, make_calibrate_job
+from server.jobs.calibrating import follow_job
 from server.jobs.describe import describe_job, describe_jobs
 from server.jobs.form import track_form
+from server.jobs.job_kinds import find_obstacles, start_job
 from server.jobs.models import ENDED_STATES, JobRow, WorkerRow
 from server.jobs.obstacles import (
-    find_detect_obstacles,
-    find_register_obstacles,
-    find_track_obstacles,
     make_check,
     refuse_at,
 )
-from server.jobs.scan_choice import list_loop_scans
 from server.jobs.schemas import (
+    AnyJobCreate,
     BatchCheck,
     BatchCreate,
     BatchMade,
@@ -38,22 +35,15 @@ from server.jobs.schemas import (
     BulkAct,
     BulkDone,
     BulkRefusal,
-    CalibrateCreate,
-    DetectCreate,
     JobCheck,
-    JobCreate,
     JobForm,
     JobKind,
     JobLog,
     JobOut,
     JobState,
-    LoopCreate,
-    RegisterCreate,
     RestartCheck,
-    TrainCreate,
     WorkerOut,
 )
-from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles
 from server.storage import Storage, StorageDep
 
 router = APIRouter(tags=["jobs"], responses=error_responses())
@@ -64,98 +54,16 @@ EVENT_STREAM: dict[int | str, dict[str, Any]] = {
 
 
 @router.post("/jobs", status_code=201, responses=error_responses(404))
-def create_job(body: JobCreate, session: SessionDep, account: ReviewerAccount) -> JobOut:
-    """Queue a job."""
-    params = service.check_track_params(session, body.sequence_id, body.params)
-    job = service.create_job(session, body.kind, body.sequence_id, params, created_by=account.id)
-    record_act(session, account.id, "job.start", "job", job.id)
-    return describe_job(session, job)
+def create_job(body: AnyJobCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
+    """Queue a job of the `kind` that the body names: `track` and `detect` a recording, `calibrate` cameras from films,
+    `register` scans, `train` a hand model, or `loop`: register, choose, train and register again."""
+    return describe_job(session, start_job(session, storage, body, account.id))
 
 
 @router.post("/jobs/check", responses=error_responses(404))
-def check_job(body: JobCreate, session: SessionDep, account: ReviewerAccount) -> JobCheck:
-    """Whether a recording can be tracked so, and why not. Nothing is started."""
-    return make_check(session, find_track_obstacles(session, body.sequence_id, body.params))
-
-
-@router.post("/jobs/detect/check", responses=error_responses(404))
-def check_detect_job(body: DetectCreate, session: SessionDep, account: ReviewerAccount) -> JobCheck:
-    """Whether the hand detector can look at a recording, and why not. Nothing is started."""
-    return make_check(session, find_detect_obstacles(session, body.sequence_id))
-
-
-@router.post("/jobs/detect", status_code=201, responses=error_responses(404))
-def create_detect_job(body: DetectCreate, session: SessionDep, account: ReviewerAccount) -> JobOut:
-    """Find the hands in every image of a recording; what is found is suggested to whoever annotates it."""
-    service.check_detection(session, body.sequence_id)
-    job = service.create_job(session, "detect", body.sequence_id, {}, created_by=account.id)
-    record_act(session, account.id, "job.start", "job", job.id)
-    return describe_job(session, job)
-
-
-@router.post("/jobs/register/check", responses=error_responses(404))
-def check_register_job(
-    body: RegisterCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
-) -> JobCheck:
+def check_job(body: AnyJobCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobCheck:
     """Whether such a job can be started, and why not. Nothing is started."""
-    return make_check(session, find_register_obstacles(session, storage, body))
-
-
-@router.post("/jobs/register", status_code=201, responses=error_responses(404))
-def create_register_job(
-    body: RegisterCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
-) -> JobOut:
-    """Register scans, one after the other; each is there to be curated as soon as it is done."""
-    job = create_jobs.make_register_job(session, storage, body, account.id)
-    record_act(session, account.id, "job.start", "job", job.id)
-    return describe_job(session, job)
-
-
-@router.post("/jobs/train/check", responses=error_responses(404))
-def check_train_job(body: TrainCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobCheck:
-    """Whether such a job can be started, and why not. Nothing is started."""
-    return make_check(session, find_train_obstacles(session, storage, body))
-
-
-@router.post("/jobs/train", status_code=201, responses=error_responses(404))
-def create_train_job(body: TrainCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
-    """Train a hand model from a training set."""
-    job = create_jobs.make_train_job(session, storage, body, account.id)
-    record_act(session, account.id, "job.start", "job", job.id)
-    return describe_job(session, job)
-
-
-@router.post("/jobs/loop/check", responses=error_responses(404))
-def check_loop_job(body: LoopCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobCheck:
-    """Whether such a job can be started, and why not. Nothing is started."""
-    return make_check(session, find_loop_obstacles(session, storage, body, list_loop_scans(session, body)))
-
-
-@router.post("/jobs/loop", status_code=201, responses=error_responses(404))
-def create_loop_job(body: LoopCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
-    """Register all, choose, train, register all again with the new model; several rounds of it when asked."""
-    job = create_jobs.make_loop_job(session, storage, body, account.id)
-    record_act(session, account.id, "job.start", "job", job.id)
-    return describe_job(session, job)
-
-
-@router.post("/jobs/calibrate/check", responses=error_responses(404))
-def check_calibrate_job(
-    body: CalibrateCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
-) -> JobCheck:
-    """Whether such a job can be started, and why not. Nothing is started."""
-    return make_check(session, find_calibrate_obstacles(session, storage, body.calibration_id))
-
-
-@router.post("/jobs/calibrate", status_code=201, responses=error_responses(404))
-def create_calibrate_job(
-    body: CalibrateCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount
-) -> JobOut:
-    """Calibrate cameras from what they filmed of a board."""
-    get_calibration(session, body.calibration_id)
-    job = make_calibrate_job(session, storage, body.calibration_id, account.id)
-    record_act(session, account.id, "job.start", "job", job.id)
-    return describe_job(session, job)
+    return make_check(session, find_obstacles(session, storage, body))
 
 
 @router.post("/jobs/batch/check")

@@ -6,7 +6,7 @@ import uuid
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, model_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, StrictBool, Tag, model_validator
 
 from server.database.numbers import Whole
 from server.database.texts import Label, Name
@@ -127,6 +127,53 @@ class LoopCreate(BaseModel):
     leave_out_subjects: list[Label] = Field(default_factory=list, max_length=1000, description="Kept for testing.")
     options: TrainingParams = Field(default_factory=TrainingParams)
     evaluate: Evaluate = "no"
+
+
+class DetectJobCreate(DetectCreate):
+    """A job that finds the hands in every image of a recording; they are suggested to whoever annotates it."""
+
+    kind: Literal["detect"]
+
+
+class CalibrateJobCreate(CalibrateCreate):
+    """A job that calibrates cameras from what they filmed of a board."""
+
+    kind: Literal["calibrate"]
+
+
+class RegisterJobCreate(RegisterCreate):
+    """A job that registers scans; each can be curated as soon as it is done."""
+
+    kind: Literal["register"]
+
+
+class TrainJobCreate(TrainCreate):
+    """A job that trains a hand model from a training set."""
+
+    kind: Literal["train"]
+
+
+class LoopJobCreate(LoopCreate):
+    """A job that registers all scans, chooses, trains, and registers all with the new model."""
+
+    kind: Literal["loop"]
+
+
+def _read_kind(body: Any) -> Any:
+    """A body without a kind asks for tracking, as it did when there were no other kinds."""
+    return body.get("kind", "track") if isinstance(body, dict) else getattr(body, "kind", "track")
+
+
+AnyJobCreate = Annotated[
+    Annotated[JobCreate, Tag("track")]
+    | Annotated[DetectJobCreate, Tag("detect")]
+    | Annotated[CalibrateJobCreate, Tag("calibrate")]
+    | Annotated[RegisterJobCreate, Tag("register")]
+    | Annotated[TrainJobCreate, Tag("train")]
+    | Annotated[LoopJobCreate, Tag("loop")],
+    Discriminator(_read_kind),
+]
+"""What a job of any kind is to do."""
 
 
 class BatchCreate(BaseModel):

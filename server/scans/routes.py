@@ -15,6 +15,7 @@ from server.access.service import AccountIdDep, CurrentAccount, LeadAccount, fin
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.database.revision import IfMatch, read_if_match, write_etag
+from server.deprecation import deprecated
 from server.download import name_download
 from server.errors import ConflictError, error_responses
 from server.scans import measuring, service
@@ -177,7 +178,7 @@ def delete_scan(scan_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> N
     record_act(session, lead.id, "scan.delete", "scan", scan_id)
 
 
-@router.post("/{scan_id}/restore", responses=error_responses(404))
+@router.post("/{scan_id}/restore", responses=error_responses(404), **deprecated("/bin/scan/{scan_id}/restore"))
 def restore_scan(scan_id: uuid.UUID, session: SessionDep, summaries: SummariesDep, lead: LeadAccount) -> ScanOut:
     """Undo a deletion."""
     row = service.get_scan(session, scan_id, deleted_too=True)

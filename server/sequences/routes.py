@@ -12,6 +12,7 @@ from server.access.service import LeadAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.database.revision import IfMatch, read_if_match, write_etag
+from server.deprecation import deprecated
 from server.errors import ConflictError, error_responses
 from server.sequences import service
 from server.sequences.schemas import SequenceOut, SequencePatch
@@ -74,7 +75,7 @@ def delete_sequence(sequence_id: uuid.UUID, session: SessionDep, lead: LeadAccou
     record_act(session, lead.id, "recording.delete", "recording", sequence_id)
 
 
-@router.post("/{sequence_id}/restore")
+@router.post("/{sequence_id}/restore", **deprecated("/bin/recording/{sequence_id}/restore"))
 def restore_sequence(
     sequence_id: uuid.UUID, session: SessionDep, summaries: SummariesDep, lead: LeadAccount
 ) -> SequenceOut:

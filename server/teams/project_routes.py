@@ -15,6 +15,7 @@ from server.access.service import CurrentAccount, LeadAccount
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page, fetch_page
 from server.database.revision import IfMatch, read_if_match, write_etag
+from server.deprecation import deprecated
 from server.errors import ConflictError, error_responses
 from server.sequences.service import get_sequence
 from server.teams import projects
@@ -82,7 +83,7 @@ def archive_project(project_id: uuid.UUID, session: SessionDep, account: LeadAcc
     projects.archive_project(session, account, project_id, is_archived=True)
 
 
-@router.post("/projects/{project_id}/restore")
+@router.post("/projects/{project_id}/restore", **deprecated("/bin/project/{project_id}/restore"))
 def restore_project(project_id: uuid.UUID, session: SessionDep, account: LeadAccount, response: Response) -> ProjectOut:
     """Bring an archived project back."""
     return _answer(session, projects.archive_project(session, account, project_id, is_archived=False), response)

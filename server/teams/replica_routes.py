@@ -12,6 +12,7 @@ from server.access.service import CurrentAccount, LeadAccount, ReviewerAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
 from server.database import SessionDep
 from server.database.paging import Cursor, Limit, Page
+from server.deprecation import deprecated
 from server.download import name_download
 from server.errors import error_responses
 from server.teams import projects, replicas
@@ -55,7 +56,7 @@ def withdraw_replica_set(replica_set_id: uuid.UUID, session: SessionDep, account
     replicas.withdraw_replica_set(session, account, row, is_withdrawn=True)
 
 
-@router.post("/replica-sets/{replica_set_id}/restore")
+@router.post("/replica-sets/{replica_set_id}/restore", **deprecated("/bin/replica_set/{replica_set_id}/restore"))
 def restore_replica_set(replica_set_id: uuid.UUID, session: SessionDep, account: LeadAccount) -> ReplicaSetOut:
     """Undo a withdrawal."""
     row = replicas.get_replica_set(session, replica_set_id, hold=True, deleted_too=True)

@@ -17,6 +17,7 @@ from server.access.service import LeadAccount
 from server.database import Base, SessionDep
 from server.database.frames import FramePath
 from server.database.paging import Cursor, Limit, Page
+from server.deprecation import deprecated
 from server.download import name_download
 from server.errors import NotFoundError, error_responses
 from server.storage import StorageDep
@@ -68,7 +69,9 @@ def delete_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) ->
     return TrackOut.model_validate(service.delete_track(session, track_id))
 
 
-@router.post("/tracks/{track_id}/restore", responses=error_responses(404, 409))
+@router.post(
+    "/tracks/{track_id}/restore", responses=error_responses(404, 409), **deprecated("/bin/track/{track_id}/restore")
+)
 def restore_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> TrackOut:
     """Bring a deleted track back."""
     record_act(session, lead.id, "track.restore", "track", track_id)

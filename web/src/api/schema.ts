@@ -521,7 +521,7 @@ export interface paths {
         put?: never;
         /**
          * Create Calibration
-         * @description Upload what cameras filmed of a board, and have it checked. `POST /jobs/calibrate` calibrates them.
+         * @description Upload what cameras filmed of a board, and have it checked. A job of the kind `calibrate` calibrates them.
          */
         post: operations["create_calibration"];
         delete?: never;
@@ -1061,6 +1061,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Hand Model
+         * @deprecated
          * @description Undo a deletion.
          */
         post: operations["restore_hand_model"];
@@ -1269,7 +1270,8 @@ export interface paths {
         put?: never;
         /**
          * Create Job
-         * @description Queue a job.
+         * @description Queue a job of the `kind` that the body names: `track` and `detect` a recording, `calibrate` cameras from films,
+         *     `register` scans, `train` a hand model, or `loop`: register, choose, train and register again.
          */
         post: operations["create_job"];
         delete?: never;
@@ -1389,7 +1391,8 @@ export interface paths {
         put?: never;
         /**
          * Create Calibrate Job
-         * @description Calibrate cameras from what they filmed of a board.
+         * @deprecated
+         * @description `POST /jobs` with `kind: calibrate`.
          */
         post: operations["create_calibrate_job"];
         delete?: never;
@@ -1409,7 +1412,8 @@ export interface paths {
         put?: never;
         /**
          * Check Calibrate Job
-         * @description Whether such a job can be started, and why not. Nothing is started.
+         * @deprecated
+         * @description `POST /jobs/check` with `kind: calibrate`.
          */
         post: operations["check_calibrate_job"];
         delete?: never;
@@ -1429,7 +1433,7 @@ export interface paths {
         put?: never;
         /**
          * Check Job
-         * @description Whether a recording can be tracked so, and why not. Nothing is started.
+         * @description Whether such a job can be started, and why not. Nothing is started.
          */
         post: operations["check_job"];
         delete?: never;
@@ -1449,7 +1453,8 @@ export interface paths {
         put?: never;
         /**
          * Create Detect Job
-         * @description Find the hands in every image of a recording; what is found is suggested to whoever annotates it.
+         * @deprecated
+         * @description `POST /jobs` with `kind: detect`.
          */
         post: operations["create_detect_job"];
         delete?: never;
@@ -1469,7 +1474,8 @@ export interface paths {
         put?: never;
         /**
          * Check Detect Job
-         * @description Whether the hand detector can look at a recording, and why not. Nothing is started.
+         * @deprecated
+         * @description `POST /jobs/check` with `kind: detect`.
          */
         post: operations["check_detect_job"];
         delete?: never;
@@ -1529,7 +1535,8 @@ export interface paths {
         put?: never;
         /**
          * Create Loop Job
-         * @description Register all, choose, train, register all again with the new model; several rounds of it when asked.
+         * @deprecated
+         * @description `POST /jobs` with `kind: loop`.
          */
         post: operations["create_loop_job"];
         delete?: never;
@@ -1549,7 +1556,8 @@ export interface paths {
         put?: never;
         /**
          * Check Loop Job
-         * @description Whether such a job can be started, and why not. Nothing is started.
+         * @deprecated
+         * @description `POST /jobs/check` with `kind: loop`.
          */
         post: operations["check_loop_job"];
         delete?: never;
@@ -1569,7 +1577,8 @@ export interface paths {
         put?: never;
         /**
          * Create Register Job
-         * @description Register scans, one after the other; each is there to be curated as soon as it is done.
+         * @deprecated
+         * @description `POST /jobs` with `kind: register`.
          */
         post: operations["create_register_job"];
         delete?: never;
@@ -1589,7 +1598,8 @@ export interface paths {
         put?: never;
         /**
          * Check Register Job
-         * @description Whether such a job can be started, and why not. Nothing is started.
+         * @deprecated
+         * @description `POST /jobs/check` with `kind: register`.
          */
         post: operations["check_register_job"];
         delete?: never;
@@ -1609,7 +1619,8 @@ export interface paths {
         put?: never;
         /**
          * Create Train Job
-         * @description Train a hand model from a training set.
+         * @deprecated
+         * @description `POST /jobs` with `kind: train`.
          */
         post: operations["create_train_job"];
         delete?: never;
@@ -1629,7 +1640,8 @@ export interface paths {
         put?: never;
         /**
          * Check Train Job
-         * @description Whether such a job can be started, and why not. Nothing is started.
+         * @deprecated
+         * @description `POST /jobs/check` with `kind: train`.
          */
         post: operations["check_train_job"];
         delete?: never;
@@ -2087,6 +2099,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Project
+         * @deprecated
          * @description Bring an archived project back.
          */
         post: operations["restore_project"];
@@ -2419,6 +2432,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Replica Set
+         * @deprecated
          * @description Undo a withdrawal.
          */
         post: operations["restore_replica_set"];
@@ -2615,6 +2629,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Scan
+         * @deprecated
          * @description Undo a deletion.
          */
         post: operations["restore_scan"];
@@ -3092,6 +3107,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Sequence
+         * @deprecated
          * @description Undo a deletion.
          */
         post: operations["restore_sequence"];
@@ -3626,6 +3642,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Track
+         * @deprecated
          * @description Bring a deleted track back.
          */
         post: operations["restore_track"];
@@ -4650,6 +4667,22 @@ export interface components {
             calibration_id: string;
         };
         /**
+         * CalibrateJobCreate
+         * @description A job that calibrates cameras from what they filmed of a board.
+         */
+        CalibrateJobCreate: {
+            /**
+             * Calibration Id
+             * Format: uuid
+             */
+            calibration_id: string;
+            /**
+             * Kind
+             * @constant
+             */
+            kind: "calibrate";
+        };
+        /**
          * CalibrationCheck
          * @description Look at the films again, with other options.
          */
@@ -5182,6 +5215,22 @@ export interface components {
          * @description A recording whose hands are to be found.
          */
         DetectCreate: {
+            /**
+             * Sequence Id
+             * Format: uuid
+             */
+            sequence_id: string;
+        };
+        /**
+         * DetectJobCreate
+         * @description A job that finds the hands in every image of a recording; they are suggested to whoever annotates it.
+         */
+        DetectJobCreate: {
+            /**
+             * Kind
+             * @constant
+             */
+            kind: "detect";
             /**
              * Sequence Id
              * Format: uuid
@@ -6701,6 +6750,58 @@ export interface components {
             rounds: number;
         };
         /**
+         * LoopJobCreate
+         * @description A job that registers all scans, chooses, trains, and registers all with the new model.
+         */
+        LoopJobCreate: {
+            /**
+             * By
+             * @description What is trained from. `verdict`: what the program calls good and nobody rejected; `decisions`: what people have accepted by now. Then one round is done, and its registrations wait for people.
+             * @default verdict
+             * @enum {string}
+             */
+            by: "verdict" | "decisions";
+            /**
+             * Collection
+             * @description Null: all scans.
+             */
+            collection?: string | null;
+            /**
+             * Evaluate
+             * @description Judge the model on people that it was not trained on, once it is stored. `quick`: beside the untrained hand and without blend shapes; `full`: also beside plain skinning and right hands only, which are trained for it.
+             * @default no
+             * @enum {string}
+             */
+            evaluate: "no" | "quick" | "full";
+            /**
+             * Kind
+             * @constant
+             */
+            kind: "loop";
+            /**
+             * Leave Out Subjects
+             * @description Kept for testing.
+             */
+            leave_out_subjects?: string[];
+            /**
+             * Model Id
+             * @description To begin with; null: the one not trained yet.
+             */
+            model_id?: string | null;
+            /**
+             * Name
+             * @description Of the models; the round is added.
+             */
+            name: string;
+            options?: components["schemas"]["TrainingParams"];
+            /**
+             * Rounds
+             * @description By decisions: 1.
+             * @default 1
+             */
+            rounds: number;
+        };
+        /**
          * MethodOut
          * @description Tracks with the same parameters, one for each recording, pooled.
          */
@@ -7655,6 +7756,41 @@ export interface components {
              * @description Null: of all collections.
              */
             collection?: string | null;
+            /**
+             * Model Id
+             * @description Null: the model that nobody has trained yet.
+             */
+            model_id?: string | null;
+            /**
+             * Only
+             * @description `new`: those that this model has not registered as they are cropped now; `not_accepted`: those whose newest registration nobody accepted.
+             * @default new
+             * @enum {string}
+             */
+            only: "new" | "not_accepted" | "all";
+            /**
+             * Scan Ids
+             * @description Empty: as the rest says.
+             */
+            scan_ids?: string[];
+            /** Subject */
+            subject?: string | null;
+        };
+        /**
+         * RegisterJobCreate
+         * @description A job that registers scans; each can be curated as soon as it is done.
+         */
+        RegisterJobCreate: {
+            /**
+             * Collection
+             * @description Null: of all collections.
+             */
+            collection?: string | null;
+            /**
+             * Kind
+             * @constant
+             */
+            kind: "register";
             /**
              * Model Id
              * @description Null: the model that nobody has trained yet.
@@ -8917,6 +9053,44 @@ export interface components {
              * @enum {string}
              */
             evaluate: "no" | "quick" | "full";
+            /**
+             * Model Id
+             * @description To begin with; null: the one not trained yet.
+             */
+            model_id?: string | null;
+            /** Name */
+            name: string;
+            options?: components["schemas"]["TrainingParams"];
+            /** @description What it chooses now is kept as a training set of this name, and learnt from. */
+            rule?: components["schemas"]["TrainingRule"] | null;
+            /**
+             * Test Subjects
+             * @description To judge on; empty: those whom the training set leaves out.
+             */
+            test_subjects?: string[];
+            /**
+             * Training Set Id
+             * @description To learn from; or else `rule`.
+             */
+            training_set_id?: string | null;
+        };
+        /**
+         * TrainJobCreate
+         * @description A job that trains a hand model from a training set.
+         */
+        TrainJobCreate: {
+            /**
+             * Evaluate
+             * @description Judge the model on people that it was not trained on, once it is stored. `quick`: beside the untrained hand and without blend shapes; `full`: also beside plain skinning and right hands only, which are trained for it.
+             * @default no
+             * @enum {string}
+             */
+            evaluate: "no" | "quick" | "full";
+            /**
+             * Kind
+             * @constant
+             */
+            kind: "train";
             /**
              * Model Id
              * @description To begin with; null: the one not trained yet.
@@ -16116,7 +16290,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["JobCreate"];
+                "application/json": components["schemas"]["JobCreate"] | components["schemas"]["DetectJobCreate"] | components["schemas"]["CalibrateJobCreate"] | components["schemas"]["RegisterJobCreate"] | components["schemas"]["TrainJobCreate"] | components["schemas"]["LoopJobCreate"];
             };
         };
         responses: {
@@ -16811,7 +16985,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["JobCreate"];
+                "application/json": components["schemas"]["JobCreate"] | components["schemas"]["DetectJobCreate"] | components["schemas"]["CalibrateJobCreate"] | components["schemas"]["RegisterJobCreate"] | components["schemas"]["TrainJobCreate"] | components["schemas"]["LoopJobCreate"];
             };
         };
         responses: {

@@ -25,4 +25,8 @@ def deprecated(successor: str) -> dict[str, Any]:
         response.headers["Deprecation"] = f"@{int(SINCE.timestamp())}"
         response.headers["Link"] = f'<{path}>; rel="successor-version"'
 
-    return {"deprecated": True, "dependencies": [Depends(name_successor)]}
+    return {
+        "deprecated": True,
+        "dependencies": [Depends(name_successor)],
+        "openapi_extra": {"x-successor": successor},
+    }

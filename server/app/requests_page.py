@@ -18,7 +18,7 @@ from server.app.parts import ROUTERS
 HEAD = """# All requests
 
 Below `/api/v1`. `from` is the lowest role that may make a request: annotator (everybody who is logged in), reviewer,
-lead, admin; `all` needs no login. `make api` writes this page.
+lead, admin; `all` needs no login. What is deprecated answers until version 2. `make api` writes this page.
 """
 
 
@@ -50,6 +50,8 @@ def write_requests_page(document: dict[str, Any]) -> str:
             method = name.upper()
             role = "all" if (method, path) in OPEN else roles[method, path]
             says = re.sub(r"\s+", " ", operation["description"].partition("\n\n")[0]).replace("|", "\\|")
+            if operation.get("deprecated"):
+                says = f"Deprecated: use `{method} {operation['x-successor']}`. {says}"
             tables[operation["tags"][0]].append(f"| `{method} {path.removeprefix(API)}` | {role} | {says} |")
     parts = [
         "\n".join([f"## {tag[0].upper()}{tag[1:]}", "", "| request | from | does |", "|---|---|---|", *rows])

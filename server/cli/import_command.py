@@ -12,6 +12,7 @@ from server.cli.export_command import LABELS, find_recording
 from server.cli.guarded import CommandError, add_json, answer, run_guarded
 from server.cli.open_studio import open_studio
 from tracker import ImportRefusedError, say_count
+from tracker.capture import IMPORT_FORMATS
 
 if TYPE_CHECKING:
     from server.cli.open_studio import OpenStudio
@@ -49,7 +50,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--format",
         metavar="F",
-        help=f"recording_folder, rgbd_folder, tum_rgbd or synced_videos; {SCANS}; of labels: {', '.join(LABELS)}",
+        help=f"of recordings: {', '.join(IMPORT_FORMATS)}; {SCANS}; of labels: {', '.join(LABELS)}",
     )
     scans = parser.add_argument_group("scans: PLY, OBJ or STL files, or a folder of them, perhaps with a scans.json")
     scans.add_argument("--collection", metavar="NAME", help="what they belong to (the folder's name)")

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 UNTRAINED_ID = uuid.uuid5(NAMESPACE, "untrained/right")
 UNTRAINED_NAME = "Untrained right hand"
-TRAINED_ID = uuid.uuid5(NAMESPACE, "trained/right")
-TRAINED_NAME = "Trained right hand"
 HAND_BONES = 16
 
 
@@ -41,18 +39,26 @@ def describe_untrained() -> HandModelOut:
     )
 
 
-def describe_trained() -> HandModelOut:
-    """The hand learnt from scans of generated people that comes with Handloom, which recordings can be tracked with."""
-    from tracker import trained_hand
+def describe_learnt() -> list[HandModelOut]:
+    """The learnt hands that come with Handloom, which recordings can be tracked with."""
+    from tracker import BUILT_IN_HANDS
 
-    named = {"id": TRAINED_ID, "name": TRAINED_NAME, "kind": "default", "side": "right"}
-    return HandModelOut.model_validate(describe_model(trained_hand("right")) | named)
+    described = []
+    for hand in BUILT_IN_HANDS.values():
+        named = {
+            "id": uuid.uuid5(NAMESPACE, f"{hand.name}/right"),
+            "name": hand.title,
+            "kind": "default",
+            "side": "right",
+        }
+        described.append(HandModelOut.model_validate(describe_model(hand.load("right")) | named))
+    return described
 
 
 def list_built_in(session: Session) -> list[HandModelOut]:
     """Those that come with Handloom and that no row stands for."""
     is_stored = session.get(HandModelRow, UNTRAINED_ID) is not None
-    return [*list_default_models(), describe_trained(), *([] if is_stored else [describe_untrained()])]
+    return [*list_default_models(), *describe_learnt(), *([] if is_stored else [describe_untrained()])]
 
 
 def describe_model(model: BlendModel) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from server.detectors.models import DetectorRow
 from server.hand_models.models import HandModelRow
 from server.jobs.schemas import JobForm, JobFormField, JobPreset
-from server.jobs.service import DETECTOR, HAND_MODEL, TRAINED_HAND
+from server.jobs.service import DETECTOR, HAND_MODEL
 
 TYPE_NAMES: dict[type, Literal["integer", "number", "boolean", "text"]] = {
     int: "integer",
@@ -77,8 +77,10 @@ MOST_OFFERED = 100
 
 
 def _choose_hand(session: Session) -> JobFormField:
+    from tracker import BUILT_IN_HANDS
+
     text = "What the hands are taken to be; the other hand is its mirror image."
-    built_in = {"": "The default hand", TRAINED_HAND: "The hand learnt from scans of generated people"}
+    built_in = {"": "The default hand"} | {hand.name: hand.label for hand in BUILT_IN_HANDS.values()}
     return _choose(HAND_MODEL, "Hand model", text, built_in | _list_newest(session, HandModelRow))
 
 

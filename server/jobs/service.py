@@ -29,8 +29,6 @@ HAND_MODEL = "hand_model_id"
 DETECTOR = "detector_id"
 STUDIO_PARAMS = (HAND_MODEL, DETECTOR)
 """Among the params of a tracking job: the tracker's options know no models and no detectors of the studio."""
-TRAINED_HAND = "trained"
-"""In place of a hand model's id: the trained hand that comes with Handloom."""
 
 LOG_PAGE = 1000
 
@@ -156,12 +154,15 @@ def check_detection(session: Session, sequence_id: UUID) -> SequenceRow:
 
 
 def _check_hand_model(session: Session, value: Any) -> dict[str, str]:
-    """The id of a stored hand model as a param; none for the default hand."""
+    """The id of a stored hand model, or a built-in hand's name, as a param; none for the default hand."""
+    from tracker import BUILT_IN_HANDS
+
     if value in ("", None):
         return {}
-    if value == TRAINED_HAND:
-        return {HAND_MODEL: TRAINED_HAND}
-    model_id = _read_id(HAND_MODEL, value, "a hand model's id, 'trained', or nothing")
+    if value in BUILT_IN_HANDS:
+        return {HAND_MODEL: value}
+    needed = f"a hand model's id, {', '.join(map(repr, BUILT_IN_HANDS))}, or nothing"
+    model_id = _read_id(HAND_MODEL, value, needed)
     return {HAND_MODEL: str(get_hand_model(session, model_id).id)}
 
 

@@ -18,7 +18,7 @@ from server.hand_models.storing import find_file
 from server.jobs.files import JobFiles
 from server.jobs.models import JobRow
 from server.jobs.run import JobRun, WorkerContext
-from server.jobs.service import DETECTOR, HAND_MODEL, TRAINED_HAND
+from server.jobs.service import DETECTOR, HAND_MODEL
 from server.jobs.tracking import TrackingJob
 from server.sequences.service import get_sequence
 from server.tracks.service import add_track
@@ -103,8 +103,10 @@ class _TrackRun(JobRun):
         ]
 
     def _find_hand_model(self) -> Path | None:
+        from tracker import BUILT_IN_HANDS
+
         model_id = self.row.params.get(HAND_MODEL)
-        if not model_id or model_id == TRAINED_HAND:
+        if not model_id or model_id in BUILT_IN_HANDS:
             return None
         with self.context.database.reading() as session:
             return find_file(self.context.storage, get_hand_model(session, UUID(model_id), deleted_too=True))

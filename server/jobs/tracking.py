@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from server.errors import StudioError
 from server.jobs.files import JobFiles
 from server.jobs.progress import TRACKING_ENDS, JobProgress
-from server.jobs.service import HAND_MODEL, STUDIO_PARAMS, TRAINED_HAND
+from server.jobs.service import HAND_MODEL, STUDIO_PARAMS
 
 if TYPE_CHECKING:
     from tracker import ArticulatedModel, TrackOptions
@@ -59,12 +59,12 @@ class TrackingJob:
 
     def load_hands(self) -> dict[str, ArticulatedModel] | None:
         """Both hands of the chosen model."""
-        from tracker import articulated_of, load_blend_model, mirror_blend, trained_hand
+        from tracker import BUILT_IN_HANDS, articulated_of, load_blend_model, mirror_blend
 
         if self.hand_model is not None:
             model = load_blend_model(self.hand_model)
-        elif self.params.get(HAND_MODEL) == TRAINED_HAND:
-            model = trained_hand("right")
+        elif (name := self.params.get(HAND_MODEL)) in BUILT_IN_HANDS:
+            model = BUILT_IN_HANDS[name].load("right")
         else:
             return None
         return {hand.side: articulated_of(hand) for hand in (model, mirror_blend(model))}

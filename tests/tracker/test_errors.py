@@ -20,12 +20,12 @@ from tests.tracker.label_formats.test_hostile import make_hand
 from tracker import Scan, load_annotations, untrained_hand
 from tracker.calibration.board import Board
 from tracker.calibration.board_file import load_board, write_board
+from tracker.capture.anipose_calibration import parse_anipose
 from tracker.capture.archive import extract_archive
+from tracker.capture.colmap_calibration import parse_colmap
+from tracker.capture.dat_calibration import parse_dat
 from tracker.capture.image_file import decode_color, decode_depth
-from tracker.capture.importers.anipose_calibration import parse_anipose
-from tracker.capture.importers.colmap_calibration import parse_colmap
-from tracker.capture.importers.dat_calibration import parse_dat
-from tracker.capture.importers.opencv_calibration import parse_opencv
+from tracker.capture.opencv_calibration import parse_opencv
 from tracker.capture.scan import load_scan, save_scan
 from tracker.capture.scan_ply import write_ply
 from tracker.capture.video_file import VideoFile

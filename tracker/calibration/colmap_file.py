@@ -1,7 +1,7 @@
 """Cameras as COLMAP's text: `cameras.txt`, `images.txt` and an empty `points3D.txt`.
 
 COLMAP puts the centre of the first pixel at (0.5, 0.5): half a pixel is added here, and taken off by
-`tracker.capture.importers.colmap_calibration`.
+`tracker.capture.colmap_calibration`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
-from tracker.capture.importers.colmap_calibration import HALF_PIXEL, to_wxyz
+from tracker.capture.colmap_calibration import HALF_PIXEL, to_wxyz
 from tracker.errors import CalibrationError
 
 Array = npt.NDArray[np.float64]

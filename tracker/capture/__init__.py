@@ -12,12 +12,13 @@ if TYPE_CHECKING:
     from tracker.capture.camera import Camera
     from tracker.capture.frame import Frame
     from tracker.capture.frame_pattern import FramePattern, parse_pattern
-    from tracker.capture.import_check import IMPORT_FORMATS, check_import
+    from tracker.capture.import_check import check_import
     from tracker.capture.import_options import ImportOptions
     from tracker.capture.import_picture import read_import_picture
     from tracker.capture.import_plan import StreamProbe
     from tracker.capture.import_report import ImportReport
     from tracker.capture.import_run import run_import
+    from tracker.capture.importers import IMPORT_FORMATS
     from tracker.capture.joint_source import JointSource, JointSources
     from tracker.capture.recorded_camera import RecordedCamera
     from tracker.capture.recorded_object import RecordedObject

@@ -17,23 +17,18 @@ from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import Importer, ImportPlan, PlannedCamera, StreamProbe
 from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question, merge_questions
 from tracker.capture.import_report import ImportReport
-from tracker.capture.importers.recording_folder import RecordingFolder
-from tracker.capture.importers.rgbd_folder import RgbdFolder
-from tracker.capture.importers.synced_videos import SyncedVideos
-from tracker.capture.importers.tum_rgbd import TumRgbd
+from tracker.capture.importers import IMPORT_FORMATS, list_importers
 from tracker.capture.listed_files import ListedFiles, list_files
 from tracker.capture.object_units import MeasureMesh, ObjectCheck, ObjectReport
 from tracker.capture.sensor_presets import SensorFit, fit_presets
 from tracker.capture.sequence import MAX_FRAMES
 from tracker.errors import ImportRefusedError, TrackerError, say_count
 
-IMPORTERS: tuple[Importer, ...] = (RecordingFolder(), TumRgbd(), SyncedVideos(), RgbdFolder())
-"""In the order in which a folder is offered to them."""
-
-IMPORT_FORMATS: tuple[str, ...] = tuple(importer.format for importer in IMPORTERS)
-
 _LABEL_FILES = {"_xyz.json": "FreiHAND", "_joint_3d.json": "InterHand2.6M", "person_keypoints.json": "COCO"}
 """Ends of names that tell a set of labels from a recording."""
+
+OWN_FORMAT = "recording_folder"
+"""Its `sequence.json` tells which hands are seen."""
 
 SAMPLES = 12
 DEFAULT_FPS = 30.0
@@ -102,7 +97,7 @@ def examine(
         shown = "; ".join(files.refused[:5]) + ("; ..." if len(files.refused) > 5 else "")
         are = say_count(len(files.refused), "name in the folder is", "names in the folder are")
         problems.append(f"{are} not safe: {shown}.")
-    if options.hands is None and plan.format != RecordingFolder.format:
+    if options.hands is None and plan.format != OWN_FORMAT:
         warnings.append("Which hands are seen was not told; a right hand is assumed.")
         questions.append(_ask_hands())
     objects, measured = ObjectCheck(problems, warnings, questions), tuple(ObjectReport(o.name) for o in plan.objects)
@@ -142,7 +137,7 @@ def examine(
 
 def _choose_importer(files: ListedFiles, format: str | None) -> Importer:
     known = ", ".join(IMPORT_FORMATS)
-    for importer in IMPORTERS:
+    for importer in list_importers():
         if format == importer.format or (format is None and importer.recognises(files)):
             return importer
     if format is not None:

@@ -184,7 +184,12 @@ class Importer(Protocol):
 
     @property
     def format(self) -> str:
-        """Its name in commands and requests."""
+        """Its name in commands and requests, and that of its module."""
+        ...
+
+    @property
+    def turn(self) -> int:
+        """Importers with smaller numbers are offered a folder first."""
         ...
 
     def recognises(self, files: ListedFiles) -> bool:

@@ -6,10 +6,11 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from tracker.cli.command import TRAINED, add_json, parse_hand, run_guarded
+from tracker.cli.command import add_json, parse_hand, run_guarded
 from tracker.cli.hands import load_hands
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError
+from tracker.model.built_in_hands import BUILT_IN_HANDS
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
@@ -45,7 +46,7 @@ def calibrate(args: argparse.Namespace) -> dict[str, Any]:
     if args.out.suffix != ".npz":
         raise TrackerError(f"--out {args.out}: needed a file that ends in .npz.")
     sequence = load_sequence(args.recording)
-    named = [name for name, _ in args.hand if name != TRAINED]
+    named = [name for name, _ in args.hand if name not in BUILT_IN_HANDS]
     side = named[0] if named else sequence.hands[0] if len(sequence.hands) == 1 else ""
     if side not in sequence.hands:
         raise TrackerError(f"Needed --hand with one of {list(sequence.hands)}.")
@@ -55,7 +56,7 @@ def calibrate(args: argparse.Namespace) -> dict[str, Any]:
     setup, state = start_tracking(
         replace(sequence, hands=(side,), objects=()),
         TrackOptions(),
-        load_hands([hand for hand in args.hand if hand[1] is not None or hand[0] == TRAINED], (side,)),
+        load_hands([hand for hand in args.hand if hand[1] is not None or hand[0] in BUILT_IN_HANDS], (side,)),
         annotations,
         lambda stage, share: line.show(share, stage),
     )

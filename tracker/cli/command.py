@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tracker.errors import TrackerError
+from tracker.model.built_in_hands import BUILT_IN_HANDS
 
 BAD_INPUT, FAILED = 2, 1
 
@@ -60,10 +61,6 @@ def parse_range(text: str) -> tuple[int | None, int | None]:
     return bounds
 
 
-TRAINED = "trained"
-"""Stands for the hand that was learnt from scans."""
-
-
 def parse_named_file(text: str) -> tuple[str, Path]:
     """`NAME=FILE`."""
     name, equals, path = text.partition("=")
@@ -75,10 +72,10 @@ def parse_named_file(text: str) -> tuple[str, Path]:
 def parse_hand(text: str) -> tuple[str, Path | None]:
     """`right`, `left`, either with `=FILE`, its model, or `=trained`; `trained` alone for every hand."""
     name, path = parse_named_file(text) if "=" in text else (text, None)
-    if name not in ("right", "left", TRAINED):
+    if name not in ("right", "left", *BUILT_IN_HANDS):
         raise argparse.ArgumentTypeError(
-            f"{text!r}: a hand is 'right' or 'left', or right=FILE with its model; '{TRAINED}' is the hand learnt from "
-            "scans, for both"
+            f"{text!r}: a hand is 'right' or 'left', or right=FILE with its model, or for both "
+            + " or ".join(f"'{hand.name}' ({hand.label.lower()})" for hand in BUILT_IN_HANDS.values())
         )
     return name, path
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tracker.cli.command import TRAINED
 from tracker.errors import TrackerError
+from tracker.model.built_in_hands import BUILT_IN_HANDS
 from tracker.model.max_faces import MAX_FACES
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def load_hands(
     given: Sequence[tuple[str, Path | None]], hands: tuple[str, ...], max_faces: int | None = MAX_FACES
 ) -> dict[str, ArticulatedModel]:
-    """A model for each of the hands: from the file given for it, the hand learnt from scans, or the default hand.
+    """A model for each of the hands: from the file given for it, a built-in hand, or the default hand.
 
     Heavier meshes are decimated to `max_faces`; None keeps them.
 
@@ -27,9 +27,9 @@ def load_hands(
     from tracker.model.default_hand import default_hand
 
     files = dict(given)
-    if TRAINED in files:
-        del files[TRAINED]
-        files = dict.fromkeys(hands, Path(TRAINED)) | files
+    for name in BUILT_IN_HANDS.keys() & files.keys():
+        del files[name]
+        files = dict.fromkeys(hands, Path(name)) | files
     for side in files:
         if side not in hands:
             raise TrackerError(f"--hand {side}: there are the hands {list(hands)} only.")
@@ -48,9 +48,9 @@ def load_hands(
 def _load_hand(path: Path, side: str, max_faces: int | None) -> ArticulatedModel:
     from tracker.model import load_model
     from tracker.model.blend_articulated import articulated_of
-    from tracker.model.trained_hand import trained_hand
 
-    return articulated_of(trained_hand(side)) if path == Path(TRAINED) else load_model(path, max_faces)
+    built_in = BUILT_IN_HANDS.get(str(path))
+    return load_model(path, max_faces) if built_in is None else articulated_of(built_in.load(side))
 
 
 def load_objects(

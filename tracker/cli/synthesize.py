@@ -7,10 +7,11 @@ import time
 from pathlib import Path
 from typing import Any
 
-from tracker.cli.command import TRAINED, add_json, choose_frames, parse_hand, parse_range, run_guarded
+from tracker.cli.command import add_json, choose_frames, parse_hand, parse_range, run_guarded
 from tracker.cli.hands import load_hands
 from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError, say_count
+from tracker.model.built_in_hands import BUILT_IN_HANDS
 
 MOTION_FRAMES = 90
 
@@ -114,7 +115,7 @@ def _perform(args: argparse.Namespace):
         models = load_hands(args.hand or [], ("right", "left"))
         return play(models, args.motion, args.frames[1] or MOTION_FRAMES, args.cameras, args.size)
     given = args.hand or [("right", None)]
-    models = load_hands(given, tuple(name for name in dict(given) if name != TRAINED) or ("right",))
+    models = load_hands(given, tuple(name for name in dict(given) if name not in BUILT_IN_HANDS) or ("right",))
     return perform(models, args.motion, args.frames[1] or MOTION_FRAMES, args.cameras, args.size)
 
 

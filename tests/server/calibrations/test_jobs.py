@@ -18,7 +18,7 @@ from tests.server.calibrations.films import OFFSET_S, filmed, make_form, render_
 from tests.server.conftest import BASE_URL
 from tests.server.jobs.scan_bench import ScanBench, bench
 from tests.server.jobs.test_worker import wait_for_failure
-from tracker.capture.importers.anipose_calibration import parse_anipose
+from tracker.capture.anipose_calibration import parse_anipose
 
 __all__ = ["bench"]
 

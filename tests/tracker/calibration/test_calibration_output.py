@@ -19,11 +19,11 @@ from tracker.calibration.colmap_file import write_colmap
 from tracker.calibration.coverage import draw_coverage
 from tracker.calibration.known_lenses import load_lenses
 from tracker.calibration.opencv_file import write_opencv
+from tracker.capture.anipose_calibration import parse_anipose
 from tracker.capture.camera import Camera
-from tracker.capture.importers.anipose_calibration import parse_anipose
-from tracker.capture.importers.colmap_calibration import parse_colmap
-from tracker.capture.importers.opencv_calibration import find_cameras, parse_opencv
-from tracker.capture.importers.video_calibration import VideoCamera
+from tracker.capture.colmap_calibration import parse_colmap
+from tracker.capture.opencv_calibration import find_cameras, parse_opencv
+from tracker.capture.video_calibration import VideoCamera
 from tracker.errors import CalibrationError
 
 CAMERAS = film(3).cameras

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tracker.capture.importers.colmap_calibration import parse_colmap, to_wxyz
+from tracker.capture.colmap_calibration import parse_colmap, to_wxyz
 from tracker.errors import CalibrationError
 from tracker.geometry.se3 import exp
 

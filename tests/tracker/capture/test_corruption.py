@@ -16,9 +16,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tracker.capture import ImportOptions, check_import, load_annotations, load_sequence, run_import
-from tracker.capture.importers.anipose_calibration import parse_anipose
-from tracker.capture.importers.dat_calibration import parse_dat
-from tracker.capture.importers.opencv_calibration import find_cameras, parse_opencv
+from tracker.capture.anipose_calibration import parse_anipose
+from tracker.capture.dat_calibration import parse_dat
+from tracker.capture.opencv_calibration import find_cameras, parse_opencv
 from tracker.errors import ImportRefusedError, TrackerError
 
 MANY = settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tracker.capture import IMPORT_FORMATS, ImportOptions, check_import, load_sequence, run_import
+from tracker.capture.importers import list_importers
 from tracker.errors import ImportRefusedError
 
 SR300 = ImportOptions(fx=238.95, fy=238.95, cx=160, cy=120, depth_scale=0.001, fps=30)
@@ -23,7 +24,8 @@ def list_names(folder: Path) -> list[str]:
 
 def test_the_formats_are_those_of_the_manual() -> None:
     manual = (Path(__file__).parents[3] / "docs/recordings.md").read_text()
-    assert set(IMPORT_FORMATS) == {"recording_folder", "rgbd_folder", "tum_rgbd", "synced_videos"}
+    assert {"recording_folder", "rgbd_folder", "tum_rgbd", "synced_videos"} <= set(IMPORT_FORMATS)
+    assert [importer.format for importer in list_importers()][-1] == "rgbd_folder", "which takes any folder of images"
     for name in IMPORT_FORMATS:
         assert f"`{name}`" in manual
 

@@ -13,7 +13,7 @@ import pytest
 
 from tests.tracker.calibration.filmed_board import Filmed, film
 from tracker.calibration.board_file import write_board
-from tracker.capture.importers.anipose_calibration import parse_anipose
+from tracker.capture.anipose_calibration import parse_anipose
 from tracker.cli.__main__ import main
 
 OFFSET_S = 0.13

@@ -24,6 +24,7 @@ class RecordingFolder:
     """Importer of recording folders as DESIGN describes them; nothing may be missing in them."""
 
     format = "recording_folder"
+    turn = 1
 
     def recognises(self, files: ListedFiles) -> bool:
         return SEQUENCE_FILE in files.names

@@ -6,10 +6,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.image_files import ImageFiles
+from tracker.capture.image_series import choose_color, choose_depth, look_at
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
 from tracker.capture.import_question import ImportQuestion, make_question
-from tracker.capture.importers.image_series import choose_color, choose_depth, look_at
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.numbered_files import NumberedFiles
 from tracker.capture.sensor_presets import apply_preset
@@ -25,6 +25,7 @@ class RgbdFolder:
     """Importer of numbered depth PNGs; the intrinsics come by options."""
 
     format = "rgbd_folder"
+    turn = 9
 
     def recognises(self, files: ListedFiles) -> bool:
         return any(name.lower().endswith(".png") for name in files.names)

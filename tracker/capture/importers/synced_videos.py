@@ -8,19 +8,19 @@ from typing import Any
 
 import numpy as np
 
+from tracker.capture.anipose_calibration import parse_anipose
+from tracker.capture.colmap_calibration import parse_colmap
+from tracker.capture.dat_calibration import parse_dat
 from tracker.capture.document import read_regular_file
 from tracker.capture.frame_shifts import NO_SHIFT
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
 from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question
-from tracker.capture.importers.anipose_calibration import parse_anipose
-from tracker.capture.importers.colmap_calibration import parse_colmap
-from tracker.capture.importers.dat_calibration import parse_dat
-from tracker.capture.importers.opencv_calibration import find_cameras, parse_opencv
 from tracker.capture.importers.rgbd_folder import read_intrinsics
-from tracker.capture.importers.video_calibration import MAX_CALIBRATION_BYTES, VideoCamera
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.numbered_files import sort_naturally
+from tracker.capture.opencv_calibration import find_cameras, parse_opencv
+from tracker.capture.video_calibration import MAX_CALIBRATION_BYTES, VideoCamera
 from tracker.capture.video_file import VIDEO_SUFFIXES, VideoFile
 from tracker.errors import CalibrationError, ImportRefusedError, say_count
 
@@ -32,6 +32,7 @@ class SyncedVideos:
     """Importer of videos whose frame n was taken at one moment in all of them."""
 
     format = "synced_videos"
+    turn = 3
 
     def recognises(self, files: ListedFiles) -> bool:
         return any(name.lower().endswith(VIDEO_SUFFIXES) for name in files.names)

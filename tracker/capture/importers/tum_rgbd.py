@@ -39,6 +39,7 @@ class TumRgbd:
     """Importer of TUM RGB-D recordings; intrinsics by options or, when told, those of one of its cameras."""
 
     format = "tum_rgbd"
+    turn = 2
 
     def recognises(self, files: ListedFiles) -> bool:
         return "depth.txt" in files.names and "rgb.txt" in files.names

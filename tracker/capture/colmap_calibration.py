@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 import numpy as np
 import numpy.typing as npt
 
-from tracker.capture.importers.video_calibration import VideoCamera, make_camera
+from tracker.capture.video_calibration import VideoCamera, make_camera
 from tracker.errors import CalibrationError, reading
 
 Array = npt.NDArray[np.float64]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tracker.capture.importers.video_calibration import VideoCamera, make_camera
+from tracker.capture.video_calibration import VideoCamera, make_camera
 from tracker.errors import CalibrationError, reading
 
 _SECTIONS = {"intrinsic": "K", "distortion": "distortion", "r": "R", "t": "t"}

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tracker.capture.document import parse_json
-from tracker.capture.importers.video_calibration import MAX_CALIBRATION_BYTES, VideoCamera, make_camera
+from tracker.capture.video_calibration import MAX_CALIBRATION_BYTES, VideoCamera, make_camera
 from tracker.errors import CalibrationError, reading
 
 _NAMES = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from dataclasses import replace
 
-from tracker.capture.importers.video_calibration import VideoCamera, make_camera
+from tracker.capture.video_calibration import VideoCamera, make_camera
 from tracker.errors import CalibrationError, reading
 
 LONGEST_OFFSET_S = 600.0

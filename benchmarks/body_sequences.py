@@ -25,10 +25,10 @@ from scipy.spatial.transform import Rotation
 from tracker.bodies.body_registration import load_body_registration
 from tracker.bodies.body_sequence import TEMPLATE, TEMPLATES, Sequence, SequenceOptions, register_sequence
 from tracker.bodies.follow_body import FollowOptions
-from tracker.capture.scan import save_scan
 from tracker.model.body_hands import body_hand
 from tracker.model.body_model import body_model
-from tracker.synthesis.bodies.generate import SIDES
+from tracker.synthesis.bodies.body_set import truth_of, write_motion
+from tracker.synthesis.bodies.generate import BODY_SCANNER, SIDES
 from tracker.synthesis.bodies.moving import MovingPerson, make_motion
 
 Array = npt.NDArray[np.float64]
@@ -46,20 +46,6 @@ VARIANTS: dict[str, FollowOptions] = {
 }
 
 
-def write_scans(moving: MovingPerson, folder: Path) -> list[Path]:
-    """The scans as files with their truth beside them, those that are there already left."""
-    (folder / "truth").mkdir(parents=True, exist_ok=True)
-    paths = []
-    for t in range(len(moving)):
-        path, truth = folder / f"{t:06d}.ply", folder / "truth" / f"{t:06d}.npz"
-        if not truth.exists():
-            made = moving.scan(t)
-            save_scan(made.scan, path)
-            np.savez(truth, vertices=made.true_vertices, is_seen=made.is_seen)
-        paths.append(path)
-    return paths
-
-
 def compare(moving: MovingPerson, scans: Path, frames: Path, count: int) -> dict[str, Any]:
     """How far registered frames are from the truth."""
     model = body_model()
@@ -70,7 +56,7 @@ def compare(moving: MovingPerson, scans: Path, frames: Path, count: int) -> dict
     shown_mm, fingers = np.full((count, 2), np.nan), np.full((count, 30, 3), np.nan)
     for t in range(count):
         found = load_body_registration(frames / f"{t:06d}")
-        with np.load(scans / "truth" / f"{t:06d}.npz") as truth:
+        with np.load(truth_of(scans / f"{t:06d}.ply")) as truth:
             apart = 1e3 * np.linalg.norm(found.vertices - truth["vertices"], axis=1)
             is_seen = truth["is_seen"]
         body[t], seconds[t], fingers[t] = apart[~is_hand].mean(), sum(found.seconds.values()), found.state.pose[22:]
@@ -140,7 +126,7 @@ def main() -> int:
     arguments = parser.parse_args()
     scans, count = arguments.out / "scans", arguments.frames
     moving = make_motion(PERSON, count)
-    paths = [path.resolve() for path in write_scans(moving, scans)]
+    paths = [path.resolve() for path in write_motion(moving, scans, BODY_SCANNER)]
     frames = run("mixture", VARIANTS["mixture"], paths, arguments.out, None)
     whole = compare(moving, scans, frames, count)
     print(json.dumps({"whole": whole}), flush=True)

@@ -22,6 +22,7 @@ from tracker.bodies.follow_body import BodyFollower, FollowOptions
 from tracker.bodies.register_body import Registrar
 from tracker.bodies.template import make_template
 from tracker.capture.atomic_file import write_atomically
+from tracker.capture.scan import Scan
 from tracker.errors import RegistrationError, ScanError, TrackerError
 from tracker.model.blend_files import load_blend_model, save_blend_model
 from tracker.model.blend_model import BlendModel
@@ -130,10 +131,19 @@ def follow_chunk(sequence: Sequence, follower: BodyFollower, number: int):
             scan = _read(sequence, frame)
             if scan is None:
                 continue
-            done = follower.begin(scan) if before is None else follower.follow(scan, before)
+            done = _begin(sequence, follower, frame, scan) if before is None else follower.follow(scan, before)
             _save(sequence, follower, frame, done)
         before = done
         yield frame
+
+
+def _begin(sequence: Sequence, follower: BodyFollower, frame: int, scan: Scan) -> BodyRegistration:
+    """The first frame of a chunk: from what the template was made of, where it was, else without a start."""
+    folder = sequence.out / TEMPLATES / f"{frame:06d}"
+    if not (folder / BODY_FILE).is_file():
+        return follower.begin(scan)
+    known = load_body_registration(folder)
+    return follower.begin(scan, replace(known.state, shape=np.zeros(0)))
 
 
 def _run_chunk(job: tuple[Sequence, BlendModel, int]) -> int:
@@ -240,7 +250,7 @@ def _save(sequence: Sequence, follower: BodyFollower, frame: int, registration: 
     save_body_registration(registration, follower.registrar.model.faces, sequence.folder(frame))
 
 
-def _read(sequence: Sequence, frame: int):
+def _read(sequence: Sequence, frame: int) -> Scan | None:
     """A frame's scan; none, with the reason kept beside the frames, if it cannot be read."""
     path = sequence.paths[frame]
     try:

@@ -29,6 +29,9 @@ FAR = 0.25
 """Distances beyond this count as this, m."""
 FOLLOWED, FINISHED, SEARCHED = 8, 3, 2
 """So many of the stiff bodies are fitted, so many of these more closely, and of so many arms and legs begun anew."""
+NEAR, SETTLED = 0.025, 0.02
+"""No limb is begun anew where less than this share of the scan is this far from the body, m, and of the body twice as
+far from the scan."""
 LIMB_POINTS = 3000
 """Of the whole scan, when limbs are begun anew."""
 APART = np.radians(50.0)
@@ -104,12 +107,22 @@ class BodyStart:
         coarse.sort(key=lambda each: each.cost)
         found = [self._finish(each.state, scan) for each in coarse[:FINISHED]]
         found.sort(key=lambda each: each.cost)
+        if self.is_settled(found[0], scan):
+            return found
         again = []
         for each in found[:SEARCHED]:
             assert isinstance(each.state, BodyState)
             state, changed = self.limbs.improve(each.state, scan.first(LIMB_POINTS))
             again.append(self._finish(state, scan) if changed else each)
         return sorted(again + found[SEARCHED:], key=lambda each: each.cost)
+
+    def is_settled(self, found: Evaluation, scan: ScanPoints) -> bool:
+        """Whether body and scan lie on one another so well that no limb can be elsewhere."""
+        points = scan.points[:LIMB_POINTS]
+        vertices = found.posed.vertices
+        matches = self.fit.search.match(vertices, points, np.zeros_like(points), reach=1.0)
+        alone = KDTree(points).query(vertices[self.fit.inner[:MODEL_POINTS]])[0]
+        return bool(max(np.mean(np.abs(matches.offsets) > NEAR), np.mean(alone > 2.0 * NEAR)) < SETTLED)
 
     def _finish(self, state: HandState, scan: ScanPoints) -> Evaluation:
         """The state fitted more closely, in two stages."""

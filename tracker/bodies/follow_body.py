@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -73,9 +73,9 @@ class BodyFollower:
         self.options = options or FollowOptions()
         self.registrar = Registrar(model, FOLLOW_STAGES, choose_mixture(self.options.prior))
 
-    def begin(self, scan: Scan) -> BodyRegistration:
-        """The first scan, without a start."""
-        return self.registrar.register(scan)
+    def begin(self, scan: Scan, start: BodyState | None = None) -> BodyRegistration:
+        """The first scan; without a start the body is searched."""
+        return self.registrar.register(scan, start)
 
     def follow(self, scan: Scan, before: BodyRegistration) -> BodyRegistration:
         """The scan behind a registered one."""
@@ -144,8 +144,3 @@ class BodyFollower:
             if np.mean(np.abs(found.offsets) > 1e-3 * LOST_MM) > MOST_LOST:
                 lost.append(k)
         return tuple(lost)
-
-
-def forget(registration: BodyRegistration) -> BodyRegistration:
-    """The registration as a start alone: without the distances of its scan's points."""
-    return replace(registration, scan_to_mesh=np.zeros(0))

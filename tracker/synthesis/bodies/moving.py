@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -27,7 +26,6 @@ class MovingOptions:
     """How a moving scan is made.
 
     Attributes:
-        scanner: The scanner.
         still: Frames in which the person stands in the A-pose first, hands flat.
         body_frames: Frames from one pose of the body to the next.
         hand_frames: Frames from one pose of a hand to the next.
@@ -36,7 +34,6 @@ class MovingOptions:
         wildness: Share of the range of poses that is used.
     """
 
-    scanner: Scanner = field(default_factory=lambda: BODY_SCANNER)
     still: int = 12
     body_frames: int = 45
     hand_frames: int = 25
@@ -70,11 +67,6 @@ class MovingPerson:
         rng = np.random.default_rng([self.person.number, t, 29])
         name = f"{t:06d}"
         return scan_person(self.person, self.poses[t], self.translations[t], shown, scanner, rng, name)
-
-    def scans(self, scanner: Scanner = BODY_SCANNER) -> Iterator[GeneratedBody]:
-        """All of them."""
-        for t in range(len(self)):
-            yield self.scan(t, scanner)
 
 
 def make_motion(number: int, frames: int, seed: int = 0, options: MovingOptions | None = None) -> MovingPerson:

@@ -3,7 +3,8 @@
 Each scan (real ones of FOLDER, the same hand in other poses, generated people 1 to 31) is registered from where it
 truly lies, and from starts that are wrong: a finger folded or stretched, fingers shifted by one, two fingers merged,
 the other side. What ends with a fingertip elsewhere is a wrong hand. Prints how many right ones and how many wrong ones
-today's limits call good; `--out` keeps the measures, from which limits are chosen.
+today's limits call good; `--out` keeps the measures, from which limits are chosen, `--pictures` draws the wrong ones
+that are called good: the registration, the truth below it, and how far each vertex is off (yellow 15 mm and more).
 """
 
 from __future__ import annotations
@@ -15,9 +16,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
+from benchmarks.hand_pictures import draw_beside_truth
 from benchmarks.reposed_scans import find_pose, repose
 from benchmarks.scan_rotations import MARKS, METRES_PER_UNIT, NEAR, REPOSED
 from tracker.capture.scan import Scan, load_scan
@@ -114,13 +117,35 @@ def is_right(known: Known, found: Registration) -> bool:
     )
 
 
-def collect(folder: Path, people: int, out: Path | None) -> list[dict[str, Any]]:
+def describe(known: Known, what: str, found: Registration) -> dict[str, Any]:
+    """Verdict and measures of a registration from one start, and how far it is from the truth."""
+    tips = np.linalg.norm(found.vertices[untrained_hand().tips] - known.tips, axis=1)
+    return {
+        "kind": known.kind,
+        "scan": known.name,
+        "start": what,
+        "is_right": is_right(known, found),
+        "tips_mm": (1e3 * tips).round(2).tolist(),
+        "vertices_p95_mm": float(1e3 * np.percentile(np.linalg.norm(found.vertices - known.vertices, axis=1), 95)),
+        "verdict": found.verdict,
+        "score": found.score,
+        "measures": found.measures,
+    }
+
+
+def draw(path: Path, known: Known, found: Registration) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    cv2.imwrite(str(path), draw_beside_truth(found.vertices, known.vertices, found.faces, 0.015))
+
+
+def collect(folder: Path, people: int, out: Path | None, pictures: Path | None) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = []
     for known in make_known(folder, people):
         found = [(what, register_scan(known.scan, untrained_hand(), start=start)) for what, start in make_starts(known)]
         for what, one in found:
-            row = {"kind": known.kind, "scan": known.name, "start": what, "is_right": is_right(known, one)}
-            rows.append(row | {"verdict": one.verdict, "score": one.score, "measures": one.measures})
+            rows.append(describe(known, what, one))
+            if pictures is not None and one.verdict == "good" and not rows[-1]["is_right"]:
+                draw(pictures / f"{known.name} {what}.png".replace(" ", "_"), known, one)
         print(f"{known.kind}, {known.name}: " + ", ".join(
             f"{row['start']} {'right' if row['is_right'] else 'wrong'} {row['verdict']}" for row in rows[-len(found) :]
         ), flush=True)  # fmt: skip
@@ -144,8 +169,9 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--people", type=int, default=31, help="generated ones, a scan each")
     parser.add_argument("--out", type=Path, metavar="FILE", help="keeps all measures as JSON")
+    parser.add_argument("--pictures", type=Path, metavar="DIR", help="draws the wrong ones that are called good")
     args = parser.parse_args()
-    print(summarize(collect(args.folder, args.people, args.out)))
+    print(summarize(collect(args.folder, args.people, args.out, args.pictures)))
 
 
 if __name__ == "__main__":

@@ -18,9 +18,8 @@ import numpy as np
 from benchmarks.registration_trial import is_right, measure
 from tracker.model.trained_hand import trained_hand
 from tracker.registration.anatomy import make_anatomical_prior
-from tracker.registration.options import RegistrationOptions
 from tracker.registration.pose_prior import PosePrior, make_gaussian_prior
-from tracker.registration.register import prepare_tools, register_scan
+from tracker.registration.register import Registrar
 from tracker.registration.vertex_fit import fit_to_vertices
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan, generate_truth
 from tracker.synthesis.scans.pose_list import FISTS
@@ -34,7 +33,7 @@ STRENGTH = 2.5
 def learn_prior(pose: str) -> PosePrior:
     """The Gaussian of one pose, from the true vertices of the people whom the model knows."""
     model = trained_hand()
-    fit = prepare_tools(model).fit
+    fit = Registrar(model).fit
     truths = [generate_truth(subject, pose).vertices for subject in KNOWN]
     found = np.array([fit_to_vertices(fit, fit.neutral(), truth).pose[1:].ravel() for truth in truths])
     return make_gaussian_prior(make_anatomical_prior(model), found.mean(axis=0), np.cov(found.T))
@@ -42,11 +41,12 @@ def learn_prior(pose: str) -> PosePrior:
 
 def judge(priors: dict[str, PosePrior | None], people: int) -> list[dict[str, Any]]:
     rows = []
+    registrars = {pose: Registrar(trained_hand(), prior) for pose, prior in priors.items()}
     for number, subject in enumerate(JUDGED[:people]):
         for turn, pose in enumerate(FISTS):
             side = ("right", "left")[(number + turn) % 2]
             made = generate_scan(subject, pose, side, 7000 + subject, ScanOptions(strength=STRENGTH))
-            found = register_scan(made.scan, trained_hand(), RegistrationOptions(prior=priors[pose]))
+            found = registrars[pose].register(made.scan)
             rows.append({"scan": f"{pose} of {subject}", "side": side, **measure(found, made, trained_hand())})
             rows[-1]["is_right"] = is_right(rows[-1])
             print(f"{rows[-1]['scan']}: {'right' if rows[-1]['is_right'] else 'WRONG'}, {found.verdict}", flush=True)

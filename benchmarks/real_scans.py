@@ -21,7 +21,7 @@ from benchmarks.hand_pictures import color_fingers, color_shares, draw_four
 from benchmarks.scan_rotations import METRES_PER_UNIT, study
 from tracker.capture.scan import Scan, load_scan
 from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.register import register_scan
+from tracker.registration.register import Registrar
 from tracker.registration.registration import Registration
 from tracker.registration.surface_search import Matches, SurfaceSearch
 
@@ -54,9 +54,10 @@ def main() -> None:
     if args.rotations:
         study(args.folder, args.rotations, args.out)
         return
+    registrar = Registrar(untrained_hand())
     for name in SCANS:
         scan = load_scan(args.folder / f"{name}.obj", METRES_PER_UNIT)
-        registration = register_scan(scan, untrained_hand())
+        registration = registrar.register(scan)
         model = match_scan(scan, registration.model_vertices, registration.faces)
         own = 1e3 * float(np.median(np.abs(model.offsets[~model.on_rim])))
         free = registration.scan_to_mesh_mm

@@ -27,7 +27,7 @@ from tracker.capture.scan import Scan, load_scan
 from tracker.model.blend_limits import blend_limits
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.hand_state import HandState
-from tracker.registration.register import prepare_tools, register_scan
+from tracker.registration.register import Registrar
 from tracker.registration.registration import Registration, RegistrationStart
 from tracker.registration.start_poses import FOLDED, HALF, STRAIGHT, curl_finger
 from tracker.registration.verdict import turn_over
@@ -55,14 +55,14 @@ class Known:
     tips: Array
 
 
-def make_known(folder: Path, people: int) -> Iterator[Known]:
+def make_known(folder: Path, people: int, registrar: Registrar) -> Iterator[Known]:
     tips = untrained_hand().tips
     scans = {name: load_scan(folder / f"{name}.obj", METRES_PER_UNIT) for name in MARKS}
-    first = {name: register_scan(scan, untrained_hand()) for name, scan in scans.items()}
+    first = {name: registrar.register(scan) for name, scan in scans.items()}
     for name, scan in scans.items():
         yield Known("real", name, scan, "left", first[name].vertices, METRES_PER_UNIT * np.array(MARKS[name]))
     for name, subject, pose in REPOSED:
-        scan, truth = repose(scans[name], first[name], find_pose(subject, pose))
+        scan, truth = repose(scans[name], first[name], find_pose(registrar, subject, pose))
         yield Known("reposed", f"{name}: {pose} of {subject}", scan, "left", truth, truth[tips])
     rng = np.random.default_rng(9)
     for number, subject in enumerate(TRAIN_SUBJECTS[:people]):
@@ -73,11 +73,11 @@ def make_known(folder: Path, people: int) -> Iterator[Known]:
         yield Known("generated", name, made.scan, side, made.true_vertices, made.true_vertices[tips])
 
 
-def make_starts(known: Known) -> Iterator[tuple[str, RegistrationStart]]:
+def make_starts(known: Known, registrar: Registrar) -> Iterator[tuple[str, RegistrationStart]]:
     """The true start, and wrong ones."""
-    tools, limits = prepare_tools(untrained_hand()), blend_limits(untrained_hand())
+    fit, limits = registrar.fit, blend_limits(untrained_hand())
     flip = np.array([1.0 if known.side == "right" else -1.0, 1.0, 1.0])
-    state = fit_to_vertices(tools.fit, tools.fit.neutral(), known.vertices * flip)
+    state = fit_to_vertices(fit, fit.neutral(), known.vertices * flip)
     yield "true", _start(known.side, state)
     rng = np.random.default_rng(len(known.name))
     for finger in rng.choice(FINGERS, 2, replace=False):
@@ -96,7 +96,7 @@ def make_starts(known: Known) -> Iterator[tuple[str, RegistrationStart]]:
     pose = state.pose.copy()
     pose[13:16] = limits.pose_at(limits.mean)[13:16] * (-1.0 if np.linalg.norm(pose[13:16]) < 0.6 else 1.0)
     yield "thumb elsewhere", _start(known.side, replace(state, pose=pose))
-    yield "other side", _start("right" if known.side == "left" else "left", turn_over(tools.model, state))
+    yield "other side", _start("right" if known.side == "left" else "left", turn_over(fit.model, state))
 
 
 def _curl(limits, state: HandState, fingers: tuple[str, ...], is_curled: bool) -> HandState:
@@ -140,8 +140,10 @@ def draw(path: Path, known: Known, found: Registration) -> None:
 
 def collect(folder: Path, people: int, out: Path | None, pictures: Path | None) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = []
-    for known in make_known(folder, people):
-        found = [(what, register_scan(known.scan, untrained_hand(), start=start)) for what, start in make_starts(known)]
+    registrar = Registrar(untrained_hand())
+    for known in make_known(folder, people, registrar):
+        starts = make_starts(known, registrar)
+        found = [(what, registrar.register(known.scan, start=start)) for what, start in starts]
         for what, one in found:
             rows.append(describe(known, what, one))
             if pictures is not None and one.verdict == "good" and not rows[-1]["is_right"]:

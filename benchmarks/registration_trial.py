@@ -20,7 +20,7 @@ from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.blend_model import BlendModel
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.curved_triangles import find_middles
-from tracker.registration.register import register_scan
+from tracker.registration.register import Registrar
 from tracker.registration.registration import Registration
 from tracker.registration.registration_files import load_registration, save_registration
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan, scan_name
@@ -90,29 +90,29 @@ def run_trial(trial: Trial) -> dict[str, Any]:
     kept = trial.folder / trial.name / "measured.json"
     if kept.exists():
         return json.loads(kept.read_text())
-    model = _load(trial.model)
+    registrar = _load(trial.model)
     made = trial.scan()
     start = None if trial.start is None else load_registration(trial.start / trial.name).as_start()
     _warm_up(trial.model, start is not None)
-    registration = register_scan(made.scan, model, start=start)
+    registration = registrar.register(made.scan, start=start)
     save_registration(registration, trial.folder / trial.name)
     row = {**{k: v for k, v in asdict(trial).items() if not isinstance(v, Path)}, "name": trial.name}
-    row |= measure(registration, made, model)
+    row |= measure(registration, made, registrar.model)
     kept.write_text(json.dumps(row, indent=1))
     return row
 
 
 @cache
-def _load(path: Path | None) -> BlendModel:
-    return untrained_hand("right") if path is None else load_blend_model(path)
+def _load(path: Path | None) -> Registrar:
+    return Registrar(untrained_hand("right") if path is None else load_blend_model(path))
 
 
 @cache
 def _warm_up(path: Path | None, is_warm: bool) -> None:
     made = generate_scan(1, "relaxed", options=ScanOptions())
-    first = register_scan(made.scan, _load(path))
+    first = _load(path).register(made.scan)
     if is_warm:
-        register_scan(made.scan, _load(path), start=first.as_start())
+        _load(path).register(made.scan, start=first.as_start())
 
 
 def measure(registration: Registration, made: GeneratedScan, model: BlendModel) -> dict[str, Any]:

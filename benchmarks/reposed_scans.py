@@ -16,7 +16,7 @@ from tracker.capture.scan import Scan
 from tracker.model.blend_model import BlendModel
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.hand_state import HandState
-from tracker.registration.register import prepare_tools
+from tracker.registration.register import Registrar
 from tracker.registration.registration import Registration
 from tracker.registration.surface_search import SurfaceSearch
 from tracker.registration.vertex_fit import fit_to_vertices
@@ -33,9 +33,9 @@ THICK = 12e-3
 """A finger's thickness: points farther than this from another finger are not inside it, m."""
 
 
-def find_pose(subject: int, pose: str) -> Array:
+def find_pose(registrar: Registrar, subject: int, pose: str) -> Array:
     """(16, 3) axis-angle of the untrained right hand in a pose of a generated person, rad."""
-    fit = prepare_tools(untrained_hand()).fit
+    fit = registrar.fit
     return fit_to_vertices(fit, fit.neutral(), generate_truth(subject, pose).vertices).pose
 
 

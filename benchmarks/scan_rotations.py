@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 from benchmarks.reposed_scans import find_pose, repose
 from tracker.capture.scan import Scan, load_scan
 from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.register import register_scan
+from tracker.registration.register import Registrar
 from tracker.registration.registration import Registration
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan
 
@@ -78,27 +78,27 @@ class Case:
     tips: Array
 
 
-def make_cases(folder: Path) -> Iterator[Case]:
+def make_cases(folder: Path, registrar: Registrar) -> Iterator[Case]:
     """Real scans of a folder, the same hand in other poses, and generated people."""
     tips = untrained_hand().tips
     scans = {name: load_scan(folder / f"{name}.obj", METRES_PER_UNIT) for name in MARKS}
     for name, scan in scans.items():
         yield Case("real", name, scan, "left", METRES_PER_UNIT * np.array(MARKS[name]))
-    first = {name: register_scan(scans[name], untrained_hand()) for name in {name for name, *_ in REPOSED}}
+    first = {name: registrar.register(scans[name]) for name in {name for name, *_ in REPOSED}}
     for name, subject, pose in REPOSED:
-        scan, truth = repose(scans[name], first[name], find_pose(subject, pose))
+        scan, truth = repose(scans[name], first[name], find_pose(registrar, subject, pose))
         yield Case("real, reposed", f"{name}: {pose} of {subject}", scan, "left", truth[tips])
     for subject, pose, side, strength in GENERATED:
         made = generate_scan(subject, pose, side, 100 + subject, ScanOptions(strength=strength))
         yield Case("generated", f"{pose} of {subject}, {strength:g}", made.scan, side, made.true_vertices[tips])
 
 
-def register_turned(case: Case, rotations: Array) -> list[dict[str, Any]]:
+def register_turned(case: Case, rotations: Array, registrar: Registrar) -> list[dict[str, Any]]:
     """What becomes of a scan in each of the rotations (N, 3, 3), written with six digits as in a file."""
     rows, first = [], None
     for R in rotations:
         turned = replace(case.scan, points=np.round(case.scan.points @ R.T, 6), normals=case.scan.normals @ R.T)
-        registration = register_scan(turned, untrained_hand())
+        registration = registrar.register(turned)
         vertices = registration.vertices @ R
         first = vertices if first is None else first
         rows.append(
@@ -158,8 +158,9 @@ def study(folder: Path, count: int, out: Path | None) -> None:
     print("| kind | scan | right | scan to mesh, mean, mm | spread, mm | vertices apart, mm | verdict | seconds |")
     print("|---|---|---|---|---|---|---|---|")
     rows: list[dict[str, Any]] = []
-    for case in make_cases(folder):
-        rows += register_turned(case, rotations)
+    registrar = Registrar(untrained_hand())
+    for case in make_cases(folder, registrar):
+        rows += register_turned(case, rotations, registrar)
         print(describe(rows[-count:]), flush=True)
         if out is not None:
             out.write_text(json.dumps(rows, indent=1))

@@ -26,7 +26,7 @@ from tracker.evaluation.model_study import TestHand, find_template, judge_model
 from tracker.evaluation.scan_fit import without_pose_shapes
 from tracker.model.blend_model import BlendModel
 from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.register import register_scan
+from tracker.registration.register import Registrar
 from tracker.synthesis.scans.subject import TEST_SUBJECTS, TRAIN_SUBJECTS
 from tracker.training.options import TrainingOptions
 from tracker.training.pose_shapes import REACH
@@ -59,10 +59,10 @@ VARIANTS: dict[str, tuple[dict[str, Callable], dict[str, Any]]] = {
 
 def make_real(folder: Path) -> list[TestHand]:
     """The real scans as right hands; their registration's vertices stand for the truth, which nobody knows."""
-    hands = []
+    hands, registrar = [], Registrar(untrained_hand())
     for name in MARKS:
         scan = load_scan(folder / f"{name}.obj", METRES_PER_UNIT)
-        found = register_scan(scan, untrained_hand())
+        found = registrar.register(scan)
         flip = np.array([1.0 if found.side == "right" else -1.0, 1.0, 1.0])
         ids = np.random.default_rng(5).permutation(np.flatnonzero(np.isfinite(found.scan_to_mesh)))
         joints = untrained_hand().joints_of(found.vertices * flip)

@@ -3,7 +3,8 @@
 Each scan (real ones of FOLDER, the same hand in other poses, generated people 1 to 31) is registered from where it
 truly lies, and from starts that are wrong: a finger folded or stretched, fingers shifted by one, two fingers merged,
 the other side. What ends with a fingertip elsewhere is a wrong hand. Prints how many right ones and how many wrong ones
-today's limits call good; `--out` keeps the measures, from which limits are chosen.
+today's limits call good; `--out` keeps the measures, from which limits are chosen, `--pictures` draws the wrong ones
+that are called good: the registration, the truth below it, and how far each vertex is off (yellow 15 mm and more).
 """
 
 from __future__ import annotations
@@ -15,16 +16,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
+from benchmarks.hand_pictures import draw_beside_truth
 from benchmarks.reposed_scans import find_pose, repose
 from benchmarks.scan_rotations import MARKS, METRES_PER_UNIT, NEAR, REPOSED
 from tracker.capture.scan import Scan, load_scan
 from tracker.model.blend_limits import blend_limits
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.hand_state import HandState
-from tracker.registration.register import prepare_tools, register_scan
+from tracker.registration.register import Registrar
 from tracker.registration.registration import Registration, RegistrationStart
 from tracker.registration.start_poses import FOLDED, HALF, STRAIGHT, curl_finger
 from tracker.registration.verdict import turn_over
@@ -52,14 +55,14 @@ class Known:
     tips: Array
 
 
-def make_known(folder: Path, people: int) -> Iterator[Known]:
+def make_known(folder: Path, people: int, registrar: Registrar) -> Iterator[Known]:
     tips = untrained_hand().tips
     scans = {name: load_scan(folder / f"{name}.obj", METRES_PER_UNIT) for name in MARKS}
-    first = {name: register_scan(scan, untrained_hand()) for name, scan in scans.items()}
+    first = {name: registrar.register(scan) for name, scan in scans.items()}
     for name, scan in scans.items():
         yield Known("real", name, scan, "left", first[name].vertices, METRES_PER_UNIT * np.array(MARKS[name]))
     for name, subject, pose in REPOSED:
-        scan, truth = repose(scans[name], first[name], find_pose(subject, pose))
+        scan, truth = repose(scans[name], first[name], find_pose(registrar, subject, pose))
         yield Known("reposed", f"{name}: {pose} of {subject}", scan, "left", truth, truth[tips])
     rng = np.random.default_rng(9)
     for number, subject in enumerate(TRAIN_SUBJECTS[:people]):
@@ -70,11 +73,11 @@ def make_known(folder: Path, people: int) -> Iterator[Known]:
         yield Known("generated", name, made.scan, side, made.true_vertices, made.true_vertices[tips])
 
 
-def make_starts(known: Known) -> Iterator[tuple[str, RegistrationStart]]:
+def make_starts(known: Known, registrar: Registrar) -> Iterator[tuple[str, RegistrationStart]]:
     """The true start, and wrong ones."""
-    tools, limits = prepare_tools(untrained_hand()), blend_limits(untrained_hand())
+    fit, limits = registrar.fit, blend_limits(untrained_hand())
     flip = np.array([1.0 if known.side == "right" else -1.0, 1.0, 1.0])
-    state = fit_to_vertices(tools.fit, tools.fit.neutral(), known.vertices * flip)
+    state = fit_to_vertices(fit, fit.neutral(), known.vertices * flip)
     yield "true", _start(known.side, state)
     rng = np.random.default_rng(len(known.name))
     for finger in rng.choice(FINGERS, 2, replace=False):
@@ -93,7 +96,7 @@ def make_starts(known: Known) -> Iterator[tuple[str, RegistrationStart]]:
     pose = state.pose.copy()
     pose[13:16] = limits.pose_at(limits.mean)[13:16] * (-1.0 if np.linalg.norm(pose[13:16]) < 0.6 else 1.0)
     yield "thumb elsewhere", _start(known.side, replace(state, pose=pose))
-    yield "other side", _start("right" if known.side == "left" else "left", turn_over(tools.model, state))
+    yield "other side", _start("right" if known.side == "left" else "left", turn_over(fit.model, state))
 
 
 def _curl(limits, state: HandState, fingers: tuple[str, ...], is_curled: bool) -> HandState:
@@ -114,13 +117,37 @@ def is_right(known: Known, found: Registration) -> bool:
     )
 
 
-def collect(folder: Path, people: int, out: Path | None) -> list[dict[str, Any]]:
+def describe(known: Known, what: str, found: Registration) -> dict[str, Any]:
+    """Verdict and measures of a registration from one start, and how far it is from the truth."""
+    tips = np.linalg.norm(found.vertices[untrained_hand().tips] - known.tips, axis=1)
+    return {
+        "kind": known.kind,
+        "scan": known.name,
+        "start": what,
+        "is_right": is_right(known, found),
+        "tips_mm": (1e3 * tips).round(2).tolist(),
+        "vertices_p95_mm": float(1e3 * np.percentile(np.linalg.norm(found.vertices - known.vertices, axis=1), 95)),
+        "verdict": found.verdict,
+        "score": found.score,
+        "measures": found.measures,
+    }
+
+
+def draw(path: Path, known: Known, found: Registration) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    cv2.imwrite(str(path), draw_beside_truth(found.vertices, known.vertices, found.faces, 0.015))
+
+
+def collect(folder: Path, people: int, out: Path | None, pictures: Path | None) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = []
-    for known in make_known(folder, people):
-        found = [(what, register_scan(known.scan, untrained_hand(), start=start)) for what, start in make_starts(known)]
+    registrar = Registrar(untrained_hand())
+    for known in make_known(folder, people, registrar):
+        starts = make_starts(known, registrar)
+        found = [(what, registrar.register(known.scan, start=start)) for what, start in starts]
         for what, one in found:
-            row = {"kind": known.kind, "scan": known.name, "start": what, "is_right": is_right(known, one)}
-            rows.append(row | {"verdict": one.verdict, "score": one.score, "measures": one.measures})
+            rows.append(describe(known, what, one))
+            if pictures is not None and one.verdict == "good" and not rows[-1]["is_right"]:
+                draw(pictures / f"{known.name} {what}.png".replace(" ", "_"), known, one)
         print(f"{known.kind}, {known.name}: " + ", ".join(
             f"{row['start']} {'right' if row['is_right'] else 'wrong'} {row['verdict']}" for row in rows[-len(found) :]
         ), flush=True)  # fmt: skip
@@ -144,8 +171,9 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--people", type=int, default=31, help="generated ones, a scan each")
     parser.add_argument("--out", type=Path, metavar="FILE", help="keeps all measures as JSON")
+    parser.add_argument("--pictures", type=Path, metavar="DIR", help="draws the wrong ones that are called good")
     args = parser.parse_args()
-    print(summarize(collect(args.folder, args.people, args.out)))
+    print(summarize(collect(args.folder, args.people, args.out, args.pictures)))
 
 
 if __name__ == "__main__":

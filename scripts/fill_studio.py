@@ -27,12 +27,12 @@ from server.settings import Settings  # noqa: E402
 from tests.server.app.full_studio import LEFT_OUT, Sender, fill  # noqa: E402
 from tests.server.conftest import BASE_URL, RENDERED_FRAMES, GeneratedHand  # noqa: E402
 from tracker import (  # noqa: E402
+    Registrar,
     TrackOptions,
     add_commands,
     join_chunks,
     load_annotations,
     load_sequence,
-    register_scan,
     save_registration,
     start_tracking,
     track_frames,
@@ -66,7 +66,7 @@ def make_hand(folder: Path) -> GeneratedHand:
     run_tracker("synthesize-scans", *made, "--out", str(folder))
     path = next(folder.rglob("*.ply")).rename(folder / "hand.ply")
     scan = load_scan(path)
-    found = register_scan(scan, untrained_hand("right"))
+    found = Registrar(untrained_hand("right")).register(scan)
     save_registration(found, folder)
     return GeneratedHand(scan, found, folder)
 

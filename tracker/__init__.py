@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from tracker.model.untrained_hand import untrained_hand
     from tracker.physics.bullet import find_physics_fault
     from tracker.registration.options import RegistrationOptions
-    from tracker.registration.register import register_scan
+    from tracker.registration.register import Registrar
     from tracker.registration.registration import Registration, RegistrationStart
     from tracker.registration.registration_files import load_registration, save_registration
     from tracker.registration.scan_points import find_hand_points

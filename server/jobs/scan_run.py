@@ -38,7 +38,7 @@ from server.storage.digest import compute_digest
 from tracker import say_count
 
 if TYPE_CHECKING:
-    from tracker import BlendModel, Registration, RegistrationStart, Scan
+    from tracker import BlendModel, Registrar, Registration, RegistrationStart, Scan
     from tracker.training import Training, TrainingSet
 
 log = logging.getLogger(__name__)
@@ -51,11 +51,12 @@ FAILED = "not read"
 
 
 class ModelCache:
-    """Models that were used lately: registering prepares search trees and factorisations for each only once."""
+    """Models that were used lately, and what registers with them."""
 
     def __init__(self, context: WorkerContext, most: int = 2) -> None:
         self._context, self._most = context, most
         self._models: OrderedDict[UUID, tuple[HandModelRow, BlendModel]] = OrderedDict()
+        self._registrars: dict[UUID, Registrar] = {}
 
     def get(self, model_id: UUID) -> tuple[HandModelRow, BlendModel]:
         if model_id not in self._models:
@@ -63,8 +64,17 @@ class ModelCache:
                 row = get_hand_model(session, model_id, deleted_too=True)
             self._models[model_id] = row, storing.open_model(self._context.storage, row)
             while len(self._models) > self._most:
-                self._models.popitem(last=False)
+                self._registrars.pop(self._models.popitem(last=False)[0], None)
         return self._models[model_id]
+
+    def get_registrar(self, model_id: UUID) -> Registrar:
+        """Its search trees and factorisations are prepared once."""
+        from tracker import Registrar
+
+        _, model = self.get(model_id)
+        if model_id not in self._registrars:
+            self._registrars[model_id] = Registrar(model)
+        return self._registrars[model_id]
 
 
 class ScanRun(JobRun):
@@ -130,14 +140,14 @@ class ScanRun(JobRun):
     def _register(
         self, id_: UUID, row: ScanRow, crop: ScanCrop, model_id: UUID, start: RegistrationStart | None, progress: Any
     ) -> str:
-        from tracker import RegistrationOptions, register_scan, save_registration
+        from tracker import RegistrationOptions, save_registration
 
-        model_row, model = self.cache.get(model_id)
+        model_row, registrar = self.cache.get(model_id)[0], self.cache.get_registrar(model_id)
         whole = scans.open_scan(self.context.storage, row)
         kept = ~find_cropped(whole, crop)
         options = RegistrationOptions(side=row.side, use_colors=crop.drops_objects)
         scan = replace(whole.select(kept), name=row.name)
-        found = register_scan(scan, model, options, start, progress)
+        found = registrar.register(scan, options, start, progress)
         found = replace(found, subject=row.subject, pose_name=row.pose)
         folder = self.context.storage.folder(registrations.AREA, id_)
         save_registration(found, folder)

@@ -30,6 +30,7 @@ from server.storage import Storage
 from server.tracks.service import add_track
 from tests.postgres import NoPostgresError, run_postgres
 from tracker import (
+    Registrar,
     Registration,
     Scan,
     TrackOptions,
@@ -37,7 +38,6 @@ from tracker import (
     join_chunks,
     load_annotations,
     load_sequence,
-    register_scan,
     save_registration,
     start_tracking,
     track_frames,
@@ -316,7 +316,7 @@ def generated_hand(tmp_path_factory: pytest.TempPathFactory) -> GeneratedHand:
     folder = tmp_path_factory.mktemp("hand")
     save_scan(generate_scan(3, 0, "right", 5, options).scan, folder / "hand.ply")
     scan = load_scan(folder / "hand.ply")
-    found = register_scan(scan, untrained_hand("right"))
+    found = Registrar(untrained_hand("right")).register(scan)
     save_registration(found, folder)
     return GeneratedHand(scan, found, folder)
 

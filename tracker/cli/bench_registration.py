@@ -28,15 +28,14 @@ def add_registration(subjects: argparse._SubParsersAction) -> None:
 def bench(args: argparse.Namespace) -> dict[str, Any]:
     import numpy as np
 
-    from tracker.cli.register import load_hand_model
-    from tracker.registration.register import register_scan
+    from tracker.cli.register import find_registrar
     from tracker.synthesis.scans.generate import ScanOptions, generate_scan
     from tracker.synthesis.scans.pose_list import POSE_NAMES
     from tracker.synthesis.scans.subject import TEST_SUBJECTS
 
     if not 1 <= args.scans <= 1000:
         raise TrackerError(f"--scans {args.scans}: needed 1 to 1000.")
-    untrained, learned = load_hand_model(None), load_hand_model(args.model)
+    untrained, learned = find_registrar(None), find_registrar(args.model)
     line = ProgressLine("bench registration")
     rng = np.random.default_rng(0)
     runs: dict[str, list[dict[str, float]]] = {"cold": [], "warm": []}
@@ -45,8 +44,8 @@ def bench(args: argparse.Namespace) -> dict[str, Any]:
         subject = int(TEST_SUBJECTS[int(rng.integers(len(TEST_SUBJECTS)))])
         pose, side = int(rng.integers(len(POSE_NAMES))), ("right", "left")[int(rng.integers(2))]
         made = generate_scan(subject, pose, side, number, ScanOptions(has_forearm=bool(rng.integers(2))))
-        cold = register_scan(made.scan, untrained)
-        warm = register_scan(made.scan, learned, start=cold.as_start())
+        cold = untrained.register(made.scan)
+        warm = learned.register(made.scan, start=cold.as_start())
         if number:  # the first one compiles and prepares the models
             errors = np.linalg.norm(cold.vertices - made.true_vertices, axis=1)
             right += int(cold.side == side and np.percentile(errors, 95) < 0.010)

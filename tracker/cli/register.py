@@ -19,7 +19,9 @@ from tracker.cli.progress import ProgressLine
 from tracker.errors import RegistrationError, ScanError, TrackerError, say_count
 
 if TYPE_CHECKING:
+    from tracker.model.blend_model import BlendModel
     from tracker.registration.options import RegistrationOptions
+    from tracker.registration.register import Registrar
 
 Job = tuple[Path, Path, Path | None, Path | None, "RegistrationOptions", float | None]
 
@@ -64,7 +66,7 @@ def register(args: argparse.Namespace) -> list[dict[str, Any]]:
         raise TrackerError(f"--processes {args.processes}: needed 1 to 256.")
     paths = list_scans(args.scans)
     if args.model is not None:
-        load_hand_model(args.model)  # said before anything is begun
+        find_registrar(args.model)  # said before anything is begun
     options = RegistrationOptions(side=args.side, use_colors=not args.no_colors)
     jobs: list[Job] = []
     for path, name in name_scans(paths):
@@ -138,7 +140,6 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
     """Register one scan to its folder, unless that is done; what `--json` lists of it."""
     from tracker.capture.scan import load_scan
     from tracker.capture.scan_size import measure_size
-    from tracker.registration.register import prepare_tools, register_scan
     from tracker.registration.registration import digest_scan
     from tracker.registration.registration_files import (
         REGISTRATION_FILE,
@@ -154,11 +155,11 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
         said = _read_unit(path, row, metres_per_unit)
         scan = load_scan(path, said)
         size = {"longest_m": round(float(measure_size(scan.points)[0]), 4), "is_unit_guessed": said is None}
-        model = load_hand_model(model_path)
+        registrar = find_registrar(model_path)
         if not again and (folder / REGISTRATION_FILE).is_file():
             try:
                 done = load_registration(folder)
-                if (done.scan_digest, done.model_digest) == (digest_scan(scan), prepare_tools(model).model_digest):
+                if (done.scan_digest, done.model_digest) == (digest_scan(scan), registrar.model_digest):
                     return summarize_registration(done) | size
             except RegistrationError:
                 pass  # damaged: made anew
@@ -166,7 +167,7 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
         if start_folder is not None and (start_folder / REGISTRATION_FILE).is_file():
             earlier = load_registration(start_folder)
             start = earlier.as_start() if earlier.verdict == "good" else None
-        registration = register_scan(scan, model, options, start)
+        registration = registrar.register(scan, options, start)
         labels = {"subject": str(row.get("subject", ""))[:100], "pose_name": str(row.get("pose", ""))[:100]}
         registration = replace(registration, **labels)
         save_surface(registration, folder)
@@ -184,24 +185,26 @@ def register_one(job: Job, again: bool) -> dict[str, Any]:
         }
 
 
-_models: dict[Path | None, Any] = {}
+@lru_cache(maxsize=4)
+def find_registrar(path: Path | None) -> Registrar:
+    """What registers with the model of a file, or with the untrained hand; it is made once for all scans."""
+    from tracker.registration.register import Registrar
+
+    return Registrar(load_hand_model(path))
 
 
-def load_hand_model(path: Path | None):
-    """The model of a file, or the untrained hand; the same object every time, so that work on it is done once."""
-    if path not in _models:
-        from tracker.model.blend_files import load_blend_model
-        from tracker.model.mano_files import is_mano_npz, load_mano
-        from tracker.model.npz_arrays import list_npz_arrays
-        from tracker.model.untrained_hand import untrained_hand
+def load_hand_model(path: Path | None) -> BlendModel:
+    """The model of a file, or the untrained hand."""
+    from tracker.model.blend_files import load_blend_model
+    from tracker.model.mano_files import is_mano_npz, load_mano
+    from tracker.model.npz_arrays import list_npz_arrays
+    from tracker.model.untrained_hand import untrained_hand
 
-        if path is None:
-            _models[path] = untrained_hand()
-        elif path.suffix.lower() == ".pkl" or (path.suffix == ".npz" and is_mano_npz(list_npz_arrays(path))):
-            _models[path] = load_mano(path)
-        else:
-            _models[path] = load_blend_model(path)
-    return _models[path]
+    if path is None:
+        return untrained_hand()
+    if path.suffix.lower() == ".pkl" or (path.suffix == ".npz" and is_mano_npz(list_npz_arrays(path))):
+        return load_mano(path)
+    return load_blend_model(path)
 
 
 def _find_row(path: Path) -> dict[str, Any]:

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 
 from tracker.registration.free_fit import FreeSettings
 from tracker.registration.model_fit import FitSettings
-from tracker.registration.pose_prior import PosePrior
 
 
 @dataclass(frozen=True)
@@ -17,7 +16,6 @@ class RegistrationOptions:
         side: "right" or "left" when known; None tries both.
         use_colors: Drop points by R17's rule for green objects.
         max_points: So many points are fitted at most; further ones are only measured.
-        prior: Of the pose, in place of the anatomical one: R17's pose-specific Gaussian, say.
         model_stages: Fits of pose and shape, each with the number of points it uses.
         free_stages: Fits of the free surface.
         last_stage: Fit of the model from where the surface left it. Edges tell nothing of where the model lies, and
@@ -27,7 +25,6 @@ class RegistrationOptions:
     side: str | None = None
     use_colors: bool = True
     max_points: int = 50_000
-    prior: PosePrior | None = None
     model_stages: tuple[tuple[int, FitSettings], ...] = field(
         default=(
             (1500, FitSettings(10.0, 8, to_scan=0.3)),

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from tracker.capture.scan import Scan
 from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.register import register_scan
+from tracker.registration.register import Registrar
 from tracker.registration.vertex_normals import find_unit_normals
 
 
 def warm_up_registration() -> None:
     """Register the model's own vertices once."""
     model = untrained_hand()
-    register_scan(Scan(model.template, find_unit_normals(model.template, model.faces)), model)
+    Registrar(model).register(Scan(model.template, find_unit_normals(model.template, model.faces)))

@@ -16,7 +16,8 @@ import pytest
 
 from tracker.capture.scan import Scan, save_scan
 from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.register import prepare_tools, refuse
+from tracker.registration.register import refuse
+from tracker.registration.registration import digest_model
 from tracker.registration.registration_files import load_registration, save_registration
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan, generate_truth
 from tracker.synthesis.scans.scanner import Scanner
@@ -80,7 +81,7 @@ def test_registering_with_several_processes_is_stopped_by_ctrl_c_and_goes_on(tmp
 def registered(tmp_path):
     """True registrations of two people."""
     model = untrained_hand("right")
-    digest = prepare_tools(model).model_digest
+    digest = digest_model(model)
     for subject in (1, 2):
         for pose in range(0, 40, 4):
             truth = generate_truth(subject, pose)

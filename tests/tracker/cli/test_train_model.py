@@ -10,8 +10,8 @@ from tracker.capture.scan import Scan, load_scan, save_scan
 from tracker.cli.__main__ import main
 from tracker.model.blend_files import load_blend_model
 from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.register import prepare_tools, refuse
-from tracker.registration.registration import digest_scan
+from tracker.registration.register import refuse
+from tracker.registration.registration import digest_model, digest_scan
 from tracker.registration.registration_files import save_registration
 from tracker.synthesis.scans.generate import generate_truth
 
@@ -21,7 +21,7 @@ def loop(tmp_path_factory):
     """Scans and their true registrations of three people in eight poses, as a first round would leave them."""
     folder = tmp_path_factory.mktemp("loop")
     model = untrained_hand("right")
-    digest = prepare_tools(model).model_digest
+    digest = digest_model(model)
     (folder / "scans").mkdir()
     rows = []
     for subject in (1, 2, 3):

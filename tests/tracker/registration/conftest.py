@@ -10,6 +10,7 @@ import pytest
 from tracker.capture.scan import Scan
 from tracker.model.blend_limits import blend_limits
 from tracker.model.untrained_hand import untrained_hand
+from tracker.registration.register import Registrar
 from tracker.registration.start_poses import FOLDED, STRAIGHT, curl_finger
 
 
@@ -40,6 +41,11 @@ def scan_model(seed: int = 0, count: int = 8000, folded: tuple[str, ...] = (), s
     points = points + 1e-4 * rng.normal(size=(count, 1)) * normals
     flip = np.array([1.0 if side == "right" else -1.0, 1.0, 1.0])
     return OwnScan(Scan(points * flip, normals * flip, name=f"own_{seed}"), vertices * flip)
+
+
+@pytest.fixture(scope="session")
+def registrar() -> Registrar:
+    return Registrar(untrained_hand())
 
 
 @pytest.fixture(scope="session")

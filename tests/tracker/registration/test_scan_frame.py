@@ -9,7 +9,6 @@ from scipy.spatial.transform import Rotation
 from tests.tracker.registration.conftest import scan_model
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.hand_state import HandState
-from tracker.registration.register import register_scan
 from tracker.registration.scan_frame import find_scan_frame
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan
 
@@ -58,26 +57,26 @@ def test_a_state_moves_with_the_hand_that_it_poses(own_scan, side):
     )
 
 
-def find_spread(scan, rotations) -> tuple[float, float]:
+def find_spread(scan, rotations, registrar) -> tuple[float, float]:
     """Largest difference of the mean distance, mm, and of any vertex, mm, among registrations of a turned scan."""
     means, vertices = [], []
     for R in rotations:
         turned = replace(scan, points=scan.points @ R.T + SHIFT, normals=scan.normals @ R.T)
-        registration = register_scan(turned, untrained_hand())
+        registration = registrar.register(turned)
         means.append(registration.scan_to_mesh_mm["mean"])
         vertices.append((registration.vertices - SHIFT) @ R)
     apart = np.linalg.norm(np.array(vertices) - vertices[0], axis=2).max()
     return max(means) - min(means), 1e3 * float(apart)
 
 
-def test_a_turned_scan_gives_the_turned_registration():
-    spread, apart = find_spread(scan_model(2, 6000, (), "left").scan, ROTATIONS[:2])
+def test_a_turned_scan_gives_the_turned_registration(registrar):
+    spread, apart = find_spread(scan_model(2, 6000, (), "left").scan, ROTATIONS[:2], registrar)
     assert spread < 0.01 and apart < 0.2
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("subject", [2, 14])
-def test_eight_rotations_of_a_thumb_on_the_little_finger_give_one_registration(subject):
+def test_eight_rotations_of_a_thumb_on_the_little_finger_give_one_registration(subject, registrar):
     made = generate_scan(subject, "thumb_to_little", "right", 5, ScanOptions(strength=2.5))
-    spread, apart = find_spread(made.scan, ROTATIONS)
+    spread, apart = find_spread(made.scan, ROTATIONS, registrar)
     assert spread < 0.3 and apart < 1.0

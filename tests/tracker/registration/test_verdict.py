@@ -5,9 +5,7 @@ import pytest
 
 from tests.tracker.registration.conftest import scan_model
 from tracker.capture.scan import Scan
-from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.options import RegistrationOptions
-from tracker.registration.register import register_scan
 from tracker.registration.verdict import (
     HIDDEN_MOST,
     LIMITS,
@@ -29,16 +27,16 @@ def swollen(scan: Scan, most: float) -> Scan:
     return Scan(scan.points + (near @ heights)[:, None] * scan.normals, scan.normals, name="swollen")
 
 
-def test_a_person_unlike_those_whom_the_model_knows_is_good_and_said_to_be_so():
-    registration = register_scan(swollen(scan_model(1, 6000).scan, 0.0024), untrained_hand())
+def test_a_person_unlike_those_whom_the_model_knows_is_good_and_said_to_be_so(registrar):
+    registration = registrar.register(swollen(scan_model(1, 6000).scan, 0.0024))
     assert (registration.side, registration.verdict) == ("right", "good")
     assert registration.reasons == (TOLD["person"],) and registration.score < 0.5
     assert any(registration.measures[name] > LIMITS[name] for name in STRANGE)
 
 
 @pytest.mark.slow
-def test_a_flat_hand_registered_as_one_of_the_other_side_is_not_good(own_scan):
-    registration = register_scan(own_scan.scan, untrained_hand(), RegistrationOptions(side="left"))
+def test_a_flat_hand_registered_as_one_of_the_other_side_is_not_good(own_scan, registrar):
+    registration = registrar.register(own_scan.scan, RegistrationOptions(side="left"))
     assert registration.verdict != "good"
 
 

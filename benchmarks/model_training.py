@@ -252,7 +252,7 @@ def write_tables(found: dict[str, Any]) -> list[str]:
         f"{found['registrations']} registrations, {found['test_scans']} test scans; training took "
         f"{training['seconds']:.0f} s ({training['cpu_seconds']:.0f} s of processor time, two threads) and "
         f"{training['gigabytes']:.2f} GB. The true vertices themselves are {found['floor_mm']:.3f} mm from the scans: "
-        "noise, and what triangles that bulge have not of the skin.",
+        "sensor noise, and skin between vertices that bulging triangles do not follow.",
     ]
     return lines
 

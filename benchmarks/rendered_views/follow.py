@@ -20,6 +20,7 @@ from tracker.fitting.frame_fit import FitOptions, fit_frame
 from tracker.fitting.objective import Objective
 from tracker.fitting.options import TrackOptions
 from tracker.fitting.setup import TrackSetup
+from tracker.fitting.view_contours import ViewContours
 from tracker.fitting.view_hands import ViewHands
 from tracker.landmarks import DetectedHand
 from tracker.model.scene import PosedScene
@@ -174,8 +175,7 @@ def _fit_contours(setup: TrackSetup, objective: Objective, cameras, frames, pose
     for reach, count in ((FAR_EDGE, iterations), (Contours.max_distance, MANY_CONTOUR_ITERATIONS)):
         drawn = add_contours(objective, scene.pose_at(pose), _pair(cameras, frames))
         terms = {
-            name: replace(term, max_distance=reach) if isinstance(term, Contours) else term
-            for name, term in drawn.terms.items()
+            name: term.reaching(reach) if isinstance(term, ViewContours) else term for name, term in drawn.terms.items()
         }
         how = FitOptions(iterations=count)
         pose = fit_frame(scene, None, pose, start, replace(drawn, terms=terms), how).pose

@@ -14,6 +14,8 @@ from tracker.cli import (
     model_loop,
     refine_cameras,
     register,
+    register_body,
+    register_body_sequence,
     shift_cameras,
     synthesize,
     synthesize_scans,
@@ -26,6 +28,8 @@ from tracker.cli import (
 COMMANDS = (
     track,
     register,
+    register_body,
+    register_body_sequence,
     body,
     calibrate,
     calibrate_cameras,

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Job = tuple[Path, Path, Path | None, Path | None, "RegistrationOptions", float | None]
 
 
-NO_SCANS = ("truth.npz", "registration.npz", "registration.ply", "registration_surface.ply")
+NO_SCANS = ("truth.npz", "registration.npz", "registration.ply", "registration_surface.ply", "body.npz", "body.ply")
 """Files of other meaning that may lie among scans."""
 
 UNIT_HELP = (

@@ -122,8 +122,14 @@ class TrackSetup:
         joints = {self.names[hand]: camera.project(posed.landmarks(hand)) for hand in self.hands}
         return {name: points for name, points in joints.items() if np.all(np.isfinite(points))}
 
-    def read_views(self, sequence: Sequence, index: int) -> list[CameraFrame]:
-        """The frames of all views: as recorded, those with depth as ideal pinhole cameras see them."""
+    def read_views(self, sequence: Sequence, index: int, threads: int = 1) -> list[CameraFrame]:
+        """The frames of all views: as recorded, those with depth as ideal pinhole cameras see them.
+
+        Args:
+            sequence: The recording.
+            index: Of the moment.
+            threads: In which the images are read.
+        """
 
         def read(camera_id: str) -> CameraFrame:
             camera = sequence.camera(camera_id)
@@ -132,7 +138,7 @@ class TrackSetup:
                 return CameraFrame(ideal, frame)
             return CameraFrame(camera, Frame(index, camera_id, sequence.color(index, camera_id), None))
 
-        return map_views(read, self.view_ids, self.options.threads)
+        return map_views(read, self.view_ids, threads)
 
     def save(self, folder: Path) -> None:
         """Write `setup.json`, `models/<name>.npz`, and `fingertips.npz` where a detector was given."""

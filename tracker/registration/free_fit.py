@@ -114,7 +114,7 @@ class FreeFit:
             if not np.isfinite(promised) or promised <= 0.2 * settings.tolerance * here.cost:
                 break
             turn, move = system.split(step)
-            state = here.state.retract(self.fit_model.model, turn)
+            state = self.fit_model.move(here.state, turn)
             there = self.evaluate(here.vertices + move, state, scan, settings, here.matches)
             decrease = here.cost - there.cost
             radius = choose_radius(radius, float(np.linalg.norm(step)), decrease, promised)
@@ -142,11 +142,10 @@ class FreeFit:
         missing = float(np.count_nonzero(~is_found)) * saturated(reach, sigma)
         cost = scale * MM * MM * (weigh_robustly(weights, matches.offsets, sigma) + missing)
         weights *= scale * MM * MM * (is_found & ~matches.on_rim)
-        model_vertices = state.posed(fit.model).vertices
+        model_vertices = fit.pose(state).vertices
         stretch = self.differences @ (vertices - model_vertices) * MM
         cost += settings.coupling * float(np.einsum("ed,ed->", stretch, stretch))
-        cost += settings.pose_weight * fit.prior.cost(state.pose[1:])
-        cost += settings.shape_weight * float(state.shape @ state.shape)
+        cost += fit.prior_cost(state, settings.pose_weight, settings.shape_weight)
         return FreeSurface(vertices, state, model_vertices, matches, weights, cost)
 
     def linearize(self, here: FreeSurface, settings: FreeSettings) -> _System:
@@ -160,25 +159,17 @@ class _System:
     def __init__(self, free: FreeFit, here: FreeSurface, settings: FreeSettings) -> None:
         fit = free.fit_model
         self.free, self.here, self.settings = free, here, settings
-        posed = here.state.posed(fit.model)
         num_vertices = len(here.vertices)
         strength = settings.coupling * MM * MM
-        J = posed.vertex_jacobian() * fit.scales
+        J = fit.jacobian(fit.pose(here.state)) * fit.scales
         self.J = J
         apart = here.vertices - here.model_vertices
         pull = strength * (free.laplacian @ apart)
         LJ = (strength * (free.laplacian @ J.reshape(num_vertices, -1))).reshape(J.shape)
-        first, last = 6, 3 + 3 * len(fit.model.parents)
-        _, prior_JtJ, prior_Jtr = fit.prior.linearize(here.state.pose[1:])
-        pose_scales = fit.scales[first:last]
-        prior = np.zeros((J.shape[2], J.shape[2]))
-        prior[first:last, first:last] = settings.pose_weight * prior_JtJ * pose_scales[:, None] * pose_scales
-        shape_ids = np.arange(last, J.shape[2])
-        prior[shape_ids, shape_ids] = settings.shape_weight * fit.scales[last:] ** 2
+        prior_JtJ, prior_Jtr = fit.prior_equations(here.state, settings.pose_weight, settings.shape_weight)
+        prior = prior_JtJ * fit.scales[:, None] * fit.scales
         self.prior = prior
-        g_model = -np.einsum("vdp,vd->p", J, pull)
-        g_model[first:last] += settings.pose_weight * prior_Jtr * pose_scales
-        g_model[last:] += settings.shape_weight * here.state.shape * fit.scales[last:]
+        g_model = prior_Jtr * fit.scales - np.einsum("vdp,vd->p", J, pull)
         H_model = J.reshape(-1, J.shape[2]).T @ LJ.reshape(-1, J.shape[2]) + prior
         H_model[np.diag_indices_from(H_model)] += 1e-9 * np.trace(H_model) / len(H_model)
         blocks = strength * free.coupling_blocks

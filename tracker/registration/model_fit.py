@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
 
-from tracker.model.blend_model import BlendModel, PosedBlend
+from tracker.model.blend_model import BlendModel
 from tracker.registration.equations import add_model_rows, weigh_robustly
 from tracker.registration.hand_state import HandState
 from tracker.registration.pose_prior import PosePrior
@@ -46,12 +47,21 @@ class FitSettings:
     back: int = 100_000
 
 
+class Posed(Protocol):
+    """A surface in a pose."""
+
+    @property
+    def vertices(self) -> Array: ...
+
+    def vertex_jacobian(self, vertex_ids: npt.NDArray[np.int64] | None = None) -> Array: ...
+
+
 @dataclass(frozen=True)
 class Evaluation:
     """The objective at a state, with all that its linearisation needs."""
 
     state: HandState
-    posed: PosedBlend
+    posed: Posed
     matches: Matches
     weights: Array
     back_weights: Array
@@ -73,7 +83,7 @@ class ModelFit:
         self.model = model
         self.prior = prior
         self.search = SurfaceSearch(model.template, model.faces)
-        self.inner = _spread(model.template, ~self.search.is_rim_vertex)
+        self.inner = spread(model.template, ~self.search.is_rim_vertex)
         """Vertices off the rim, which look for the scan; any first of them lie evenly spread."""
         K = len(model.parents) - 1
         self.scales = np.concatenate([np.full(3, 0.3), np.full(3, 0.02), np.full(3 * K, 0.3), np.ones(model.num_shape)])
@@ -103,7 +113,7 @@ class ModelFit:
             promised = -float(2.0 * (g @ step) + step @ H @ step)
             if not np.isfinite(promised) or promised <= 0.2 * settings.tolerance * here.cost:
                 break
-            there = self.evaluate(here.state.retract(self.model, step * scales), scan, settings, here.matches.faces)
+            there = self.evaluate(self.move(here.state, step * scales), scan, settings, here.matches.faces)
             decrease = here.cost - there.cost
             radius = choose_radius(radius, float(np.linalg.norm(step)), decrease, promised)
             if decrease > ENOUGH * promised:
@@ -117,7 +127,7 @@ class ModelFit:
 
     def evaluate(self, state: HandState, scan: ScanPoints, settings: FitSettings, seeds=None) -> Evaluation:
         """Matches and cost at a state."""
-        posed = state.posed(self.model)
+        posed = self.pose(state)
         vertices = posed.vertices
         sigma = settings.sigma_mm / MM
         reach = 4.0 * sigma
@@ -153,35 +163,63 @@ class ModelFit:
             strength = settings.to_scan * len(self.inner) / len(inner)
             data += strength * MM * MM * float(rho.sum())
             back_weights = strength * share * share
-        cost = data + settings.pose_weight * self.prior.cost(state.pose[1:])
-        cost += settings.shape_weight * float(state.shape @ state.shape)
+        cost = data + self.prior_cost(state, settings.pose_weight, settings.shape_weight)
         return Evaluation(state, posed, matches, weights, back_weights, back_offsets, back_normals, cost, data)
 
     def linearize(self, here: Evaluation, scan: ScanPoints, settings: FitSettings) -> tuple[Array, Array]:
         """JtJ (P, P) and Jtr (P,), half the gradient, in the model's order of parameters."""
-        model = self.model
-        size = model.num_parameters
-        J = here.posed.vertex_jacobian()
-        JtJ, Jtr = np.zeros((size, size)), np.zeros(size)
         matches = here.matches
         corners = self.search.faces[matches.faces]
+        is_used = np.zeros(len(here.posed.vertices), dtype=np.bool_)
+        is_used[corners[here.weights != 0.0]] = True
+        is_used[self.inner[: len(here.back_weights)]] = True
+        used = np.flatnonzero(is_used)
+        rows = (np.cumsum(is_used) - 1).astype(np.int32)  # of the derivative, by vertex
+        J = self.jacobian(here.posed, used)
+        size = J.shape[2]
+        JtJ, Jtr = np.zeros((size, size)), np.zeros(size)
         add_model_rows(
-            JtJ, Jtr, J, corners, matches.weights, matches.directions, -matches.offsets, MM * MM * here.weights
+            JtJ, Jtr, J, rows[corners], matches.weights, matches.directions, -matches.offsets, MM * MM * here.weights
         )
         if len(here.back_weights):
-            ids = np.repeat(self.inner[: len(here.back_weights), None], 3, axis=1).astype(np.int32)
+            ids = np.repeat(rows[self.inner[: len(here.back_weights), None]], 3, axis=1)
             shares = np.zeros((len(ids), 3))
             shares[:, 0] = 1.0
             add_model_rows(JtJ, Jtr, J, ids, shares, here.back_normals, here.back_offsets, MM * MM * here.back_weights)
         JtJ = np.tril(JtJ) + np.tril(JtJ, -1).T
-        first, last = 6, 3 + 3 * len(model.parents)
-        _, prior_JtJ, prior_Jtr = self.prior.linearize(here.state.pose[1:])
-        JtJ[first:last, first:last] += settings.pose_weight * prior_JtJ
-        Jtr[first:last] += settings.pose_weight * prior_Jtr
-        shape_ids = np.arange(last, size)
-        JtJ[shape_ids, shape_ids] += settings.shape_weight
-        Jtr[shape_ids] += settings.shape_weight * here.state.shape
+        prior_JtJ, prior_Jtr = self.prior_equations(here.state, settings.pose_weight, settings.shape_weight)
+        JtJ += prior_JtJ
+        Jtr += prior_Jtr
         JtJ[np.arange(6), np.arange(6)] += 1e-6 * max(float(JtJ.diagonal()[:6].max()), 1e-9)
+        return JtJ, Jtr
+
+    # What is fitted: a model with few parameters of its own says these in another way.
+
+    def pose(self, state: HandState) -> Posed:
+        """The surface at a state."""
+        return state.posed(self.model)
+
+    def jacobian(self, posed: Posed, vertex_ids: npt.NDArray[np.int64] | None = None) -> Array:
+        """(N, 3, P) derivative of vertices (N,), of all when left out, by the parameters, m."""
+        return posed.vertex_jacobian(vertex_ids)
+
+    def move(self, state: HandState, step: Array) -> HandState:
+        """The state after a step (P,)."""
+        return state.retract(self.model, step)
+
+    def prior_cost(self, state: HandState, pose_weight: float, shape_weight: float) -> float:
+        """λ_θ E_θ + λ_β E_β of [R17] Eq. 5."""
+        return pose_weight * self.prior.cost(state.pose[1:]) + shape_weight * float(state.shape @ state.shape)
+
+    def prior_equations(self, state: HandState, pose_weight: float, shape_weight: float) -> tuple[Array, Array]:
+        """JtJ (P, P) and Jtr (P,) of the same."""
+        size, first, last = self.model.num_parameters, 6, 3 + 3 * len(self.model.parents)
+        JtJ, Jtr = np.zeros((size, size)), np.zeros(size)
+        _, prior_JtJ, prior_Jtr = self.prior.linearize(state.pose[1:])
+        JtJ[first:last, first:last] = pose_weight * prior_JtJ
+        Jtr[first:last] = pose_weight * prior_Jtr
+        JtJ[np.arange(last, size), np.arange(last, size)] = shape_weight
+        Jtr[last:] = shape_weight * state.shape
         return JtJ, Jtr
 
 
@@ -190,13 +228,13 @@ def saturated(reach: float, sigma: float) -> float:
     return reach * reach * sigma * sigma / (reach * reach + sigma * sigma)
 
 
-def _spread(vertices: Array, wanted: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
-    """Ids of the wanted vertices, each next one the farthest from all before it."""
+def spread(vertices: Array, wanted: npt.NDArray[np.bool_], most: int = 2000) -> npt.NDArray[np.int64]:
+    """Ids of the wanted vertices, each next one the farthest from all before it; of no more than `most` of them."""
     ids = np.flatnonzero(wanted)
     points = vertices[ids]
     order = [0]
     distances = np.linalg.norm(points - points[0], axis=1)
-    for _ in range(len(ids) - 1):
+    for _ in range(min(len(ids), most) - 1):
         order.append(int(np.argmax(distances)))
         distances = np.minimum(distances, np.linalg.norm(points - points[order[-1]], axis=1))
     return ids[order].astype(np.int64)

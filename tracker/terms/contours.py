@@ -55,21 +55,27 @@ class Contours:
     models: tuple[int, ...] = ()
     """Indices of the models whose contours are matched; all where none are given. The others hide what is behind."""
 
+    drawn: float = DRAWN
+    """m; finer pixels than these are drawn together."""
+
     def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToLine:
         """Match the contours of the model as it is drawn now."""
         ids, barycentric, pixels, distances = self._match(posed)
-        near = np.isfinite(distances)
+        scene, arrays = posed.scene, posed.scene.arrays
+        wanted = np.ones(len(scene.models), dtype=np.bool_)
         if self.models:
-            near &= np.isin(posed.scene.vertex_models[ids[:, 0]], self.models)
-        ids, barycentric, pixels, distances = ids[near], barycentric[near], pixels[near], distances[near]
-        kept = reject_by_bone(posed, ids, distances)
-        K, T = self.edges.K, self.edges.T_world_camera
-        rays = np.column_stack([(pixels[kept] - K[:2, 2]) / K[[0, 1], [0, 1]], np.ones(np.count_nonzero(kept))])
-        directions = rays @ T[:3, :3].T
-        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-        moments = np.asarray(np.cross(np.broadcast_to(T[:3, 3], directions.shape), directions), dtype=np.float64)
-        weights = np.full(len(directions), self.weight)
-        return PointToLine(ids[kept], barycentric[kept], directions, moments, weights)
+            wanted[:] = False
+            wanted[list(self.models)] = True
+        directions, moments = np.empty((len(ids), 3)), np.empty((len(ids), 3))
+        count = _aim_into(
+            directions,
+            moments,
+            (ids, barycentric, pixels, distances),
+            (scene.vertex_models, wanted, arrays.weight_bones),
+            (self.edges.K, self.edges.T_world_camera),
+        )
+        weights = np.full(count, self.weight)
+        return PointToLine(ids[:count], barycentric[:count], directions[:count], moments[:count], weights)
 
     def measure(self, posed: PosedScene, model: int) -> Array:
         """(N,) distances from each contour pixel of one model to the edge it would go to, m.
@@ -83,7 +89,7 @@ class Contours:
         """Ids (N, 3), shares (N, 3), edge (N, 2) px and distance (N,) m of every contour pixel."""
         edges = self.edges
         height, width = edges.directions.shape
-        shrink = _choose_shrink(posed, edges)
+        shrink = _choose_shrink(posed, edges, self.drawn)
         view = render_view(posed, _shrink(edges.K, shrink), edges.T_world_camera, height // shrink, width // shrink)
         reach = self.max_distance * edges.K[0, 0] * float(view.inverse_depth.max()) + SLACK
         offsets = _offsets(1 << int(np.ceil(np.log2(min(reach, height + width) + 1))))
@@ -101,23 +107,11 @@ class Contours:
         return room.ids[:count], room.barycentric[:count], pixels[:count], spans[:count]
 
 
-def reject_by_bone(
-    posed: PosedScene, ids: npt.NDArray[np.int32], distances: npt.NDArray[np.float64]
-) -> npt.NDArray[np.bool_]:
-    """(N,) which matches stay: those of a bone within twice the root mean square of its distances (N,).
-
-    The bone is the one that moves the first vertex of the point's face (N, 3) most.
-    """
-    bones = posed.scene.arrays.weight_bones[ids[:, 0], 0]
-    square = np.bincount(bones, distances**2, minlength=1) / np.maximum(np.bincount(bones, minlength=1), 1)
-    return distances**2 <= 4.0 * square[bones]
-
-
-def _choose_shrink(posed: PosedScene, edges: ImageEdges) -> int:
-    """How many px of the edges a drawn one is wide, so that it is at most `DRAWN` wide where the scene is."""
+def _choose_shrink(posed: PosedScene, edges: ImageEdges, width: float) -> int:
+    """How many px of the edges a drawn one is wide, so that it is at most `width` m wide where the scene is."""
     T = edges.T_world_camera
-    depth = float(np.median((posed.vertices[::SAMPLED] - T[:3, 3]) @ T[:3, 2]))
-    return max(1, int(DRAWN * edges.K[0, 0] / max(depth, 0.01)))
+    depth = float((posed.vertices[::SAMPLED].mean(axis=0) - T[:3, 3]) @ T[:3, 2])
+    return max(1, int(width * edges.K[0, 0] / max(depth, 0.01)))
 
 
 def _shrink(K: Array, shrink: int) -> Array:
@@ -194,3 +188,49 @@ def _find_into(ids, barycentric, pixels, distances, drawn, seen, how):
             distances[count] = apart * z / focal
             count += 1
     return count
+
+
+@njit(cache=True, nogil=True)
+def _aim_into(directions, moments, found, scene, camera):
+    """Keep the matches that count, move them to the front, write their viewing rays and return their number.
+
+    Those of a bone count that are within twice the root mean square of its distances. The bone is the one that moves
+    the first vertex of the point's face most.
+
+    Args:
+        directions: (N, 3) out, unit, world.
+        moments: (N, 3) out, world, m.
+        found: ids (N, 3), barycentric (N, 3), pixels (N, 2) and distances (N,) as `_find_into` writes them; what counts
+            is moved to the front.
+        scene: Model of each vertex (V,), which models count (M,), bones of each vertex (V, 4), heaviest first.
+        camera: K (3, 3) px and its place in the world (4, 4).
+    """
+    ids, barycentric, pixels, distances = found
+    models, wanted, bones = scene
+    K, T = camera
+    sums = np.zeros(int(bones.max()) + 1)
+    counts = np.zeros(len(sums))
+    for n in range(len(ids)):
+        if np.isfinite(distances[n]) and wanted[models[ids[n, 0]]]:
+            bone = bones[ids[n, 0], 0]
+            sums[bone] += distances[n] * distances[n]
+            counts[bone] += 1.0
+    kept = 0
+    for n in range(len(ids)):
+        vertex = ids[n, 0]
+        if not (np.isfinite(distances[n]) and wanted[models[vertex]]):
+            continue
+        bone = bones[vertex, 0]
+        if distances[n] * distances[n] * counts[bone] > 4.0 * sums[bone]:
+            continue
+        for i in range(3):
+            ids[kept, i], barycentric[kept, i] = ids[n, i], barycentric[n, i]
+        x, y = (pixels[n, 0] - K[0, 2]) / K[0, 0], (pixels[n, 1] - K[1, 2]) / K[1, 1]
+        length = np.sqrt(x * x + y * y + 1.0)
+        for i in range(3):
+            directions[kept, i] = (T[i, 0] * x + T[i, 1] * y + T[i, 2]) / length
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            moments[kept, i] = T[j, 3] * directions[kept, k] - T[k, 3] * directions[kept, j]
+        kept += 1
+    return kept

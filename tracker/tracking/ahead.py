@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from time import perf_counter
 
 from tracker.capture.camera import Camera
-from tracker.capture.frame import Frame
+from tracker.capture.frame import CameraFrame, Frame
 from tracker.capture.sequence import Sequence
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import Sightings, find_sightings
@@ -94,11 +94,55 @@ class FramesAhead:
         return FrameRead(read.frame, read.camera, seen if is_whole else None, read.seconds)
 
 
+@dataclass(frozen=True)
+class ViewsRead:
+    """A moment as it was read.
+
+    Attributes:
+        views: The frames of all views.
+        seconds: That reading took.
+    """
+
+    views: list[CameraFrame]
+    seconds: float
+
+    @classmethod
+    def of(cls, sequence: Sequence, setup: TrackSetup, index: int, threads: int) -> ViewsRead:
+        started = perf_counter()
+        views = setup.read_views(sequence, index, threads)
+        return cls(views, perf_counter() - started)
+
+
+class ViewsAhead:
+    """Reads one moment of several views at a time. Where hands are looked for there depends on the fit before."""
+
+    def __init__(self, sequence: Sequence, setup: TrackSetup, stop: int, pool: ThreadPoolExecutor) -> None:
+        self._sequence, self._setup, self._stop, self._pool = sequence, setup, stop, pool
+        self._begun: tuple[int, Future[ViewsRead]] | None = None
+
+    def begin(self, index: int) -> None:
+        """Read a moment, if the run goes so far."""
+        if index < self._stop:
+            self._begun = index, self._pool.submit(ViewsRead.of, self._sequence, self._setup, index, 1)
+
+    def take(self, index: int) -> ViewsRead:
+        """The moment, waited for.
+
+        Raises:
+            FrameError: It cannot be read.
+        """
+        begun, self._begun = self._begun, None
+        if begun is not None and begun[0] == index:
+            return begun[1].result()
+        return ViewsRead.of(self._sequence, self._setup, index, self._setup.options.threads)
+
+
 @contextmanager
-def read_ahead(sequence: Sequence, setup: TrackSetup, stop: int) -> Iterator[FramesAhead | None]:
+def read_ahead(sequence: Sequence, setup: TrackSetup, stop: int) -> Iterator[FramesAhead | ViewsAhead | None]:
     """What prepares the frames before `stop`; None where the run has one thread or goes another way."""
-    if setup.options.threads == 1 or setup.view_ids or setup.options.is_as_written:
+    if setup.options.threads == 1 or setup.options.is_as_written:
         yield None
         return
     with ThreadPoolExecutor(1, thread_name_prefix="next frame") as pool:
-        yield FramesAhead(sequence, setup, stop, pool)
+        way = ViewsAhead if setup.view_ids else FramesAhead
+        yield way(sequence, setup, stop, pool)

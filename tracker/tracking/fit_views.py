@@ -21,6 +21,7 @@ from tracker.fitting.objective import Objective
 from tracker.fitting.region import choose_stride, region_around
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import find_hand_pixels
+from tracker.fitting.view_contours import ViewContours
 from tracker.fitting.view_hands import FOLLOWS, HOLDS, REACH, ViewHands
 from tracker.landmarks import DetectedHand, HandDetector, default_hand_detector
 from tracker.model.scene import PosedScene
@@ -75,6 +76,7 @@ def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene
         gone: Hands that nobody knows the place of.
     """
     names, threads = setup.hand_names, setup.options.threads
+    idle = [default_hand_detector(number) for number in range(threads)]
     known = [hand for hand in setup.hands if hand not in gone]
     looked_at = [view for view in views if view.frame.color is not None]
 
@@ -82,8 +84,12 @@ def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene
         view = looked_at[number]
         expected = {setup.names[hand]: _expect(posed, hand, setup.names[hand], view.camera) for hand in known}
         places = {name: hand for name, hand in expected.items() if hand is not None}
-        detector = default_hand_detector(number % threads)
-        return _find(detector, view.frame, names, places, ()) if places else {}
+        if not places:
+            return {}
+        detector = idle.pop()  # each looks at one image at a time
+        found = _find(detector, view.frame, names, places, ())
+        idle.append(detector)
+        return found
 
     seen = map_views(follow, range(len(looked_at)), threads)
     detector = default_hand_detector()
@@ -113,7 +119,7 @@ def fit_views(
     near = compose_near(objective, setup, seen, views, scene.pose_at(first.pose))
     stages = {"preparing depth": perf_counter() - started}
     objects = find_object_contours(setup, views, scene.pose_at(first.pose))
-    held = replace(near, terms=near.terms | objects)
+    held = near if objects is None else replace(near, terms=near.terms | {"objects": objects})
     second = fit_frame(scene, None, first.pose, pose, held, FitOptions(iterations=iterations))
     started = perf_counter()
     last = seen.add_to(near, scene, names, MANY_REACH) if has_many else near
@@ -133,8 +139,8 @@ def fit_views(
 def add_contours(objective: Objective, posed: PosedScene, views: Sequence[CameraFrame], threads: int = 1) -> Objective:
     """The objective with the edges of each image near the scene."""
     edges = find_edges(posed.vertices, views, EDGE_MARGIN, threads)
-    own: dict[str, Term] = {f"contours_{camera_id}": Contours(seen) for camera_id, seen in edges.items()}
-    return replace(objective, terms=objective.terms | own)
+    own = ViewContours({camera_id: Contours(seen) for camera_id, seen in edges.items()}, threads)
+    return replace(objective, terms=objective.terms | {"contours": own})
 
 
 def compose_near(

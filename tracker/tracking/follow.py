@@ -15,7 +15,7 @@ from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import Sightings, find_sightings
 from tracker.search.part import Part
 from tracker.search.tools import Tools, make_tools
-from tracker.tracking.ahead import FrameRead, FramesAhead, Glance, read_ahead
+from tracker.tracking.ahead import FrameRead, FramesAhead, Glance, ViewsAhead, read_ahead
 from tracker.tracking.as_written import follow_as_written
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.follow_part import follow_part
@@ -65,7 +65,7 @@ def follow_frame(
     tools: Tools,
     state: TrackState,
     recover: bool,
-    ahead: FramesAhead | None = None,
+    ahead: FramesAhead | ViewsAhead | None = None,
 ) -> tuple[TrackState, FrameResult]:
     """Track the next frame.
 
@@ -81,7 +81,9 @@ def follow_frame(
     if setup.options.is_as_written:
         return follow_as_written(sequence, setup, tools, state)
     if setup.view_ids:
-        return follow_views(sequence, setup, tools, state)[:2]
+        assert not isinstance(ahead, FramesAhead)
+        return follow_views(sequence, setup, tools, state, ahead)[:2]
+    assert not isinstance(ahead, ViewsAhead)
     started = perf_counter()
     glance = _glance(setup, state)
     read = ahead.take(glance) if ahead else FrameRead.of(sequence, setup, state.next_frame)

@@ -11,6 +11,7 @@ from tracker.fitting.view_hands import ViewHands
 from tracker.search.part import Part
 from tracker.search.place_in_views import place_in_views
 from tracker.search.tools import Tools
+from tracker.tracking.ahead import ViewsAhead, ViewsRead
 from tracker.tracking.fit_views import fit_views, judge_hand, see_hands
 from tracker.tracking.frame_result import FrameResult, sum_up, tell_statuses
 from tracker.tracking.state import TrackState
@@ -19,16 +20,31 @@ from tracker.tracking.watch_objects import stop_unseen
 
 
 def follow_views(
-    sequence: Sequence, setup: TrackSetup, tools: Tools, state: TrackState
+    sequence: Sequence, setup: TrackSetup, tools: Tools, state: TrackState, ahead: ViewsAhead | None = None
 ) -> tuple[TrackState, FrameResult, ViewHands]:
-    """Track the next frame in the views of a run; also what was seen in it."""
-    read_at = perf_counter()
-    views = setup.read_views(sequence, state.next_frame)
+    """Track the next frame in the views of a run; also what was seen in it.
+
+    Args:
+        sequence: The recording.
+        setup: Models and options.
+        tools: Of the run.
+        state: After the frame before.
+        ahead: Reads the images of the frame after this one meanwhile. The seconds of a frame are then those of the
+            clock, with what it had to wait for its images.
+    """
     started = perf_counter()
+    if ahead:
+        read = ahead.take(state.next_frame)
+    else:
+        read = ViewsRead.of(sequence, setup, state.next_frame, setup.options.threads)
+        started = perf_counter()
+    looked_at, views = perf_counter(), read.views
     scene, hands, gone = setup.scene, setup.hands, set(state.gone_hands(setup))
     pose = state.predict(scene)
     seen = see_hands(setup, views, scene.pose_at(pose), gone)
-    stages = {"reading": started - read_at, "detecting hands": perf_counter() - started}
+    stages = {"reading": read.seconds, "detecting hands": perf_counter() - looked_at}
+    if ahead:
+        ahead.begin(state.next_frame + 1)  # not before: the detector takes all threads
     found = set()
     for hand in sorted(gone):
         placed = place_in_views(setup.models[hand], setup.names[hand], seen)

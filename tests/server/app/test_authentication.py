@@ -21,11 +21,11 @@ from starlette.routing import BaseRoute
 from starlette.websockets import WebSocketDisconnect
 
 from server.access.models import ROLES, LoginRow, Role
-from server.access.service import RequireRole
 from server.app import authentication, create_app
 from server.app.app import API
 from server.app.authentication import CLOSED_PREFIXES, OPEN
 from server.app.parts import PAGE_ROUTERS, ROUTERS
+from server.app.requests_page import find_role
 from server.settings import Settings
 from tests.server.access.conftest import Lab, lab
 from tests.server.conftest import BASE_URL
@@ -34,6 +34,7 @@ __all__ = ["lab"]
 
 NONE = "00000000-0000-4000-8000-000000000009"
 SECURITY = Path(__file__).parents[3] / "docs" / "security.md"
+REQUESTS = Path(__file__).parents[3] / "web" / "src" / "api" / "requests.md"
 
 
 @pytest.fixture
@@ -165,20 +166,6 @@ def test_where_people_log_in_the_studio_is_reached_by_its_address_but_by_no_fore
 # Who may what
 
 
-def find_role(route: APIRoute) -> Role:
-    """The role that a route asks for: the highest of its dependencies."""
-    needed: list[Role] = ["annotator"]
-
-    def walk(dependant) -> None:
-        if isinstance(dependant.call, RequireRole):
-            needed.append(dependant.call.role)
-        for inner in dependant.dependencies:
-            walk(inner)
-
-    walk(route.dependant)
-    return max(needed, key=ROLES.index)
-
-
 def list_writes(app: FastAPI) -> dict[str, Role]:
     """Every request that changes something, and who may."""
     return {
@@ -191,15 +178,9 @@ def list_writes(app: FastAPI) -> dict[str, Role]:
 
 
 def test_who_may_what_is_what_the_documentation_says(lab: Lab) -> None:
-    text = SECURITY.read_text().partition("## Who may what")[2].partition("\n## ")[0]
-    documented = dict(re.findall(r"^\| `([A-Z]+ /\S+)` \| (\w+) \|", text, re.MULTILINE))
-    offered = list_writes(lab.app)
-    rows = "\n".join(f"| `{request}` | {role} |" for request, role in sorted(offered.items(), key=_by_address))
-    assert documented == offered, f"docs/security.md needs these rows:\n{rows}"
-
-
-def _by_address(item: tuple[str, Role]) -> tuple[int, str]:
-    return ROLES.index(item[1]), item[0].partition(" ")[2]
+    rows = re.findall(r"^\| `([A-Z]+ /\S+)` \| (\w+) \|", REQUESTS.read_text(), re.MULTILINE)
+    documented = {request: role for request, role in rows if not request.startswith("GET ") and role != "all"}
+    assert documented == list_writes(lab.app)
 
 
 def test_who_has_a_lower_role_is_refused_everywhere(lab: Lab) -> None:

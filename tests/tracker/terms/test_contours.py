@@ -17,7 +17,7 @@ from tracker.model.ball import make_ball
 from tracker.model.scene import Scene
 from tracker.observation.image_edges import DIRECTIONS, ImageEdges, find_image_edges, sort_offsets
 from tracker.rendering import render_view
-from tracker.terms.contours import Contours, _find_into, reject_by_bone
+from tracker.terms.contours import Contours, _find_into
 
 VIEWS = [look_from(angle) for angle in (0.0, 0.8, 1.6)]
 
@@ -96,11 +96,29 @@ def test_contours_of_chosen_models_pull_nothing_else(truth, edges):
     assert set(two.vertex_models[matched.ids].ravel()) == {1}
 
 
-def test_matches_of_one_bone_beyond_twice_their_spread_are_left_out(truth):
-    posed = SCENE.pose_at(truth)
-    ids = np.zeros((20, 3), dtype=np.int32)
-    distances = np.append(np.full(19, 0.001), 0.010)
-    assert reject_by_bone(posed, ids, distances).tolist() == [True] * 19 + [False]
+def test_the_lines_are_the_rays_of_the_matches_that_a_plain_loop_keeps(truth, edges):
+    """Of each bone those within twice the root mean square of its distances, of the models that count."""
+    two = Scene((HAND, make_ball(0.03)))
+    posed = two.pose_at(np.concatenate([truth, [0.0, 0.05, 0.0, 0.0, 0.0, 0.0]]))
+    for models in ((), (0,), (1,)):
+        contours = Contours(edges[1], max_distance=0.02, models=models, weight=0.3)
+        ids, shares, pixels, distances = contours._match(posed)
+        counts = np.isfinite(distances) & np.isin(two.vertex_models[ids[:, 0]], models or (0, 1))
+        bones, kept = two.arrays.weight_bones[ids[:, 0], 0], np.zeros(len(ids), bool)
+        for bone in np.unique(bones[counts]):
+            own = counts & (bones == bone)
+            kept |= own & (distances <= 2.0 * np.sqrt(np.mean(distances[own] ** 2)))
+        assert 0 < kept.sum() <= counts.sum()
+        assert kept.sum() < counts.sum() or models == (1,)
+        found = contours.find(posed)
+        np.testing.assert_array_equal(found.ids, ids[kept])
+        np.testing.assert_array_equal(found.barycentric, shares[kept])
+        K, T = edges[1].K, edges[1].T_world_camera
+        rays = np.column_stack([(pixels[kept] - K[:2, 2]) / K[[0, 1], [0, 1]], np.ones(kept.sum())]) @ T[:3, :3].T
+        rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+        np.testing.assert_allclose(found.directions, rays, atol=1e-12)
+        np.testing.assert_allclose(found.moments, np.cross(T[:3, 3], rays), atol=1e-12)
+        np.testing.assert_array_equal(found.weights, 0.3)
 
 
 def test_the_kernel_finds_what_a_plain_loop_finds(truth, edges):
@@ -164,7 +182,7 @@ def find_plainly(view, seen, stride, jump, max_distance):
             yield tuple(edges[nearest]), apart[nearest] if is_near else np.inf, (column, row)
 
 
-def test_a_scene_drawn_coarser_than_its_image_meets_the_same_edges(truth, edges, monkeypatch):
+def test_a_scene_drawn_coarser_than_its_image_meets_the_same_edges(truth, edges):
     """An image of twice the resolution, of whose pixels four are drawn as one."""
     seen, K = edges[0], edges[0].K.copy()
     K[:2] *= 2.0
@@ -178,9 +196,9 @@ def test_a_scene_drawn_coarser_than_its_image_meets_the_same_edges(truth, edges,
     posed = SCENE.pose_at(truth)
     T = seen.T_world_camera
     pixel = float(np.median((posed.vertices - T[:3, 3]) @ T[:3, 2])) / seen.K[0, 0]
-    monkeypatch.setattr("tracker.terms.contours.DRAWN", 1.4 * pixel)
-    as_it_is = Contours(seen, stride=1)._match(posed)
-    coarser = Contours(replace(seen, K=K, directions=directions, places=places), stride=2)._match(posed)
+    as_it_is = Contours(seen, stride=1, drawn=1.4 * pixel)._match(posed)
+    finer = replace(seen, K=K, directions=directions, places=places)
+    coarser = Contours(finer, stride=2, drawn=1.4 * pixel)._match(posed)
     np.testing.assert_array_equal(coarser[0], as_it_is[0])
     is_same = np.isclose(coarser[3], as_it_is[3], rtol=0.0, atol=0.2 * pixel)
     assert len(is_same) > 200 and is_same.mean() > 0.95  # two edges may have come to one pixel

@@ -11,7 +11,11 @@ import pytest
 
 from tracker.errors import FrameError
 from tracker.fitting.options import TrackOptions
-from tracker.tracking.ahead import Glance, read_ahead
+from tracker.model.default_hand import default_hand
+from tracker.model.npz_files import save_npz_model
+from tracker.synthesis.motion import perform
+from tracker.synthesis.recording import RecordingOptions, write_recording
+from tracker.tracking.ahead import FramesAhead, Glance, read_ahead
 from tracker.tracking.follow import track_frames
 from tracker.tracking.start import start_tracking
 
@@ -69,7 +73,7 @@ def test_a_look_that_was_not_guessed_is_not_taken(recorded, begun):
     setup, _ = begun
     glance = Glance(5, BEFORE, (0, 1))
     with read_ahead(recorded.sequence, setup, 12) as ahead:
-        assert ahead is not None
+        assert isinstance(ahead, FramesAhead)
         ahead.begin(glance)
         assert ahead.take(glance).sightings is not None
         for other in (replace(glance, turns=(0, 2)), replace(glance, before={})):
@@ -82,3 +86,48 @@ def test_a_look_that_was_not_guessed_is_not_taken(recorded, begun):
 def test_one_thread_prepares_nothing(recorded, run):
     with read_ahead(recorded.sequence, run[0], 12) as ahead:
         assert ahead is None
+
+
+class WatchedViews(Watched):
+    """The same of a recording of several cameras without depth."""
+
+    def color(self, index, camera_id):
+        self.read.append((index, threading.current_thread() is threading.main_thread()))
+        if index >= self._broken:
+            raise FrameError(f"frame {index} is broken")
+        return self._sequence.color(index, camera_id)
+
+
+@pytest.fixture(scope="module")
+def views(tmp_path_factory):
+    """A drawn hand before two cameras, tracked with colour alone."""
+    performance = perform({"right": default_hand("right")}, "open-close", 60, 2, (320, 240))
+    folder = tmp_path_factory.mktemp("ahead") / "views"
+    return write_recording(performance, folder, RecordingOptions(range(5)), save_npz_model)
+
+
+def follow_with(views, threads):
+    options = TrackOptions(calibrate=False, cameras="cam0,cam1", use_depth=False, threads=threads)
+    watched: Any = WatchedViews(views)
+    setup, state = start_tracking(watched, options)
+    watched.read.clear()
+    return track_frames(watched, setup, state, range(5))[1], watched.read
+
+
+def test_several_views_with_two_threads_give_the_bits_of_one_and_are_read_ahead(views):
+    (one, _), (two, read) = (follow_with(views, threads) for threads in (1, 2))
+    np.testing.assert_array_equal(two.pose, one.pose)
+    np.testing.assert_array_equal(two.seen, one.seen)
+    assert list(two.status) == list(one.status)
+    assert sorted(index for index, _ in read) == [0, 0, 1, 1, 2, 2, 3, 3, 4, 4]
+    assert not any(is_main for index, is_main in read if index > 0)
+
+
+def test_a_moment_of_several_views_that_cannot_be_read_stops_the_run_at_its_turn(views):
+    options = TrackOptions(calibrate=False, cameras="cam0,cam1", use_depth=False, threads=2)
+    watched: Any = WatchedViews(views, broken=2)
+    setup, state = start_tracking(watched, options)
+    tracked: list[int] = []
+    with pytest.raises(FrameError, match="frame 2 is broken"):
+        track_frames(watched, setup, state, range(5), lambda index, _: tracked.append(index))
+    assert tracked == [0, 1]

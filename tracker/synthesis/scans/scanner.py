@@ -13,12 +13,6 @@ from tracker.synthesis.scans.tissue import vertex_normals
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-DISTANCE = 0.60
-"""From a head of the scanner to the hand, m."""
-
-PIXELS = 560
-"""Width and height of the images that decide what a head sees; one of them is about 0.5 mm wide on the hand."""
-
 LEAST_COSINE = 0.22
 """Surfaces seen at a flatter angle give no points."""
 
@@ -36,6 +30,8 @@ class Scanner:
         views: Number of heads, around the axis of the hand.
         holes: Fewest and most holes besides what no head sees.
         hole_radius: Least and greatest, m.
+        distance: From a head to what it looks at, m.
+        pixels: Width and height of the images that decide what a head sees; one is about 0.5 mm wide on a hand.
     """
 
     num_points: int = 50_000
@@ -44,6 +40,8 @@ class Scanner:
     views: int = 5
     holes: tuple[int, int] = (2, 5)
     hole_radius: tuple[float, float] = (3e-3, 8e-3)
+    distance: float = 0.60
+    pixels: int = 560
 
 
 @dataclass(frozen=True)
@@ -72,7 +70,7 @@ def scan_surface(
     smooth = vertex_normals(vertices, faces)
     # First half as many again as wanted, then as many as it takes.
     wanted = scanner.num_points
-    heads = place_heads(vertices, scanner.views, rng)
+    heads = place_heads(vertices, scanner, rng)
     images = [_look(vertices, faces, head) for head in heads]
     holes = _make_holes(vertices, faces, areas, scanner, rng)
     kept: list[tuple[Array, Array, Ints]] = []
@@ -102,19 +100,21 @@ def scan_surface(
 
 @dataclass(frozen=True)
 class Head:
-    """A camera: rotation (3, 3) surface to camera and its centre (3,)."""
+    """A camera: rotation (3, 3) surface to camera, its centre (3,), K (3, 3) px, width and height of its image."""
 
     R: Array
     center: Array
     K: Array
+    pixels: int
 
 
-def place_heads(vertices: Array, count: int, rng: np.random.Generator) -> list[Head]:
+def place_heads(vertices: Array, scanner: Scanner, rng: np.random.Generator) -> list[Head]:
     """Heads around the long axis of what they look at, at slightly different heights, turned by chance."""
     middle = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     reach = float(np.linalg.norm(vertices - middle, axis=1).max())
-    focal = 0.47 * PIXELS * (DISTANCE - reach) / reach
-    K = np.array([[focal, 0.0, 0.5 * (PIXELS - 1)], [0.0, focal, 0.5 * (PIXELS - 1)], [0.0, 0.0, 1.0]])
+    pixels, count = scanner.pixels, scanner.views
+    focal = 0.47 * pixels * (scanner.distance - reach) / reach
+    K = np.array([[focal, 0.0, 0.5 * (pixels - 1)], [0.0, focal, 0.5 * (pixels - 1)], [0.0, 0.0, 1.0]])
     start = rng.uniform(0.0, 2.0 * np.pi)
     heads = []
     for number in range(count):
@@ -124,13 +124,13 @@ def place_heads(vertices: Array, count: int, rng: np.random.Generator) -> list[H
         z = -away
         x = np.cross([1.0, 0.0, 0.0], z)
         x /= np.linalg.norm(x)
-        heads.append(Head(np.stack([x, np.cross(z, x), z]), middle + DISTANCE * away, K))
+        heads.append(Head(np.stack([x, np.cross(z, x), z]), middle + scanner.distance * away, K, pixels))
     return heads
 
 
 def _look(vertices: Array, faces: Ints, head: Head) -> Array:
     local = (vertices - head.center) @ head.R.T
-    return render_depth(local, faces.astype(np.int32), head.K, PIXELS, PIXELS).depth
+    return render_depth(local, faces.astype(np.int32), head.K, head.pixels, head.pixels).depth
 
 
 def _is_seen(points: Array, normals: Array, head: Head, depth: Array) -> npt.NDArray[np.bool_]:
@@ -138,8 +138,8 @@ def _is_seen(points: Array, normals: Array, head: Head, depth: Array) -> npt.NDA
     local = (points - head.center) @ head.R.T
     cosine = np.einsum("nx,nx->n", head.center - points, normals) / np.linalg.norm(local, axis=1)
     pixel = np.rint(head.K[0, 0] * local[:, :2] / local[:, 2:] + head.K[0, 2]).astype(np.int64)
-    inside = np.all((pixel >= 0) & (pixel < PIXELS), axis=1)
-    column, row = np.clip(pixel, 0, PIXELS - 1).T
+    inside = np.all((pixel >= 0) & (pixel < head.pixels), axis=1)
+    column, row = np.clip(pixel, 0, head.pixels - 1).T
     front = depth[row, column]
     # A pixel's middle lies up to 0.7 pixel from the point, where a slanted surface is nearer or farther.
     slope = np.sqrt(np.maximum(1.0 - cosine**2, 0.0)) / np.maximum(cosine, 0.05)

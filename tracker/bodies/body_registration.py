@@ -1,0 +1,158 @@
+"""A body laid onto a scan of a person, and what it is worth; on the disk, too."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.bodies.body_state import BodyState
+from tracker.capture.atomic_file import write_atomically
+from tracker.capture.scan_ply import write_ply
+from tracker.errors import ModelFileError, RegistrationError, reads
+from tracker.model.npz_arrays import read_foreign_npz
+from tracker.registration.registration import summarize_distances
+
+Array = npt.NDArray[np.float64]
+
+BODY_FILE = "body.npz"
+PLY_FILE = "body.ply"
+NEEDED = "a body.npz that `handloom register-body` wrote"
+MAX_VERTICES, MAX_COORDINATE = 100_000, 100.0
+
+
+@dataclass(frozen=True, eq=False)
+class BodyRegistration:
+    """A registered scan of a person.
+
+    Attributes:
+        vertices: (V, 3) the free surface, scan's frame, m.
+        model_vertices: (V, 3) the model it is coupled to, m.
+        state: Pose, shape and place of the model; hands in its components.
+        are_shown: Whether the scan has the left and the right hand; one that it has not is guessed.
+        scan_to_mesh: (N,) m, of each point of the scan to the free surface.
+        verdict: "good", "doubtful" or "bad".
+        reasons: Why it is not good, and which hands are guessed.
+        measures: What the verdict rests on.
+        seconds: It took, by stage.
+        scan: The scan's name.
+        scan_digest: SHA-256 of its points.
+        model_digest: SHA-256 of the model.
+    """
+
+    vertices: Array
+    model_vertices: Array
+    state: BodyState
+    are_shown: tuple[bool, bool]
+    scan_to_mesh: Array
+    verdict: str
+    reasons: tuple[str, ...]
+    measures: dict[str, float] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+    scan: str = ""
+    scan_digest: str = ""
+    model_digest: str = ""
+
+    def summary(self) -> dict[str, Any]:
+        """What `--json` lists."""
+        return {
+            "scan": self.scan,
+            "seconds": round(sum(self.seconds.values()), 2),
+            "verdict": self.verdict,
+            "scan_to_mesh_mm": summarize_distances(self.scan_to_mesh),
+            "hands_shown": {"left": self.are_shown[0], "right": self.are_shown[1]},
+            "reasons": list(self.reasons),
+        }
+
+
+def save_body_registration(registration: BodyRegistration, faces: npt.NDArray, folder: Path) -> None:
+    """Write `body.ply` and `body.npz`; each appears whole or not at all, the npz last."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_atomically(folder / PLY_FILE, write_ply(registration.vertices, faces))
+    write_atomically(folder / BODY_FILE, pack_body_registration(registration))
+
+
+def pack_body_registration(registration: BodyRegistration) -> bytes:
+    """The bytes of `body.npz`."""
+    state = registration.state
+    said = {
+        "verdict": registration.verdict,
+        "reasons": list(registration.reasons),
+        "measures": registration.measures,
+        "seconds": registration.seconds,
+        "scan": registration.scan,
+        "scan_digest": registration.scan_digest,
+        "model_digest": registration.model_digest,
+    }
+    buffer = io.BytesIO()
+    np.savez_compressed(
+        buffer,
+        vertices=registration.vertices,
+        model_vertices=registration.model_vertices,
+        poses=state.pose.reshape(1, -1),
+        trans=state.translation[None],
+        betas=state.shape,
+        hands=state.hands,
+        are_shown=np.array(registration.are_shown),
+        scan_to_mesh=registration.scan_to_mesh.astype(np.float32),
+        said=np.array(json.dumps(said)),
+    )
+    return buffer.getvalue()
+
+
+@reads(RegistrationError, NEEDED)
+def load_body_registration(folder: Path) -> BodyRegistration:
+    """Read `body.npz` of a folder, or that file itself, checking every array.
+
+    Raises:
+        RegistrationError: With what was found and what is needed.
+    """
+    path = folder / BODY_FILE if folder.is_dir() else folder
+    try:
+        arrays = read_foreign_npz(path)
+    except ModelFileError as error:
+        raise RegistrationError(path, "a damaged file or no archive", NEEDED) from error
+    said = json.loads(str(arrays["said"].item())[:100_000])
+    vertices = _floats(path, arrays, "vertices", (-1, 3))
+    if len(vertices) > MAX_VERTICES:
+        raise RegistrationError(path, f"{len(vertices)} vertices", f"at most {MAX_VERTICES}")
+    state = BodyState(
+        _floats(path, arrays, "poses", (1, 156)).reshape(52, 3),
+        _floats(path, arrays, "betas", (-1,)),
+        _floats(path, arrays, "trans", (1, 3))[0],
+        _floats(path, arrays, "hands", (2, -1)),
+    )
+    shown = arrays["are_shown"].astype(bool)
+    if shown.shape != (2,):
+        raise RegistrationError(path, f"'are_shown' {shown.shape}", "two of them")
+    return BodyRegistration(
+        vertices,
+        _floats(path, arrays, "model_vertices", vertices.shape),
+        state,
+        (bool(shown[0]), bool(shown[1])),
+        _floats(path, arrays, "scan_to_mesh", (-1,)),
+        str(said["verdict"]),
+        tuple(str(reason) for reason in said["reasons"]),
+        {str(name): float(value) for name, value in said["measures"].items()},
+        {str(name): float(value) for name, value in said["seconds"].items()},
+        str(said["scan"]),
+        str(said["scan_digest"]),
+        str(said["model_digest"]),
+    )
+
+
+def _floats(path: Path, arrays: dict[str, npt.NDArray], name: str, shape: tuple[int, ...]) -> Array:
+    array = arrays.get(name)
+    if array is None or array.dtype.kind not in "fiu" or array.ndim != len(shape):
+        raise RegistrationError(path, f"no numbers '{name}' of {len(shape)} dimensions", NEEDED)
+    if any(want not in (-1, have) for want, have in zip(shape, array.shape, strict=True)):
+        raise RegistrationError(path, f"'{name}' {array.shape}", f"{shape}")
+    array = np.ascontiguousarray(array, dtype=np.float64)
+    if array.size and not (np.isfinite(array).all() and np.abs(array).max() <= MAX_COORDINATE):
+        raise RegistrationError(path, f"'{name}' with values beyond {MAX_COORDINATE:g}", "sound numbers")
+    return array

@@ -1,0 +1,287 @@
+"""A folder of scans of one moving person, registered frame by frame; stopped anywhere, it goes on where it was."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tracker.bodies.body_registration import (
+    BODY_FILE,
+    BodyRegistration,
+    load_body_registration,
+    save_body_registration,
+)
+from tracker.bodies.body_scan_file import load_body_scan
+from tracker.bodies.follow_body import BodyFollower, FollowOptions
+from tracker.bodies.register_body import Registrar
+from tracker.bodies.template import make_template
+from tracker.capture.atomic_file import write_atomically
+from tracker.errors import RegistrationError, ScanError, TrackerError
+from tracker.model.blend_files import load_blend_model, save_blend_model
+from tracker.model.blend_model import BlendModel
+from tracker.model.body_motion import BodyMotion, save_body_motion
+
+TEMPLATE, SETTINGS, SUMMARY, MOTION = "template.npz", "settings.json", "summary.json", "motion.npz"
+FRAMES, TEMPLATES, JOINED = "frames", "template", "joined.json"
+
+AGREES_MM, AGREED = 0.5, 2
+"""Two chains of frames have met when so many frames in a row differ by less than this, over all vertices' mean."""
+
+Progress = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class SequenceOptions:
+    """How a sequence is registered.
+
+    Attributes:
+        follow: How a frame follows from the one before.
+        template_frames: So many frames make the person's template, spread over the first `template_span`.
+        template_span: [R17] 4.3: the first 50, in which the person is mostly still.
+        chunk: Frames of a chunk: chunks are registered in parallel and then joined; all frames when 0.
+        metres_per_unit: Of the files; told by the size when left out.
+        fps: Frames per second.
+    """
+
+    follow: FollowOptions = field(default_factory=FollowOptions)
+    template_frames: int = 6
+    template_span: int = 50
+    chunk: int = 0
+    metres_per_unit: float | None = None
+    fps: float = 60.0
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """Scans in the order of their names, the folder they are registered into, and how."""
+
+    paths: tuple[Path, ...]
+    out: Path
+    options: SequenceOptions
+
+    def __len__(self) -> int:
+        return len(self.paths)
+
+    def folder(self, frame: int) -> Path:
+        return self.out / FRAMES / f"{frame:06d}"
+
+    @property
+    def chunks(self) -> list[range]:
+        size = self.options.chunk or max(len(self), 1)
+        return [range(first, min(first + size, len(self))) for first in range(0, len(self), size)]
+
+
+def register_sequence(
+    sequence: Sequence, model: BlendModel, processes: int = 1, progress: Progress | None = None
+) -> dict[str, Any]:
+    """Register every frame; what `progress` raises ends the work, and the same call goes on behind the last frame.
+
+    A scan that cannot be read is named in the summary, and the next frame follows from the one before it.
+
+    Args:
+        sequence: The scans.
+        model: A body; its template is replaced by the person's.
+        processes: Chunks at a time.
+        progress: Is told the share that is done and the frame.
+
+    Returns:
+        What `summary.json` holds.
+
+    Raises:
+        TrackerError: The folder holds a sequence that was registered otherwise, or no frame can be registered.
+    """
+    tell = progress or (lambda share, detail: None)
+    _check_settings(sequence)
+    own = _own_model(sequence, model, tell)
+    chunks = sequence.chunks
+    if processes == 1 or len(chunks) == 1:
+        follower = BodyFollower(own, sequence.options.follow)
+        for number, _ in enumerate(chunks):
+            for frame in follow_chunk(sequence, follower, number):
+                tell(0.1 + 0.85 * (frame + 1) / len(sequence), f"frame {frame}")
+    else:
+        with ProcessPoolExecutor(processes) as pool:
+            jobs = [(sequence, own, number) for number in range(len(chunks))]
+            try:
+                for done, number in enumerate(pool.map(_run_chunk, jobs)):
+                    tell(0.1 + 0.85 * (done + 1) / len(chunks), f"chunk {number}")
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+        follower = BodyFollower(own, sequence.options.follow)
+    for number in range(1, len(chunks)):
+        _join(sequence, follower, number)
+    tell(1.0, "done")
+    return _write_results(sequence, own)
+
+
+def follow_chunk(sequence: Sequence, follower: BodyFollower, number: int):
+    """Register the frames of a chunk that are not there yet, and yield each."""
+    before: BodyRegistration | None = None
+    for frame in sequence.chunks[number]:
+        done = _load(sequence, frame)
+        if done is None:
+            scan = _read(sequence, frame)
+            if scan is None:
+                continue
+            done = follower.begin(scan) if before is None else follower.follow(scan, before)
+            _save(sequence, follower, frame, done)
+        before = done
+        yield frame
+
+
+def _run_chunk(job: tuple[Sequence, BlendModel, int]) -> int:
+    sequence, model, number = job
+    for _ in follow_chunk(sequence, BodyFollower(model, sequence.options.follow), number):
+        pass
+    return number
+
+
+def _join(sequence: Sequence, follower: BodyFollower, number: int) -> None:
+    """Go on from the chunk before into this one until both chains of frames have met, so that no seam is left."""
+    joined = _read_joined(sequence)
+    if number in joined:
+        return
+    before = next(
+        (done for frame in reversed(range(sequence.chunks[number].start)) if (done := _load(sequence, frame))), None
+    )
+    met = 0
+    for frame in sequence.chunks[number] if before is not None else ():
+        stored, scan = _load(sequence, frame), _read(sequence, frame)
+        if stored is None or scan is None or before is None:
+            continue
+        if "chain" not in stored.measures:
+            done = follower.follow(scan, before)
+            apart = 1e3 * float(np.linalg.norm(done.vertices - stored.vertices, axis=1).mean())
+            met = met + 1 if apart < AGREES_MM else 0
+            done = replace(done, measures={**done.measures, "chain": float(number - 1)})
+            _save(sequence, follower, frame, done)
+            stored = done
+            if met == AGREED:
+                break
+        before = stored
+    write_atomically(sequence.out / JOINED, json.dumps(sorted({*joined, number})).encode())
+
+
+def _read_joined(sequence: Sequence) -> list[int]:
+    try:
+        return [int(number) for number in json.loads((sequence.out / JOINED).read_text())]
+    except (OSError, ValueError):
+        return []
+
+
+def _own_model(sequence: Sequence, model: BlendModel, tell: Progress) -> BlendModel:
+    """The person's own model; made once and kept."""
+    path = sequence.out / TEMPLATE
+    if path.is_file():
+        return load_blend_model(path)
+    registrar: Registrar | None = None
+    span = min(sequence.options.template_span, len(sequence))
+    count = min(sequence.options.template_frames, span)
+    chosen = np.unique(np.linspace(0, span - 1, count).astype(int))
+    found: list[BodyRegistration] = []
+    for number, frame in enumerate(chosen):
+        tell(0.1 * number / len(chosen), f"template, frame {frame}")
+        folder = sequence.out / TEMPLATES / f"{frame:06d}"
+        if (folder / BODY_FILE).is_file():
+            found.append(load_body_registration(folder))
+            continue
+        scan = _read(sequence, int(frame))
+        if scan is None:
+            continue
+        registrar = registrar or Registrar(model)
+        start = found[-1].state if found and found[-1].verdict != "bad" else None
+        registration = registrar.register(scan, start)
+        if registration.verdict == "bad" and start is not None:
+            registration = registrar.register(scan)
+        save_body_registration(registration, model.faces, folder)
+        found.append(registration)
+    good = [each for each in found if each.verdict != "bad"]
+    if not good:
+        why = "; ".join(found[0].reasons) if found else "none of its scans can be read"
+        raise TrackerError(f"No frame of the sequence shows one whole person: {why}.")
+    own = make_template(model, good)
+    save_blend_model(own, path)
+    return load_blend_model(path)  # as a run that goes on reads it: to the last bit the same
+
+
+def _check_settings(sequence: Sequence) -> None:
+    """Keep what the folder was begun with; refuse another sequence in it."""
+    settings = {"scans": [str(path) for path in sequence.paths], "options": asdict(sequence.options)}
+    path = sequence.out / SETTINGS
+    sequence.out.mkdir(parents=True, exist_ok=True)
+    try:
+        earlier = json.loads(path.read_text())
+    except (OSError, ValueError):
+        earlier = None
+    if earlier is None:
+        write_atomically(path, json.dumps(settings).encode())
+    elif earlier != json.loads(json.dumps(settings)):
+        raise TrackerError(f"{sequence.out} holds a sequence of other scans or options; choose another folder.")
+
+
+def _load(sequence: Sequence, frame: int) -> BodyRegistration | None:
+    folder = sequence.folder(frame)
+    if not (folder / BODY_FILE).is_file():
+        return None
+    try:
+        return load_body_registration(folder)
+    except RegistrationError:
+        return None  # damaged: made anew
+
+
+def _save(sequence: Sequence, follower: BodyFollower, frame: int, registration: BodyRegistration) -> None:
+    save_body_registration(registration, follower.registrar.model.faces, sequence.folder(frame))
+
+
+def _read(sequence: Sequence, frame: int):
+    """A frame's scan; none, with the reason kept beside the frames, if it cannot be read."""
+    path = sequence.paths[frame]
+    try:
+        return load_body_scan(path, sequence.options.metres_per_unit)[0]
+    except ScanError as error:
+        folder = sequence.out / FRAMES
+        folder.mkdir(parents=True, exist_ok=True)
+        write_atomically(folder / f"{frame:06d}.error", str(error).encode())
+        return None
+
+
+def _write_results(sequence: Sequence, model: BlendModel) -> dict[str, Any]:
+    """`motion.npz` and `summary.json`; frames without a registration keep the pose of the one before."""
+    found = [_load(sequence, frame) for frame in range(len(sequence))]
+    known = [each for each in found if each is not None]
+    if not known:
+        raise TrackerError(f"None of {len(sequence)} scans could be registered.")
+    filled, last = [], known[0]
+    for each in found:
+        last = each or last
+        filled.append(last)
+    poses = np.array([each.state.pose for each in filled])
+    places = np.array([each.state.translation for each in filled])
+    save_body_motion(BodyMotion(poses, places, np.zeros(0), sequence.options.fps), sequence.out / MOTION)
+    errors = [
+        (sequence.out / FRAMES / f"{frame:06d}.error").read_text()
+        for frame, each in enumerate(found)
+        if each is None and (sequence.out / FRAMES / f"{frame:06d}.error").is_file()
+    ]
+    summary = {
+        "frames": len(sequence),
+        "registered": len(known),
+        "errors": errors,
+        "verdicts": {name: sum(each.verdict == name for each in known) for name in ("good", "doubtful", "bad")},
+        "guessed": {
+            side: [frame for frame, each in enumerate(found) if each is not None and not each.are_shown[k]]
+            for k, side in enumerate(("left", "right"))
+        },
+        "scan_to_mesh_mm": float(np.mean([each.summary()["scan_to_mesh_mm"]["mean"] for each in known])),
+        "median_seconds": float(np.median([sum(each.seconds.values()) for each in known])),
+        "vertices": len(model.template),
+    }
+    write_atomically(sequence.out / SUMMARY, json.dumps(summary, indent=1).encode())
+    return summary

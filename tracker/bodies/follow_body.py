@@ -1,0 +1,151 @@
+"""A moving person from scan to scan, [R17] 4.3.2: each frame begins where the one before ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from tracker.bodies.body_fit import Anchor
+from tracker.bodies.body_registration import BodyRegistration
+from tracker.bodies.body_state import BodyState, with_hands
+from tracker.bodies.hand_mixture import HandMixture, default_mixture
+from tracker.bodies.register_body import BodyOptions, Clock, Registrar, points_near_hands
+from tracker.capture.scan import Scan
+from tracker.model.blend_model import BlendModel
+from tracker.registration.free_fit import FreeSettings
+from tracker.registration.model_fit import FitSettings
+
+Array = npt.NDArray[np.float64]
+
+LOST_MM, MOST_LOST = 6.0, 0.12
+"""A hand is searched anew when so much of its points (share) is so far from it."""
+
+
+@dataclass(frozen=True)
+class FollowOptions:
+    """How a moving person is followed; each of the three is a switch.
+
+    Attributes:
+        prior: Of the hands: a mixture of Gaussians ([R17] Eq. 17), one Gaussian, or none.
+        holds_hands: E_r (Eq. 21) holds a hand that the scan does not show to what it was.
+        has_velocity: E_r holds the whole pose a little to that of the frame before.
+        hold: Weight of the first, 1/rad².
+        velocity: Weight of the second, 1/rad²: on body and hands alike.
+    """
+
+    prior: Literal["mixture", "gaussian", "none"] = "mixture"
+    holds_hands: bool = True
+    has_velocity: bool = True
+    hold: float = 1000.0
+    velocity: float = 30.0
+
+
+FOLLOW_STAGES = BodyOptions(
+    fine_components=24,
+    model_stages=(
+        (3000, FitSettings(15.0, 6, to_scan=0.1, pose_weight=3.0, shape_weight=10.0)),
+        (6000, FitSettings(8.0, 6, to_scan=0.05, pose_weight=1.0, shape_weight=10.0)),
+    ),
+    free_stages=((15000, FreeSettings(0.1, 6.0, 3, pose_weight=0.5, shape_weight=1.0)),),
+    max_points=25_000,
+)
+"""With a person's own template there is less to find out than in a single scan."""
+
+
+def choose_mixture(prior: str) -> HandMixture | None:
+    """What the hands are expected to do."""
+    mixture = default_mixture()
+    return {"mixture": mixture, "gaussian": mixture.as_one(), "none": None}[prior]
+
+
+class BodyFollower:
+    """Follows one person.
+
+    Args:
+        model: The person's own.
+        options: How.
+    """
+
+    def __init__(self, model: BlendModel, options: FollowOptions | None = None) -> None:
+        self.options = options or FollowOptions()
+        self.registrar = Registrar(model, FOLLOW_STAGES, choose_mixture(self.options.prior))
+
+    def begin(self, scan: Scan) -> BodyRegistration:
+        """The first scan, without a start."""
+        return self.registrar.register(scan)
+
+    def follow(self, scan: Scan, before: BodyRegistration) -> BodyRegistration:
+        """The scan behind a registered one."""
+        registrar, clock = self.registrar, Clock()
+        with clock.measure("hands"):
+            state, shown = self._find_hands(scan, before)
+        with clock.measure("model"):
+            points = registrar.points_for(scan, state)
+            anchor = self._anchor(before, shown)
+            evaluation = registrar.fit_model(state, points, shown, anchor)
+        with clock.measure("hands"):
+            lost = self._find_lost(scan, evaluation, shown)
+            if lost:
+                assert isinstance(evaluation.state, BodyState)
+                state, _ = self._search(scan, evaluation.state, lost)
+        if lost:
+            with clock.measure("model"):
+                other = registrar.fit_model(state, points, shown, anchor)
+                evaluation = min(evaluation, other, key=lambda each: each.cost)
+        with clock.measure("surface"):
+            surface = registrar.fit_surface(evaluation, points, shown, anchor)
+        with clock.measure("judge"):
+            return registrar.judge(scan, surface, shown, clock)
+
+    def _find_hands(self, scan: Scan, before: BodyRegistration) -> tuple[BodyState, tuple[bool, bool]]:
+        """Where to begin, and which hands are shown; hands that have come back are searched."""
+        registrar = self.registrar
+        shown = registrar.find_shown(before.state, scan)
+        back = tuple(k for k in range(2) if shown[k] and not before.are_shown[k])
+        if not back:
+            return before.state, shown
+        state, found = self._search(scan, before.state, back)
+        return state, (shown[0] and found[0], shown[1] and found[1])
+
+    def _search(self, scan: Scan, state: BodyState, sides: tuple[int, ...]) -> tuple[BodyState, tuple[bool, bool]]:
+        """The state with these hands (0 left, 1 right) searched anew, and whether the scan shows them after all."""
+        registrar, space = self.registrar, self.registrar.fine.space
+        near = points_near_hands(scan, state, registrar.model, registrar.options.max_points)
+        found = registrar.hands.find(state, near, sides)
+        hands = with_hands(state, space, state.hands).hands.copy()
+        hands[list(sides)] = with_hands(found.state, space, found.state.hands).hands[list(sides)]
+        return with_hands(found.state, space, hands), found.are_shown
+
+    def _anchor(self, before: BodyRegistration, shown: tuple[bool, bool]) -> Anchor:
+        """What the frame is held to; a hand that has just come back is not."""
+        velocity = self.options.velocity if self.options.has_velocity else 0.0
+        hold = self.options.hold if self.options.holds_hands else 0.0
+        weights = [
+            (velocity if was_shown else 0.0) if is_shown else hold
+            for is_shown, was_shown in zip(shown, before.are_shown, strict=True)
+        ]
+        return Anchor(before.state, velocity, np.array(weights))
+
+    def _find_lost(self, scan: Scan, evaluation, shown: tuple[bool, bool]) -> tuple[int, ...]:
+        """Hands that do not lie on their points."""
+        registrar = self.registrar
+        vertices = evaluation.posed.vertices
+        lost = []
+        for k in range(2):
+            middle = vertices[registrar.hand_ids[k]].mean(axis=0)
+            near = np.flatnonzero(np.linalg.norm(scan.points - middle, axis=1) < 0.11)
+            if not shown[k] or not len(near):
+                continue
+            points = np.ascontiguousarray(scan.points[near])
+            found = registrar.fine.search.match(vertices, points, np.zeros_like(points), reach=1.0)
+            if np.mean(np.abs(found.offsets) > 1e-3 * LOST_MM) > MOST_LOST:
+                lost.append(k)
+        return tuple(lost)
+
+
+def forget(registration: BodyRegistration) -> BodyRegistration:
+    """The registration as a start alone: without the distances of its scan's points."""
+    return replace(registration, scan_to_mesh=np.zeros(0))

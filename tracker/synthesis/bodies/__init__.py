@@ -1,0 +1,1 @@
+"""Scans of whole people whose truth is known, still and moving."""

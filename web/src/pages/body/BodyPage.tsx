@@ -9,8 +9,8 @@ import { useTitle } from "../parts/useTitle";
 import { BodyMenus } from "./BodyMenus";
 import classes from "./BodyPage.module.css";
 import { BodySliders } from "./BodySliders";
+import { BodyView } from "./BodyView";
 import { MotionBar } from "./MotionBar";
-import { useBodyStage } from "./useBodyStage";
 import { useMotion, type OpenMotion } from "./useMotion";
 
 const NAMES: Record<Population, string> = { neutral: "Everybody", female: "Women", male: "Men" };
@@ -28,7 +28,6 @@ export default function BodyPage() {
   const motion = useMotion(open, population);
   const set = useMemo(() => frameOfSetting(setting), [setting]);
   const posed = useBodyPose(population, shape, set);
-  const parts = useBodyStage(open ? motion.vertices : posed.data, faces);
   const failure = error ?? facesError;
   if (failure && !body) return <Failure what="The body could not be loaded" error={failure} onRetry={() => void refetch()} />;
   if (!body) return <PageSkeleton />;
@@ -68,12 +67,7 @@ export default function BodyPage() {
       )}
       <section className="card" aria-label="The body" style={{ overflow: "hidden" }}>
         <div className={classes.stage}>
-          <div ref={parts.holder} className={classes.view} role="img" aria-label="Mesh of the body">
-            <canvas ref={parts.canvas} aria-hidden />
-            <Text size="xs" className={`quiet ${classes.note}`}>
-              {parts.failure ?? "Drag to turn, scroll to go nearer, right button to move"}
-            </Text>
-          </div>
+          <BodyView vertices={open ? motion.vertices : posed.data} faces={faces} />
           {!open && <BodySliders shape={shape} onShape={setShape} setting={setting} onSetting={setSetting} />}
         </div>
         {open && <MotionBar open={open} state={motion} onClose={() => setOpen(null)} />}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import sqlite3
 from collections.abc import Sequence
 from typing import Any
@@ -18,6 +19,9 @@ from server.errors import StudioError
 from tracker import TrackerError
 
 log = logging.getLogger(__name__)
+
+UPLOADED = re.compile(r"\b\w+_uploads/[0-9a-f-]{36}/")
+"""Where an upload lies while it is read: people know their file by its own name."""
 
 _NAMES = {404: "NotFoundError", 405: "MethodNotAllowedError", 413: "TooLargeError"}
 
@@ -35,7 +39,7 @@ def answer_error(request: Request, error: Exception) -> Response:
         return JSONResponse(body, error.status_code, headers=error.headers)
     if isinstance(error, TrackerError):
         # its messages name files in full; where the studio keeps them is nobody's business
-        detail = str(error).replace(f"{request.app.state.settings.data_dir}/", "")
+        detail = UPLOADED.sub("", str(error).replace(f"{request.app.state.settings.data_dir}/", ""))
         body: dict[str, Any] = {"error": type(error).__name__, "detail": detail}
         if details := getattr(error, "details", ()):
             body["details"] = list(details)

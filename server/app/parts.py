@@ -13,6 +13,7 @@ from server.annotations import routes as annotations
 from server.annotations.service import find_annotated_frames
 from server.app import health
 from server.bin import routes as bin_routes
+from server.bodies import routes as bodies
 from server.calibrations import board_routes
 from server.calibrations import routes as calibrations
 from server.calibrations.lifespan import clean_films
@@ -84,6 +85,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     decisions.router,
     training_sets.router,
     lineage.router,
+    bodies.router,
     bin_routes.router,
 )
 """All under `/api/v1`, looked through in this order at each request: what is asked most stands first."""

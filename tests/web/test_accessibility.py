@@ -26,6 +26,7 @@ PAGES = [
     ("curate", "/curate", "main :is(h1, h2)"),
     ("agreement of curators", "/curate/agreement", "main :is(h1, h2)"),
     ("hand models", "/models", "main :is(h1, h2)"),
+    ("body", "/models/body", "[data-drawn=true]"),
     ("evaluations", "/evaluations", "main :is(h1, h2)"),
     ("account", "/account", "main :is(h1, h2)"),
     ("people", "/people", "main :is(h1, h2)"),

@@ -119,6 +119,21 @@ export async function requestWithHeaders<T>(method: string, path: string, option
   return { data: (text ? JSON.parse(text) : undefined) as T, headers: response.headers };
 }
 
+/** Bytes that answer a request with a JSON body. */
+export async function sendForBytes(method: string, path: string, options: RequestOptions): Promise<ArrayBuffer> {
+  const headers = { "Content-Type": "application/json", ...options.headers };
+  const response = await send(method, addressOf(path, options.query), { ...options, headers }, JSON.stringify(options.body));
+  return response.arrayBuffer();
+}
+
+/** Have the browser save bytes as a file. */
+export function saveAnswer(data: ArrayBuffer, name: string): void {
+  const address = URL.createObjectURL(new Blob([data]));
+  const link = Object.assign(document.createElement("a"), { href: address, download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(address), 60_000);
+}
+
 /** One JSON request. */
 export async function request<T>(method: string, path: string, options: RequestOptions = {}): Promise<T> {
   return (await requestWithHeaders<T>(method, path, options)).data;

@@ -22,6 +22,7 @@ const ScansPage = lazy(() => import("./scans/ScansPage"));
 const ScanPage = lazy(() => import("./scans/ScanPage"));
 const ModelsPage = lazy(() => import("./models/ModelsPage"));
 const ModelPage = lazy(() => import("./models/ModelPage"));
+const BodyPage = lazy(() => import("./body/BodyPage"));
 const EvaluationsPage = lazy(() => import("./evaluations/EvaluationsPage"));
 const AccountPage = lazy(() => import("./account/AccountPage"));
 const PeoplePage = lazy(() => import("./account/PeoplePage"));
@@ -69,6 +70,7 @@ export const router = createBrowserRouter([
           { path: "curate", element: <CuratePage /> },
           { path: "curate/agreement", element: <ReviewAgreementPage /> },
           { path: "models", element: <ModelsPage /> },
+          { path: "models/body", element: <BodyPage /> },
           { path: "models/:modelId", element: <ModelPage /> },
           { path: "evaluations", element: <EvaluationsPage /> },
           { path: "jobs", element: <JobsPage /> },

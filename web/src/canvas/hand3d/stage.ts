@@ -45,7 +45,7 @@ export function createStage(canvas: HTMLCanvasElement, onDrawn: () => void): Sta
   const renderer = new WebGLRenderer({ canvas, antialias: !isDrawnInSoftware(), alpha: true, powerPreference: "high-performance" });
   renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
   const scene = new Scene();
-  const camera = new PerspectiveCamera(FIELD_DEG, 1, 0.01, 10);
+  const camera = new PerspectiveCamera(FIELD_DEG, 1, 0.01, 100);
   const uniforms = createUniforms(SCAN_ERROR_FULL_MM);
   const controls = new OrbitControls(camera, canvas);
   controls.enableDamping = false;

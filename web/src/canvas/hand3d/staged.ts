@@ -23,6 +23,8 @@ export interface Staged {
   readonly geometry: HandGeometry;
   /** 1 for points of the scan to be shown as taken away. */
   take(taken: Uint8Array): void;
+  /** Put the mesh's vertices elsewhere; what is in the middle stays. */
+  move(positions: Float32Array): void;
   release(): void;
 }
 
@@ -108,6 +110,17 @@ export function stageHand(geometry: HandGeometry, uniforms: Uniforms): Staged {
       const attribute = scanBuffer.getAttribute("taken") as BufferAttribute;
       attribute.set(taken);
       attribute.needsUpdate = true;
+    },
+    move(positions) {
+      if (!mesh || !fitted?.index) return;
+      const normals = normalsOf(positions, fitted.index);
+      for (const part of [mesh, wireframe]) {
+        for (const [name, values] of [["position", positions], ["normal", normals]] as const) {
+          const attribute = part?.geometry.getAttribute(name) as BufferAttribute | undefined;
+          attribute?.copyArray(values);
+          if (attribute) attribute.needsUpdate = true;
+        }
+      }
     },
     release() {
       for (const part of parts) {

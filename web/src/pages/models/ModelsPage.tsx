@@ -1,6 +1,6 @@
 import { Badge, Button, Group, Skeleton, Stack, Table, Text, Title } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
-import { IconCornerDownRight, IconHandStop, IconRefresh } from "@tabler/icons-react";
+import { IconCornerDownRight, IconHandStop, IconMan, IconRefresh } from "@tabler/icons-react";
 import { Link } from "react-router";
 import { useHandModels, type HandModel } from "../../api/handModels";
 import { formatAgo, formatCount } from "../../model/format";
@@ -50,14 +50,17 @@ export default function ModelsPage() {
           <Title order={1}>Hand models</Title>
           {models && <span className="quiet">{formatCount(models.length, "model")}</span>}
         </Group>
-        <For role="reviewer">
-          <Group gap="sm" wrap="nowrap">
+        <Group gap="sm" wrap="nowrap">
+          <Button variant="default" component={Link} to="/models/body" leftSection={<IconMan size={16} aria-hidden />}>
+            Body with hands
+          </Button>
+          <For role="reviewer">
             <Button variant="default" leftSection={<IconRefresh size={16} aria-hidden />} onClick={looping.open}>
               Register, train, again …
             </Button>
             <Button onClick={training.open}>Train …</Button>
-          </Group>
-        </For>
+          </For>
+        </Group>
       </Group>
       <Stack gap="xl">
         {!models && (

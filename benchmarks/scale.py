@@ -26,13 +26,13 @@ from typing import Any
 
 import psycopg
 from fastapi.testclient import TestClient
-from server.accounts.models import LOCAL_ACCOUNT_ID
 from sqlalchemy import or_, select
 
+from server.access.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
 from server.database import Database
 from server.database.migrate import upgrade
-from server.imports.service import ImportDesk, import_recording
+from server.imports.service import ImportContext, import_recording
 from server.jobs.models import JobRow
 from server.settings import Settings
 from server.storage import open_storage
@@ -98,7 +98,10 @@ def fill_studio(url: str, folder: Path, recordings: int) -> Iterator[tuple[TestC
     with closing(database):
         upgrade(database)
         sample = import_recording(
-            ImportDesk(database, open_storage(settings), settings), _render(folder / "recording"), {}, LOCAL_ACCOUNT_ID
+            ImportContext(database, open_storage(settings), settings),
+            _render(folder / "recording"),
+            {},
+            LOCAL_ACCOUNT_ID,
         )
         values = {"recordings": recordings, "people": max(recordings // RECORDINGS_PER_PERSON, 1), "sample": sample}
         with psycopg.connect(url, autocommit=True) as connection:

@@ -3,14 +3,13 @@
 In the marked frames of `d405_take001` the suggestions of all three infrared views are accepted at once, those of the
 track, of the track with depth, and of the hand detector. A joint needs a correction in a view where it lies farther
 from its mark than the marks are good for (`right_within_px`), or is missing. With `--write` the table goes into
-`docs/suggestions.md`.
+`benchmarks/results/corrections.md`.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -30,7 +29,7 @@ Array = npt.NDArray[np.float64]
 Suggest = Callable[[int, str], Array]
 """(21, 2) px of a frame in a camera; NaN where nothing is suggested."""
 
-PAGE = ROOT / "docs" / "suggestions.md"
+PAGE = ROOT / "benchmarks" / "results" / "corrections.md"
 JOINTS, BAR = 21, 6
 
 
@@ -89,7 +88,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("data", type=Path)
     parser.add_argument("--work", type=Path, default=ROOT / "out" / "real_views")
-    parser.add_argument("--write", action="store_true", help="renew the table in docs/suggestions.md")
+    parser.add_argument("--write", action="store_true", help="write the table into benchmarks/results")
     given = parser.parse_args()
     given.work.mkdir(parents=True, exist_ok=True)
     sequence = read_infrared(given.data, given.work)
@@ -112,9 +111,8 @@ def main() -> None:
             rows.append(write_row(way, whose, *count_corrections(views, suggest, only), len(ids)))
             print(rows[-1], flush=True)
     if given.write:
-        table = "\n".join(["<!-- corrections -->", *rows, "<!-- end of corrections -->"])
-        pattern = r"<!-- corrections -->.*?<!-- end of corrections -->"
-        PAGE.write_text(re.sub(pattern, lambda _: table, PAGE.read_text(), flags=re.DOTALL))
+        command = "    python -m benchmarks.real_marks.corrections DATA --write"
+        PAGE.write_text("\n".join(["# Corrections of suggestions", "", command, "", *rows, ""]))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,8 @@
 """Every term: exact derivatives, the fast sum equal to the plain one, and a step that lowers its own cost."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -15,15 +18,11 @@ from tracker.terms.normal_equations import NormalEquations
 from tracker.terms.silhouette import Silhouette
 from tracker.terms.uncovered import Uncovered
 
-TERMS = {
-    "model_to_data": ModelToData(),
+TERMS: dict[str, Any] = {name: replace(term, weight=1.0) for name, term in Objective().terms.items()} | {
     "model_to_data_points": ModelToData(to_plane=False),
-    "data_to_surface": DataToSurface(),
-    "data_to_model": DataToModel(weight=1.0),
     "data_to_model_vertices": DataToModel(weight=1.0, at_vertices=True, stride=1),
-    "silhouette": Silhouette(weight=1.0),
-    "uncovered": Uncovered(weight=1.0),
 }
+"""Every term of the objective, and other forms of some."""
 
 every_term = pytest.mark.parametrize("term", TERMS.values(), ids=TERMS.keys())
 

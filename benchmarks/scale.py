@@ -16,6 +16,8 @@ import json
 import os
 import platform
 import statistics
+import subprocess
+import sys
 import tempfile
 import time
 import uuid
@@ -26,18 +28,13 @@ from typing import Any
 
 import psycopg
 from fastapi.testclient import TestClient
-from server.accounts.models import LOCAL_ACCOUNT_ID
 from sqlalchemy import or_, select
 
 from server.app import create_app
 from server.database import Database
-from server.database.migrate import upgrade
-from server.imports.service import ImportDesk, import_recording
 from server.jobs.models import JobRow
 from server.settings import Settings
-from server.storage import open_storage
 from tests.postgres import run_postgres
-from tracker.cli.synthesize import add_command
 
 PAGE = Path(__file__).parent / "results" / "scale.md"
 FRAMES, LABELLED_EVERY, REVISIONS, JOBS_EACH, LINES_EACH = 108_000, 540, 3, 10, 20
@@ -96,10 +93,9 @@ def fill_studio(url: str, folder: Path, recordings: int) -> Iterator[tuple[TestC
     settings = Settings(data_dir=folder / "data", database_url=url)
     database = Database(settings.sqlalchemy_url)
     with closing(database):
-        upgrade(database)
-        sample = import_recording(
-            ImportDesk(database, open_storage(settings), settings), _render(folder / "recording"), {}, LOCAL_ACCOUNT_ID
-        )
+        recording = str(folder / "recording")
+        _run(settings, "synthesize", "--motion", "open-close", "--frames", "0:2", "--out", recording)
+        sample = json.loads(_run(settings, "import", recording, "--json"))["id"]
         values = {"recordings": recordings, "people": max(recordings // RECORDINGS_PER_PERSON, 1), "sample": sample}
         with psycopg.connect(url, autocommit=True) as connection:
             for statement in FILL.split(";\n"):
@@ -110,13 +106,11 @@ def fill_studio(url: str, folder: Path, recordings: int) -> Iterator[tuple[TestC
             yield client, database
 
 
-def _render(folder: Path) -> Path:
-    parser = argparse.ArgumentParser()
-    add_command(parser.add_subparsers())
-    arguments = parser.parse_args(["synthesize", "--motion", "open-close", "--frames", "0:2", "--out", str(folder)])
-    if arguments.run(arguments) != 0:
-        raise SystemExit("no recording could be rendered")
-    return folder
+def _run(settings: Settings, *arguments: str) -> str:
+    """What a command of ours prints."""
+    where = {"HANDLOOM_DATA_DIR": str(settings.data_dir), "HANDLOOM_DATABASE_URL": str(settings.database_url)}
+    command = [sys.executable, "-m", "server.cli", *arguments]
+    return subprocess.run(command, env=os.environ | where, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
 def list_requests(client: TestClient, recordings: int) -> dict[str, Callable[[], Any]]:

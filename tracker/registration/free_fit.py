@@ -102,12 +102,6 @@ class FreeFit:
     def fit(self, start: FreeSurface, scan: ScanPoints, settings: FreeSettings) -> FreeSurface:
         """The best surface that `settings.iterations` dogleg steps find."""
 
-        def linearize(here: FreeSurface) -> _System:
-            try:
-                return _System(self, here, settings)
-            except np.linalg.LinAlgError as error:
-                raise SolveError("The model's equations are not positive definite.") from error
-
         def move(here: FreeSurface, step: Array) -> FreeSurface:
             turn, moved = self.split(step)
             state = self.fit_model.move(here.state, turn)
@@ -115,7 +109,7 @@ class FreeFit:
 
         region = TrustRegion(FIRST_RADIUS, LEAST_RADIUS, settings.iterations, settings.tolerance)
         here = self.evaluate(start.vertices, start.state, scan, settings, start.matches)
-        return minimize(here, linearize, move, region)
+        return minimize(here, lambda surface: self.linearize(surface, settings), move, region)
 
     def evaluate(
         self, vertices: Array, state: HandState, scan: ScanPoints, settings: FreeSettings, seeds: Matches | None
@@ -137,6 +131,17 @@ class FreeFit:
         cost += settings.coupling * float(np.einsum("ed,ed->", stretch, stretch))
         cost += fit.prior_cost(state, settings.pose_weight, settings.shape_weight)
         return FreeSurface(vertices, state, model_vertices, matches, weights, cost)
+
+    def linearize(self, here: FreeSurface, settings: FreeSettings) -> _System:
+        """The normal equations at a surface, solved.
+
+        Raises:
+            SolveError: They are not positive definite.
+        """
+        try:
+            return _System(self, here, settings)
+        except np.linalg.LinAlgError as error:
+            raise SolveError("The model's equations are not positive definite.") from error
 
     def split(self, step: Array) -> tuple[Array, Array]:
         """Step of the model (P,) and of the vertices (V, 3), no longer scaled."""

@@ -111,6 +111,7 @@ def fit_views(
     """
     scene, names = setup.scene, setup.names
     has_many = len(seen.cameras) >= MANY
+    seen = seen.without_jumps(scene.pose_at(pose), names)
     if has_many:
         objective = replace(objective, regularization=Regularization(weight=MANY_REGULARIZATION))
     far = seen.add_to(replace(objective, terms={}), scene, names, FAR_REACH)

@@ -13,6 +13,7 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import CameraFrame, Frame
 from tracker.detection.image_hands import name_hands
 from tracker.fitting.attempt import UNSETTLED
+from tracker.fitting.choose_views import choose_views
 from tracker.fitting.depth_view import DepthView
 from tracker.fitting.frame_fit import Fit, FitOptions, draw, fit_frame
 from tracker.fitting.map_views import map_views
@@ -67,7 +68,8 @@ MOST = 11
 def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene, gone: set[int]) -> ViewHands:
     """The hands in all colour images of a moment, looked for where the pose has them, else in whole images.
 
-    While two views see every hand, one view a frame is looked through for what it does not see, in turn.
+    While two views see every hand, one view a frame is looked through for what it does not see, in turn. Of many views
+    only half look at all (`choose_views`), while none is gone.
 
     Args:
         setup: Models and options.
@@ -91,9 +93,18 @@ def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene
         idle.append(detector)
         return found
 
-    seen = map_views(follow, range(len(looked_at)), threads)
+    turn = range(len(looked_at)) if gone or not looked_at else choose_views(len(looked_at), looked_at[0].frame.index)
+    seen: list[dict[str, DetectedHand]] = [{} for _ in looked_at]
+    for view, hands in zip(turn, map_views(follow, turn, threads), strict=True):
+        seen[view] = hands
+    if any(sum(name in hands for hands in seen) < min(2, len(seen)) for name in names):
+        others = sorted(set(range(len(looked_at))) - set(turn))
+        for view, hands in zip(others, map_views(follow, others, threads), strict=True):
+            seen[view] = hands
+        turn = range(len(looked_at))
     detector = default_hand_detector()
-    for view, frame in enumerate(view.frame for view in looked_at):
+    for view in turn:
+        frame = looked_at[view].frame
         is_scarce = any(sum(name in hands for hands in seen) < min(2, len(seen)) for name in names)
         if len(seen[view]) < len(names) and (is_scarce or frame.index % len(seen) == view):
             turns = ALL_TURNS if gone else (0, 1 + frame.index % 3)

@@ -56,9 +56,15 @@ def read_upload(path: Path) -> OwnDetector:
     from tracker.detection import load_detector
 
     try:
-        return load_detector(path)
+        detector = load_detector(path)
     except TrackerError as error:
         raise InvalidError(str(error).replace(f"{path.parent}/", "")) from None
+    if detector.forest.what != "fingertips":
+        raise InvalidError(
+            f"{path.name}: found a detector of {detector.forest.what}; needed one of fingertips. Nails are looked for by "
+            "`handloom track --cameras A,B --detector FILE` alone."
+        )
+    return detector
 
 
 def add_detector(

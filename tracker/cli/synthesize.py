@@ -52,6 +52,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "--size", type=parse_size, default=(640, 480), metavar="WxH", help="with --motion: size of the images, px"
     )
     parser.add_argument("--texture", action="store_true", help="spots on skin and a still, spotted wall in the colour")
+    parser.add_argument("--nails", action="store_true", help="with --texture: finger nails in the colour")
     parser.add_argument("--circles", type=int, default=0, metavar="N", help="discs that disturb each colour image")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="a folder that does not exist yet")
     add_json(parser)
@@ -60,6 +61,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
 
 def synthesize(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.model import save_model
+    from tracker.synthesis.nail_paint import NailPaint
     from tracker.synthesis.recording import RecordingOptions, write_recording
     from tracker.synthesis.sensor import StructuredLight
     from tracker.synthesis.texture import Texture
@@ -69,6 +71,8 @@ def synthesize(args: argparse.Namespace) -> dict[str, Any]:
         raise TrackerError("--cameras must be 1 to 8; a twin (--twin) has the one camera of its recording, 640x480 px.")
     if args.step < 1 or args.seed < 0 or args.background < 0 or args.circles < 0:
         raise TrackerError("--step must be at least 1, --seed, --background and --circles at least 0.")
+    if args.nails and not args.texture:
+        raise TrackerError("--nails needs --texture: without it the colour images have plain skin.")
     began = time.monotonic()
     performance = _load_twin(args) if args.twin is not None else _perform(args)
     options = RecordingOptions(
@@ -76,7 +80,7 @@ def synthesize(args: argparse.Namespace) -> dict[str, Any]:
         sensor=StructuredLight() if args.noise == "structured-light" else None,
         seed=args.seed,
         background=args.background,
-        texture=Texture(args.seed) if args.texture else None,
+        texture=Texture(args.seed, nails=NailPaint() if args.nails else None) if args.texture else None,
         view_noise=ViewNoise(circles=args.circles) if args.circles else None,
     )
     line = ProgressLine(f"rendering {performance.name}")

@@ -74,7 +74,8 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         type=Path,
         metavar="FILE",
         help="a fingertip detector that `handloom train-detector` wrote (.npz): it looks for fingertips in every "
-        "frame, for terms with S; otherwise the one that comes along looks where a frame goes badly",
+        "frame, for terms with S; otherwise the one that comes along looks where a frame goes badly. With --cameras a "
+        "detector of finger nails",
     )
     parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
     parser.add_argument("--no-recovery", action="store_true", help="do not look for a lost hand")

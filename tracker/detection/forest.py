@@ -1,4 +1,4 @@
-"""A Hough forest: trees whose leaves say how likely a patch belongs to a fingertip and where that lies."""
+"""A Hough forest: trees whose leaves say how likely a patch belongs to a fingertip, or a nail, and where that lies."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ import numpy.typing as npt
 
 MODES = 3
 """Votes that a leaf keeps."""
+
+WHATS = ("fingertips", "nails")
 
 NODE_FIELDS = ("channel", "first", "second", "threshold", "child")
 """Of a node; `first` and `second` are places in a patch, row * PATCH + column.
@@ -34,6 +36,7 @@ class Forest:
         probability: (L,) float32 share of fingertip patches in a leaf, fingertips and others counted as equally many.
         votes: (L, MODES, 4) float32: column, row and depth from the patch's centre to the fingertip, px of a patch, and
             the vote's share; shares sum to one over the modes, or to zero in a leaf without fingertips.
+        what: "fingertips" or "nails", what it finds.
     """
 
     kind: str
@@ -45,9 +48,10 @@ class Forest:
     leaf_starts: npt.NDArray[np.int32]
     probability: npt.NDArray[np.float32]
     votes: npt.NDArray[np.float32]
+    what: str = "fingertips"
 
     def __post_init__(self) -> None:
-        assert self.kind in ("depth", "color")
+        assert self.kind in ("depth", "color") and self.what in WHATS
         assert self.nodes.dtype == np.int16 and self.nodes.shape == (self.node_starts[-1], len(NODE_FIELDS))
         assert self.probability.shape == (self.leaf_starts[-1],)
         assert self.votes.shape == (self.leaf_starts[-1], MODES, 4)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from tracker.capture.atomic_file import write_atomically
 from tracker.detection.channels import CHANNELS
-from tracker.detection.forest import MODES, Forest
+from tracker.detection.forest import MODES, WHATS, Forest
 from tracker.detection.levels import PATCH
 from tracker.errors import ModelFileError, reads
 from tracker.model.npz_arrays import NpzFields, read_npz_arrays
@@ -28,6 +28,7 @@ def save_forest(forest: Forest, path: Path) -> None:
     arrays = {
         "format": np.array([FORMAT]),
         "kind": np.array([forest.kind]),
+        "what": np.array([forest.what]),
         "sizes": np.array([forest.pixel_size, forest.box_size, forest.confidence_scale]),
         "nodes": forest.nodes.astype(np.int64),
         "node_starts": forest.node_starts.astype(np.int64),
@@ -57,6 +58,9 @@ def load_forest(path: Path) -> Forest:
     kind = fields.texts("kind", 1)[0]
     if kind not in ("depth", "color"):
         raise ModelFileError(path, f"the kind {kind[:60]!r}", "'depth' or 'color'")
+    what = fields.texts("what", 1)[0] if "what" in fields else "fingertips"  # files of before nails have none
+    if what not in WHATS:
+        raise ModelFileError(path, f"a detector of {what[:60]!r}", " or ".join(WHATS))
     sizes = fields.floats("sizes", (3,), 1e6)
     if not (5e-4 <= sizes[0] <= 0.02 and 1e-3 <= sizes[1] <= 1.0 and sizes[2] > 0.0):
         raise ModelFileError(path, f"sizes {sizes.tolist()}", "a pixel, a box, m, and a scale of confidences")
@@ -82,6 +86,7 @@ def load_forest(path: Path) -> Forest:
         leaf_starts.astype(np.int32),
         probability.astype(np.float32),
         votes.astype(np.float32),
+        what,
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import distance_transform_edt
 
 from tracker.observation import HAND, Observation
 
@@ -36,3 +37,20 @@ class PatchImage:
         mask = (observation.labels & HAND) > 0
         depth = np.where(mask, observation.depth, np.float32(0.0))
         return cls(depth, mask, float(observation.K[0, 0]), observation.color)
+
+    @classmethod
+    def around(
+        cls, depth: npt.NDArray[np.float32], color: npt.NDArray[np.uint8], focal: float, margin: float
+    ) -> PatchImage:
+        """A colour image without depth of its own: hands as they are drawn where they are expected, and what is near.
+
+        Args:
+            depth: (H, W) of the drawn hands, m; 0 elsewhere. Pixels beside them get that of the nearest.
+            color: (H, W, 3) RGB.
+            focal: px.
+            margin: Farther from the hands than this no patch is taken, m.
+        """
+        away, (rows, columns) = distance_transform_edt(depth <= 0.0, return_indices=True)  # type: ignore[misc]
+        filled = depth[rows, columns]
+        mask = (filled > 0.0) & (away * filled <= margin * focal)
+        return cls(np.where(mask, filled, np.float32(0.0)).astype(np.float32), mask, focal, color)

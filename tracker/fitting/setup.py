@@ -41,7 +41,8 @@ class TrackSetup:
             the first.
         options: What the user chose.
         marks: Name of a hand to its joints (21, 3) as marked in the first frame, px of an ideal lens and v.
-        own_detector: Finds fingertips for the S of [T16] Eq. 5; None for the detector that comes along.
+        own_detector: Finds fingertips for the S of [T16] Eq. 5, in colour views finger nails (§3.3); None for the
+            detector that comes along, in colour views for none.
         static_scene: Planes and gravity; None where the run was begun without an object, or before they were kept.
         view_ids: The cameras that are tracked in together; none where one depth camera is.
     """
@@ -102,6 +103,11 @@ class TrackSetup:
     def fingertip_detector(self) -> Forest:
         """The one that was given, or the one that comes along."""
         return self.own_detector.forest if self.own_detector else default_detector()
+
+    @property
+    def nail_detector(self) -> Forest | None:
+        """What finds finger nails in colour views; None where nobody gave one."""
+        return self.own_detector.forest if self.own_detector and self.view_ids else None
 
     @property
     def object_names(self) -> tuple[str, ...]:

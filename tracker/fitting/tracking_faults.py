@@ -78,28 +78,39 @@ def _find_view_faults(depth_cameras: Sequence[str], color_cameras: Sequence[str]
 
 
 def find_detector_faults(
-    looks_at: str, depth_camera: str | None, color_cameras: Sequence[str], options: TrackOptions
+    looks_at: str,
+    depth_camera: str | None,
+    color_cameras: Sequence[str],
+    options: TrackOptions,
+    finds: str = "fingertips",
 ) -> list[str]:
-    """Why a run cannot use a fingertip detector that a lab has trained; empty when it can.
+    """Why a run cannot use a detector that a lab has trained; empty when it can.
 
     Args:
         looks_at: `depth` or `color`.
         depth_camera: Id of the camera that is tracked in; None where colour cameras alone are.
         color_cameras: Ids of the cameras with colour images.
         options: What somebody chose.
+        finds: `fingertips` or `nails`.
     """
-    if depth_camera is None:
+    faults = []
+    if depth_camera is None and finds != "nails":
         return [
             "A fingertip detector finds points in space with the help of depth, and colour cameras alone are tracked "
-            "in. Choose no detector of your own; the hand detector looks at every view."
+            "in. Choose a detector of nails (`handloom train-detector --what nails`), or none of your own; the hand "
+            "detector looks at every view."
         ]
-    faults = []
+    if depth_camera is not None and finds == "nails":
+        return [
+            "It finds finger nails, which are looked for in colour views, and a depth camera is tracked in. Choose "
+            "colour cameras (`--cameras`), or a detector of fingertips."
+        ]
     if "S" not in options.term_letters:
         faults.append(
             f"The terms {options.terms} use no fingertips, so a fingertip detector would do nothing. Choose terms with "
             "S, such as LO+SC, or no detector of your own."
         )
-    if looks_at == "color" and depth_camera not in color_cameras:
+    if depth_camera is not None and looks_at == "color" and depth_camera not in color_cameras:
         faults.append(
             "The fingertip detector looks at colour, and the camera has no colour images. Choose one that looks at "
             "depth (`handloom train-detector --on depth`)."

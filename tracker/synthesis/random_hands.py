@@ -79,7 +79,7 @@ class HandImage:
 
 def render_random_image(how: RandomHands, rng: np.random.Generator) -> HandImage:
     """One image; the same `rng` makes the same."""
-    performance = _arrange(how, rng)
+    performance = arrange_random_hands(how, rng)
     moment = render_moment(performance, 0)
     cosines = compute_cosines(performance, moment)
     depth = how.sensor.measure(moment.depth, cosines, performance.camera.K[0, 0], rng)
@@ -115,7 +115,8 @@ def _shows_own_hand(performance: Performance, moment: Moment, actor: npt.NDArray
     return result
 
 
-def _arrange(how: RandomHands, rng: np.random.Generator) -> Performance:
+def arrange_random_hands(how: RandomHands, rng: np.random.Generator) -> Performance:
+    """One moment of hands, and things near them, before a camera; hands come first among the actors."""
     if rng.random() < how.small_camera:
         focal, width, height = 240.0 * rng.uniform(0.9, 1.1), 320, 240
         distance = rng.uniform(how.nearest, 0.5 * (how.nearest + how.farthest))

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy.ndimage import map_coordinates
 
 from tracker.geometry import se3
+from tracker.synthesis.nail_paint import NailPaint
 from tracker.synthesis.performance import Moment, Performance
 from tracker.synthesis.shading import AMBIENT, BACKGROUND, SENSOR_STD, encode
 
@@ -40,12 +41,14 @@ class Texture:
         grain: Size of the finest spots, m.
         contrast: Standard deviation of a surface's albedo, share of it.
         wall_contrast: The same of the wall.
+        nails: Colours of the finger nails; None leaves skin there.
     """
 
     seed: int = 0
     grain: float = 0.002
     contrast: float = 0.12
     wall_contrast: float = 0.35
+    nails: NailPaint | None = None
 
     def shade(self, performance: Performance, moment: Moment, rng: np.random.Generator | None) -> npt.NDArray[np.uint8]:
         """Colour image (H, W, 3) RGB of a moment, lit by a lamp that stands still; `rng` adds sensor noise."""
@@ -64,6 +67,8 @@ class Texture:
         towards = TOWARDS_LIGHT / np.linalg.norm(TOWARDS_LIGHT)
         light = AMBIENT + (1.0 - AMBIENT) * np.maximum(normals @ towards, 0.0)
         albedos = np.array([actor.albedo for actor in performance.actors])[owner]
+        if self.nails is not None:
+            self.nails.cover(performance.actors, owner, places, albedos, spots)
         levels[rows, columns] = encode(albedos * (light * np.maximum(spots, 0.05))[:, None])
         image = cv2.GaussianBlur(levels, (0, 0), LENS_BLUR)
         if rng is not None:

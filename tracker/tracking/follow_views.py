@@ -55,7 +55,10 @@ def follow_views(
     part = Part.without(setup, tuple(gone - found))  # what is lost is nowhere: it hides and touches nothing
     fit = Fit(part.take(pose), (), {})
     if part.kept:
-        fit = fit_views(part.setup, tools.objective, seen, views, fit.pose, iterations)
+        started_nails = perf_counter()
+        objective = tools.with_nails(part.setup.scene.pose_at(fit.pose), views, setup.options.threads)
+        stages |= {"finding nails": perf_counter() - started_nails} if tools.nail_detector else {}
+        fit = fit_views(part.setup, objective, seen, views, fit.pose, iterations)
     pose = part.put(fit.pose, pose)
     posed = scene.pose_at(pose)
     verdicts = {hand: judge_hand(setup, seen, posed, hand) for hand in hands}

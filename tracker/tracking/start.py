@@ -22,6 +22,7 @@ from tracker.fitting.region import depth_range, whole_image
 from tracker.fitting.setup import TrackSetup, choose_cameras
 from tracker.fitting.sighting import Sightings, find_sightings
 from tracker.fitting.tracking_faults import find_detector_faults
+from tracker.landmarks import default_hand_detector
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.default_hand import default_hand
 from tracker.model.files import load_model
@@ -29,6 +30,7 @@ from tracker.model.scene import Scene
 from tracker.model.shape import with_shape
 from tracker.observation import observe
 from tracker.search.leave_out import leave_out
+from tracker.search.mirrored_views import check_mirrored
 from tracker.search.seen_hands import place_where_seen
 from tracker.search.start_annotated import start_hand, undistort_points, with_marks
 from tracker.search.start_automatic import find_hand
@@ -67,7 +69,8 @@ def start_tracking(
         models: Hands, `right` and `left`, to use in place of the default ones, and objects in place of the recording's.
         annotations: Only those of the first frame are looked at.
         progress: Told the stage and the share of all that is done, 0 to 1; may raise to cancel.
-        detector: Finds fingertips in every frame, for terms with S; None for the one that comes along.
+        detector: Finds fingertips in every frame, in colour views finger nails, for terms with S; None for the one that
+            comes along.
 
     Raises:
         TrackingError: `find_tracking_faults` or `find_detector_faults` finds some, or an object is not found.
@@ -80,7 +83,9 @@ def start_tracking(
     models = hands | objects
     frames = options.frame_range(sequence.frame_count)
     if view_ids:
-        setup = TrackSetup(tuple(models), tuple(models.values()), camera_id, options, view_ids=view_ids)
+        _check_mirrored(sequence, options, view_ids, tuple(hands), frames)
+        own = tuple(models), tuple(models.values())
+        setup = TrackSetup(*own, camera_id, options, own_detector=detector, view_ids=view_ids)
         return start_views(sequence, setup, frames, tell)
     marks = _find_marks(sequence, annotations, frames[0], camera_id)
     bare = TrackSetup((), (), camera_id, options, marks)
@@ -104,9 +109,19 @@ def start_tracking(
 def _check_detector(detector: OwnDetector, sequence: Sequence, depth_camera: str | None, options: TrackOptions) -> None:
     """Refuse a lab's own detector that does not serve; `depth_camera` is None in colour views."""
     with_color = [camera.id for camera in sequence.cameras if camera.has_color]
-    faults = find_detector_faults(detector.forest.kind, depth_camera, with_color, options)
+    forest = detector.forest
+    faults = find_detector_faults(forest.kind, depth_camera, with_color, options, forest.what)
     if faults:
         raise TrackingError(f"{detector.name}: {' '.join(faults)}")
+
+
+def _check_mirrored(
+    sequence: Sequence, options: TrackOptions, view_ids: tuple[str, ...], hands: tuple[str, ...], frames: range
+) -> None:
+    """Refuse colour views of which one is mirrored, where that can be told."""
+    views = [view for view in view_ids if sequence.camera(view).has_color]
+    if options.use_detector and len(hands) == 1 and len(views) > 1:
+        check_mirrored(sequence, views, hands[0], frames, default_hand_detector())
 
 
 def _place_hands(

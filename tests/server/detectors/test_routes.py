@@ -6,6 +6,7 @@ import io
 import json
 import uuid
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from tests.server.jobs.test_worker import Bench, bench
 from tracker import TrackSetup
 from tracker.detection import load_detector
 from tracker.detection.default_detector import DATA as DETECTOR
+from tracker.detection.forest_files import load_forest, save_forest
 from tracker.landmarks.network import DATA as NETWORKS
 
 __all__ = ["bench"]
@@ -96,6 +98,8 @@ def test_a_file_that_is_no_detector_is_refused_with_one_reason_and_nothing_is_ke
 ) -> None:
     model = io.BytesIO()
     np.savez(model, template=np.zeros((3, 3)))
+    nails = tmp_path / "nails.npz"
+    save_forest(replace(load_forest(DETECTOR), kind="color", what="nails"), nails)
     pickled = io.BytesIO()
     np.savez(pickled, format=np.array([{"a": 1}], dtype=object))
     for name, data, said in (
@@ -104,6 +108,7 @@ def test_a_file_that_is_no_detector_is_refused_with_one_reason_and_nothing_is_ke
         ("tips.npz", DETECTOR.read_bytes()[:5000], "damaged file"),
         ("tips.npz", b"", "an empty file"),
         ("model.npz", model.getvalue(), "an archive of something else"),
+        ("nails.npz", nails.read_bytes(), "a detector of nails; needed one of fingertips"),
         ("pickled.npz", pickled.getvalue(), "object"),
         ("bomb.npz", bomb(), "too large members"),
     ):

@@ -82,6 +82,44 @@ def test_what_cannot_be_learnt_from_is_said_and_leaves_no_file(arguments, said, 
     assert not out.exists()
 
 
+NAILS = ["train-detector", "--what", "nails", *QUICK]
+
+
+@pytest.fixture(scope="module")
+def views(tmp_path_factory):
+    """Textured colour views of a hand with nails."""
+    out = tmp_path_factory.mktemp("views") / "count"
+    words = ["--motion", "open-close", "--frames", "20:50", "--step", "5", "--cameras", "3", "--texture", "--nails"]
+    assert main(["synthesize", *words, "--out", str(out)]) == 0
+    return out
+
+
+def test_nails_are_learnt_from_annotated_views_and_renders_and_looked_for_in_views(views, tmp_path, capsys):
+    nails, out = tmp_path / "nails.npz", tmp_path / "track"
+    words = [str(views), "--rendered", "20", "--test", str(views), "--json", "--out", str(nails)]
+    assert main([*NAILS, *words]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert (result["what"], result["on"], result["images"]) == ("nails", "color", 3 * 6 + 20)
+    assert result["test"]["nails"] > 20 and result["test"]["auc"] > 0.5  # on what it was trained on
+    forest = load_forest(nails)
+    assert (forest.what, forest.kind, forest.num_trees) == ("nails", "color", 3)
+    track = ["track", str(views), "--frames", "0:2", "--no-calibration", "--detector", str(nails), "--out", str(out)]
+    assert main([*track, "--cameras", "cam0,cam1,cam2", "--no-depth"]) == 0
+    assert "nails" in [str(name) for name in TrackChunk.load(out / "frames.npz").cost_names]
+    assert TrackSetup.load(out).nail_detector is not None
+    assert main([*track[:-1], str(tmp_path / "depth")]) == 2
+    assert "nails.npz: It finds finger nails, which are looked for in colour views" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"), [(["--rendered", "5", "--on", "depth"], "not seen in depth"), ([], "Nothing to learn from")]
+)
+def test_what_nails_cannot_be_learnt_from_is_said(words, said, tmp_path, capsys):
+    out = tmp_path / "nails.npz"
+    assert main([*NAILS, *words, "--out", str(out)]) == 2
+    assert said in capsys.readouterr().err and not out.exists()
+
+
 def test_a_recording_without_annotations_is_refused(recording, tmp_path, capsys):
     import shutil
 

@@ -83,3 +83,10 @@ def test_a_fingertip_detector_needs_the_images_that_it_looks_at():
     for looks_at in ("depth", "color"):
         (fault,) = find_detector_faults(looks_at, None, ("c0",), with_tips)
         assert "colour cameras alone" in fault
+
+
+def test_a_nail_detector_serves_colour_views_and_no_depth_camera():
+    with_tips = TrackOptions(terms="LO+S")
+    assert find_detector_faults("color", None, ("c0",), with_tips, "nails") == []
+    assert "a depth camera is tracked in" in find_detector_faults("color", "d0", ("d0",), with_tips, "nails")[0]
+    assert "use no fingertips" in find_detector_faults("color", None, ("c0",), TrackOptions(terms="LO"), "nails")[0]

@@ -1,0 +1,95 @@
+"""Do finger nails help in colour views? `python -m benchmarks.rendered_views.nails NAILS.npz [--write]`.
+
+NAILS.npz is what `handloom train-detector --what nails` wrote. Rendered hands with nails are tracked without depth and
+without annotation, with the very hands that were drawn, by the hand detector and contours, with nails and without;
+errors are of all joints, and of fingertips, against the truth. `--write` renews the table in `docs/detection.md`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import tempfile
+from pathlib import Path
+
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ.setdefault(name, "1")  # before numpy: one thread is measured
+
+import numpy as np  # noqa: E402
+
+from benchmarks.rendered_views.errors import find_interval  # noqa: E402
+from benchmarks.rendered_views.setting import TIPS  # noqa: E402
+from tracker.capture.sequence import Sequence  # noqa: E402
+from tracker.capture.truth import load_truth  # noqa: E402
+from tracker.detection import OwnDetector, load_detector  # noqa: E402
+from tracker.fitting.options import TrackOptions  # noqa: E402
+from tracker.model.default_hand import default_hand  # noqa: E402
+from tracker.model.npz_files import save_npz_model  # noqa: E402
+from tracker.synthesis.motion import perform  # noqa: E402
+from tracker.synthesis.nail_paint import NailPaint  # noqa: E402
+from tracker.synthesis.recording import RecordingOptions, write_recording  # noqa: E402
+from tracker.synthesis.texture import Texture  # noqa: E402
+from tracker.tracking.follow import track_frames  # noqa: E402
+from tracker.tracking.start import start_tracking  # noqa: E402
+from tracker.tracking.track import join_chunks  # noqa: E402
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "detection.md"
+MOTIONS = ("open-close", "count", "pinch")
+FRAMES, WHOLE, SIZE, MOST = 30, 60, (960, 720), 8
+
+
+def render(motion: str, folder: Path) -> Sequence:
+    """A right hand with nails before eight cameras."""
+    performance = perform({"right": default_hand("right")}, motion, WHOLE, MOST, SIZE)
+    texture = Texture(seed=20, nails=NailPaint())
+    options = RecordingOptions(range(0, WHOLE, WHOLE // FRAMES), sensor=None, texture=texture)
+    return write_recording(performance, folder / motion, options, save_npz_model)
+
+
+def follow(sequence: Sequence, cameras: int, detector: OwnDetector | None) -> tuple[np.ndarray, float]:
+    """(T, 21) distances of all joints from the truth, mm, those of lost frames too, and median ms a frame."""
+    ids = ",".join(camera.id for camera in sequence.cameras[:cameras])
+    options = TrackOptions(calibrate=False, cameras=ids, use_depth=False)
+    setup, state = start_tracking(sequence, options, {"right": default_hand("right")}, detector=detector)
+    _, chunk = track_frames(sequence, setup, state, range(sequence.frame_count))
+    track = join_chunks(sequence, setup, [chunk])
+    truth = load_truth(sequence.folder / "truth.npz").joints_3d
+    return 1000.0 * np.linalg.norm(track.joints_3d - truth, axis=2), 1000.0 * float(np.median(track.seconds[1:]))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("nails", type=Path)
+    parser.add_argument("--cameras", type=int, nargs="+", default=[2, 4])
+    parser.add_argument("--write", action="store_true", help="renew the table in docs/detection.md")
+    given = parser.parse_args()
+    nails = load_detector(given.nails)
+    rows = [
+        "| cameras | nails | joints, mean mm (largest) | tips, mean mm (largest) | median ms | change, 95 % interval |",
+        "|---|---|---|---|---|---|",
+    ]
+    with tempfile.TemporaryDirectory() as folder:
+        recordings = [render(motion, Path(folder)) for motion in MOTIONS]
+        for cameras in given.cameras:
+            means = []
+            for detector in (None, nails):
+                runs = [follow(recording, cameras, detector) for recording in recordings]
+                apart = np.concatenate([run for run, _ in runs])
+                means.append(apart.mean(axis=1))
+                tips = apart[:, list(TIPS)]
+                low, high = find_interval(means[-1] - means[0])
+                change = "" if detector is None else f"{np.mean(means[1] - means[0]):+.2f} ({low:+.2f} to {high:+.2f})"
+                rows.append(
+                    f"| {cameras} | {'no' if detector is None else 'yes'} | {apart.mean():.2f} ({apart.max():.0f}) | "
+                    f"{tips.mean():.2f} ({tips.max():.0f}) | {np.median([ms for _, ms in runs]):.0f} | {change} |"
+                )
+                print(rows[-1], flush=True)
+    if given.write:
+        table = "\n".join(["<!-- nails -->", *rows, "<!-- end of nails -->"])
+        pattern = r"<!-- nails -->.*?<!-- end of nails -->"
+        PAGE.write_text(re.sub(pattern, lambda _: table, PAGE.read_text(), flags=re.DOTALL))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,8 +1,8 @@
 """How early the queue of frames to look at comes to wrong ones: `python -m benchmarks.frames_to_look_at [--write]`.
 
 Two hands are rendered moving before three cameras, tracked in their colour, and looked through by the hand detector.
-Every hand is labelled by accepting the track's suggestion in every camera. In one of ten hands the suggestion is wrong:
-an error is planted in the track itself, so that its labels have it too. `--write` writes
+An error is planted in one hand of ten, in three ways: in labels that a person placed in every camera; in the track
+itself, whose suggestions were accepted as labels in every camera; in the track, without any label. `--write` writes
 `benchmarks/results/frames_to_look_at.md`. `--folder` keeps what was rendered, tracked and found for the next time.
 """
 
@@ -15,6 +15,7 @@ import tempfile
 import uuid
 from collections import Counter
 from dataclasses import dataclass, replace
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -31,11 +32,15 @@ from tracker import Sequence, load_sequence
 from tracker.capture import JointSource
 
 Array = npt.NDArray[np.float64]
+Noise = np.random.Generator
 
 CHOSEN_ON, REPORTED = ("open-close",), ("count", "pinch")
 """Limits and the way that scores are put together were chosen on the first; figures are of the others."""
-KINDS = ("shifted joint", "swapped fingers", "hand of another frame", "one camera only")
+KINDS = ("shifted joint", "swapped fingers", "hand of another frame", "left and right swapped", "one camera only")
+PLACED, ACCEPTED, NONE = WAYS = ("placed by hand", "accepted", "not labelled")
 FRAMES, EVERY, SEEDS = 90, 10, 5
+NOISE_PX = 1.5
+"""Of a person's mark, [T16] §4.2."""
 SHIFT_M = 0.03
 """As the label check's benchmark: a joint beside the next finger."""
 AWAY_FRAMES = 12
@@ -56,13 +61,14 @@ class Made:
 
 
 class Row:
-    """A label as the table of annotations holds it, accepted from a suggestion."""
+    """A label as the table of annotations holds it, accepted from a suggestion or placed by a person."""
 
-    def __init__(self, camera: str, frame: int, hand: str, pixels: Array) -> None:
+    def __init__(self, camera: str, frame: int, hand: str, pixels: Array, is_accepted: bool) -> None:
         self.id, self.revision, self.camera, self.frame, self.hand = uuid.uuid4(), 1, camera, frame, hand
         # Not "visible": depth is not to be looked at, these are cameras of colour.
         self.points = [[x, y, 1] for x, y in pixels.tolist()]
-        self.sources = write_sources((JointSource(kind="track", label="Track 1"),) * 21)
+        source = JointSource(kind="track", label="Track 1")
+        self.sources = write_sources((source,) * 21) if is_accepted else None
 
 
 def make(folder: Path, motion: str) -> Made:
@@ -89,6 +95,32 @@ def make(folder: Path, motion: str) -> Made:
     return Made(load_sequence(recording), read_track(track), points, read_detections(found))
 
 
+def other_hand(place: tuple[int, str]) -> tuple[int, str]:
+    """The other hand of the same frame."""
+    frame, hand = place
+    return frame, "left" if hand == "right" else "right"
+
+
+def choose(held: list[tuple[int, str]], rng: np.random.Generator) -> dict[tuple[int, str], str]:
+    """An error for one hand of ten, each kind in turn; where left and right are swapped both hands are wrong."""
+    room, planted = len(held) // EVERY, dict[tuple[int, str], str]()
+    kinds = cycle(KINDS)
+    for at in rng.permutation(len(held)).tolist():
+        place = held[at]
+        if place in planted:
+            continue
+        kind = next(kinds)
+        if kind == "left and right swapped":
+            both = other_hand(place) in held and other_hand(place) not in planted and len(planted) + 2 <= room
+            kind = kind if both else next(kinds)
+        planted[place] = kind
+        if kind == "left and right swapped":
+            planted[other_hand(place)] = kind
+        if len(planted) >= room:
+            break
+    return planted
+
+
 def plant(points: dict[tuple[int, str], Array], place: tuple[int, str], kind: str, rng: np.random.Generator) -> Array:
     """(21, 3) world, m: the hand at a place, with an error."""
     wrong = points[place].copy()
@@ -99,6 +131,8 @@ def plant(points: dict[tuple[int, str], Array], place: tuple[int, str], kind: st
         first = int(rng.integers(1, 4))
         a, b = slice(1 + 4 * first, 5 + 4 * first), slice(5 + 4 * first, 9 + 4 * first)
         wrong[a], wrong[b] = wrong[b].copy(), wrong[a].copy()
+    elif kind == "left and right swapped":
+        wrong = points[other_hand(place)].copy()
     else:
         frame, hand = place
         away = frame + AWAY_FRAMES if (frame + AWAY_FRAMES, hand) in points else frame - AWAY_FRAMES
@@ -113,9 +147,7 @@ def spoil(made: Made, seed: int) -> tuple[Made, dict[tuple[int, str], str]]:
     from the detector: a track is in space and cannot be wrong in one camera.
     """
     rng = np.random.default_rng(seed)
-    held = sorted({(frame, hand) for _, frame, hand in made.tracked.joints})
-    chosen = [held[int(at)] for at in rng.choice(len(held), len(held) // EVERY, replace=False)]
-    planted = {place: KINDS[number % len(KINDS)] for number, place in enumerate(chosen)}
+    planted = choose(sorted({(frame, hand) for _, frame, hand in made.tracked.joints}), rng)
     tracked, detected = dict(made.tracked.joints), dict(made.detected.joints)
     for (frame, hand), kind in planted.items():
         wrong = plant(made.points, (frame, hand), kind, rng)
@@ -132,15 +164,20 @@ def spoil(made: Made, seed: int) -> tuple[Made, dict[tuple[int, str], str]]:
     )
 
 
-def accept(made: Made, planted: dict[tuple[int, str], str], clean: Made) -> list[Row]:
-    """Labels of every hand that the track holds, as it has them; in one camera as the detector has it."""
+def label(made: Made, planted: dict[tuple[int, str], str], clean: Made, noise: Noise | None) -> list[Row]:
+    """Labels of every hand that the track holds, as it has them; in one camera as the detector has it.
+
+    With noise they are a person's: placed by hand, a little beside.
+    """
     rows = []
     for (camera, frame, hand), pixels in made.tracked.joints.items():
         if planted.get((frame, hand)) == "one camera only":
             found, before = (one.detected.joints.get((camera, frame, hand)) for one in (made, clean))
             if found is not None and found is not before:
                 pixels = found
-        rows.append(Row(camera, frame, hand, pixels))
+        if noise is not None:
+            pixels = pixels + noise.normal(0, NOISE_PX, pixels.shape)
+        rows.append(Row(camera, frame, hand, pixels, noise is None))
     return rows
 
 
@@ -178,10 +215,10 @@ def find_off(made: Made, folder: Path, motion: str) -> set[tuple[int, str]]:
 class Count:
     """What the first tenth of queues held."""
 
-    planted: Counter[tuple[str, bool]]
-    held: Counter[tuple[str, bool]]
-    others: Counter[bool]
-    others_off: Counter[bool]
+    planted: Counter[tuple[str, str]]
+    held: Counter[tuple[str, str]]
+    others: Counter[str]
+    others_off: Counter[str]
     hands: int = 0
     """Of which the truth is known."""
     off: int = 0
@@ -197,35 +234,36 @@ def measure(folder: Path, motions: tuple[str, ...]) -> Count:
         count.off += len(off)
         for seed in range(SEEDS):
             made, planted = spoil(clean, seed)
-            for is_labelled in (True, False):
-                ranked = queue(made, accept(made, planted, clean) if is_labelled else [])
-                first = {(one.frame, one.hand) for one in ranked[: len(ranked) // EVERY]}
+            for way in WAYS:
+                noise = np.random.default_rng([seed, 1]) if way == PLACED else None
+                rows = [] if way == NONE else label(made, planted, clean, noise)
+                # A person's mistake is in the labels alone.
+                ranked = queue(clean if way == PLACED else made, rows)
+                room = len(clean.points) // EVERY
+                first = {(one.frame, one.hand) for one in ranked[:room]}
                 for place, kind in planted.items():
-                    count.planted[kind, is_labelled] += 1
-                    count.held[kind, is_labelled] += place in first
-                count.others[is_labelled] += len(first - set(planted))
-                count.others_off[is_labelled] += len((first - set(planted)) & off)
+                    count.planted[kind, way] += 1
+                    count.held[kind, way] += place in first
+                count.others[way] += len(first - set(planted))
+                count.others_off[way] += len((first - set(planted)) & off)
     return count
 
 
 def describe(count: Count) -> list[str]:
     """The table and a sentence."""
-    rows = [
-        "| error | planted | labelled, in the first tenth | not labelled, in the first tenth |",
-        "|---|---|---|---|",
-    ]
+    titles = " | ".join(f"{way}, in the first tenth" for way in WAYS)
+    rows = [f"| error | planted | {titles} |", "|---|---|" + "---|" * len(WAYS)]
     for kind in (*KINDS, "all"):
         kinds = KINDS if kind == "all" else (kind,)
-        planted = [sum(count.planted[one, is_labelled] for one in kinds) for is_labelled in (True, False)]
-        held = [sum(count.held[one, is_labelled] for one in kinds) for is_labelled in (True, False)]
-        shares = [f"{held[at]} ({100 * held[at] / planted[at]:.0f} %)" for at in (0, 1)]
-        rows.append(f"| {kind} | {planted[0]} | {shares[0]} | {shares[1]} |")
+        planted, held = ([sum(of[one, way] for one in kinds) for way in WAYS] for of in (count.planted, count.held))
+        shares = [f"{part} ({100 * part / whole:.0f} %)" for part, whole in zip(held, planted, strict=True)]
+        rows.append(f"| {kind} | {planted[0]} | {' | '.join(shares)} |")
     if not count.hands:
         return rows
+    others = ", ".join(f"{count.others_off[way]} of {count.others[way]} ({way})" for way in WAYS)
     rows.append(
-        f"\nOf the other hands in the first tenth {count.others_off[True]} of {count.others[True]} (labelled) and "
-        f"{count.others_off[False]} of {count.others[False]} (not labelled) are wrong, too: the track was by itself "
-        f"more than {1e3 * OFF_M:.0f} mm from the truth, as it was in {count.off} of all {count.hands} hands."
+        f"\nOf the other hands in the first tenth {others} are wrong, too: the track was by itself more than "
+        f"{1e3 * OFF_M:.0f} mm from the truth, as it was in {count.off} of all {count.hands} hands."
     )
     return rows
 

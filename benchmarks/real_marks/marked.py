@@ -95,7 +95,7 @@ class MarkedRecording:
         """Frame to its marks (21, 2) px, the mean of both passes; NaN where one has none or they are apart."""
         found = {}
         for frame in sorted({item.frame for item in self.passes[0].items}):
-            first, second = self._points(0, frame), self._points(1, frame)
+            first, second = self.points(0, frame), self.points(1, frame)
             is_same = np.linalg.norm(first - second, axis=1) <= self.limit
             found[frame] = np.where(is_same[:, None], 0.5 * (first + second), np.nan)
         return found
@@ -103,11 +103,11 @@ class MarkedRecording:
     def measure_passes(self) -> Array:
         """(N,) px between the two passes, of every joint that both have."""
         frames = sorted({item.frame for item in self.passes[0].items})
-        apart = [np.linalg.norm(self._points(0, frame) - self._points(1, frame), axis=1) for frame in frames]
+        apart = [np.linalg.norm(self.points(0, frame) - self.points(1, frame), axis=1) for frame in frames]
         joined = np.concatenate(apart)
         return joined[np.isfinite(joined)]
 
-    def _points(self, number: int, frame: int) -> Array:
+    def points(self, number: int, frame: int) -> Array:
         """(21, 2) px of one pass, NaN where nothing is marked."""
         item = next((item for item in self.passes[number].items if item.frame == frame), None)
         if item is None:

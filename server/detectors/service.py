@@ -61,8 +61,8 @@ def read_upload(path: Path) -> OwnDetector:
         raise InvalidError(str(error).replace(f"{path.parent}/", "")) from None
     if detector.forest.what != "fingertips":
         raise InvalidError(
-            f"{path.name}: found a detector of {detector.forest.what}; needed one of fingertips. Nails are looked for by "
-            "`handloom track --cameras A,B --detector FILE` alone."
+            f"{path.name}: found a detector of {detector.forest.what}; needed one of fingertips. Nails are looked for "
+            "by `handloom track --cameras A,B --detector FILE` alone."
         )
     return detector
 

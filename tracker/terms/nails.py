@@ -14,8 +14,9 @@ from tracker.geometry import se3
 from tracker.model.scene import PosedScene
 from tracker.rendering.seen_nails import NailPlaces
 from tracker.terms.marked_joints import find_rays
+from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.point_line import PointToLine
-from tracker.terms.residual import MILLIMETRES, FrameContext
+from tracker.terms.residual import FrameContext
 
 Array = npt.NDArray[np.float64]
 

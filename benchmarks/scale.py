@@ -31,7 +31,6 @@ import psycopg
 from fastapi.testclient import TestClient
 from sqlalchemy import or_, select
 
-from server.access.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
 from server.database import Database
 from server.jobs.models import JobRow

@@ -9266,6 +9266,11 @@ export interface components {
              * Format: uuid
              */
             id: string;
+            /**
+             * Is Of Earlier Cameras
+             * @description Made before the cameras changed: its joints stay where the cameras of that time saw them.
+             */
+            is_of_earlier_cameras: boolean;
             /** Job Id */
             job_id: string | null;
             /** Name */

@@ -5,6 +5,7 @@ from __future__ import annotations
 from time import perf_counter
 
 from tracker.capture.sequence import Sequence
+from tracker.fitting.choose_views import PLENTY
 from tracker.fitting.frame_fit import Fit
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.view_hands import ViewHands
@@ -40,7 +41,7 @@ def follow_views(
         started = perf_counter()
     looked_at, views = perf_counter(), read.views
     scene, hands, gone = setup.scene, setup.hands, set(state.gone_hands(setup))
-    pose = state.predict(scene)
+    pose = state.predict(scene, bends=len(views) >= PLENTY)
     seen = see_hands(setup, views, scene.pose_at(pose), gone)
     stages = {"reading": read.seconds, "detecting hands": perf_counter() - looked_at}
     if ahead:
@@ -55,7 +56,9 @@ def follow_views(
     part = Part.without(setup, tuple(gone - found))  # what is lost is nowhere: it hides and touches nothing
     fit = Fit(part.take(pose), (), {})
     if part.kept:
-        fit = fit_views(part.setup, tools.objective, seen, views, fit.pose, iterations)
+        followed = {hand: setup.names[hand] for hand in hands if hand not in gone}
+        believed = seen.without_jumps(scene.pose_at(pose), followed, sequence.fps)
+        fit = fit_views(part.setup, tools.objective, believed, views, fit.pose, iterations)
     pose = part.put(fit.pose, pose)
     posed = scene.pose_at(pose)
     verdicts = {hand: judge_hand(setup, seen, posed, hand) for hand in hands}

@@ -36,8 +36,9 @@ BY_JOINTS = ViewHold(REACH, 4, Regularization.weight)
 """Contours are drawn anew in each iteration, and the joints have brought them near."""
 
 BY_CONTOURS = ViewHold(5.0, 8, 0.1)
-"""Chosen on rendered views (benchmarks/results/rendered_views.md): a hidden finger that few joints tell of must not run away.
-Where all joints are told in two views it does harm: `two_camera_rgb` is then followed in 370 frames in place of 374."""
+"""Chosen on rendered views (benchmarks/results/rendered_views.md): a hidden finger that few joints tell of must not
+run away. Where all joints are told in two views it does harm: `two_camera_rgb` is then followed in 370 frames in place
+of 374."""
 
 BY_FEW_CONTOURS = ViewHold(5.0, 8, 0.3)
 """Fewer views hide more fingers. With 0.1 in two rendered views 3.5 mm, with 0.3 2.7 mm."""

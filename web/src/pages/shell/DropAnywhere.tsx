@@ -1,6 +1,6 @@
 import { useNavigate } from "react-router";
 import { sendIncoming } from "../../state/incoming";
-import { DropTarget } from "./DropTarget";
+import { DropTarget } from "../parts/DropTarget";
 
 /** Some pages take drops themselves, such as those of labels and scans. */
 const isFree = (): boolean => document.querySelector("[data-takes-drops]") === null;

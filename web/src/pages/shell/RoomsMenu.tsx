@@ -1,7 +1,7 @@
 import { ActionIcon, Button, Drawer, Group, Indicator } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { IconKeyboard, IconMenu2 } from "@tabler/icons-react";
-import { ThemeSwitch } from "./parts/ThemeSwitch";
+import { ThemeSwitch } from "./ThemeSwitch";
 import { Rooms } from "./Rooms";
 
 interface RoomsMenuProps {

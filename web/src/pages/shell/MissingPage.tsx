@@ -1,8 +1,8 @@
 import { Button } from "@mantine/core";
 import { IconMapOff } from "@tabler/icons-react";
 import { Link } from "react-router";
-import { EmptyState } from "./parts/EmptyState";
-import { useTitle } from "./parts/useTitle";
+import { EmptyState } from "../parts/EmptyState";
+import { useTitle } from "../parts/useTitle";
 
 export function MissingPage() {
   useTitle("Nothing here");

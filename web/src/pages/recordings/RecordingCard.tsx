@@ -3,10 +3,10 @@ import { useState } from "react";
 import { Link } from "react-router";
 import type { Recording } from "../../api/types";
 import { formatCount, formatMeasure, formatNumber } from "../../model/format";
-import { HandBadge } from "./HandBadge";
+import { HandBadge } from "../parts/HandBadge";
 import { HoverPlay } from "./HoverPlay";
 import classes from "./RecordingCard.module.css";
-import { WorkProgress } from "./WorkProgress";
+import { WorkProgress } from "../parts/WorkProgress";
 
 /** What the best track is worth, in one line: error in px when there are annotations, else the depth residual. */
 export function trackWorth(track: Recording["best_track"]): string {

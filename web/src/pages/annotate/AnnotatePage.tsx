@@ -1,15 +1,15 @@
 import { Button } from "@mantine/core";
 import { useEffect, useMemo } from "react";
 import { Link, useParams, useSearchParams } from "react-router";
-import { ApiError } from "../api/client";
-import { useRecording } from "../api/recordings";
-import { forgetPlace } from "../state/lastPlace";
-import { scopeOf } from "../state/saving";
-import { Annotator } from "./annotate/Annotator";
-import { AnnotatorSkeleton } from "./annotate/AnnotatorSkeleton";
-import { useSession } from "./annotate/useSession";
-import { Failure } from "./parts/Failure";
-import { useTitle } from "./parts/useTitle";
+import { ApiError } from "../../api/client";
+import { useRecording } from "../../api/recordings";
+import { forgetPlace } from "../../state/lastPlace";
+import { scopeOf } from "../../state/saving";
+import { Annotator } from "./Annotator";
+import { AnnotatorSkeleton } from "./AnnotatorSkeleton";
+import { useSession } from "./useSession";
+import { Failure } from "../parts/Failure";
+import { useTitle } from "../parts/useTitle";
 
 /** `?camera=&frame=&hand=` says where; the page keeps it up to date. With `?replica=` one marks blindly: no track is shown. */
 export default function AnnotatePage() {

@@ -4,8 +4,8 @@ import { useState } from "react";
 import { usePutRefinementBack, useRefine, useRefinements, useTakeRefinement, type Refinement } from "../../api/refinements";
 import type { Recording } from "../../api/types";
 import { formatAgo, formatCount } from "../../model/format";
-import { tellFailure } from "../projects/offerUndo";
-import { For } from "./For";
+import { tellFailure } from "../parts/undo";
+import { For } from "../parts/For";
 import { RefinementTable } from "./RefinementTable";
 
 /** What to say of the newest proposal, above its table. */

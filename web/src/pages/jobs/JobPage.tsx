@@ -1,19 +1,19 @@
 import { Button, Code, Group, Progress, ScrollArea, SimpleGrid, Stack, Text, Title } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import { Link, useParams } from "react-router";
-import { useRestartCheck } from "../api/jobChecks";
-import { isActive, useJob, useJobForm, useJobLog } from "../api/jobs";
-import { useRecording } from "../api/recordings";
-import { describeParams } from "../model/compareJobs";
-import { formatAgo, formatDuration, formatJobKind, formatName } from "../model/format";
-import { CompareWith } from "./jobs/CompareWith";
-import { JobResult } from "./jobs/JobResult";
-import { Restart } from "./jobs/Restart";
-import { Failure } from "./parts/Failure";
-import { JobActions, JobBadge, jobProgress } from "./parts/JobRow";
-import { PageSkeleton } from "./parts/PageSkeleton";
-import { Fact } from "./parts/Fact";
-import { useTitle } from "./parts/useTitle";
+import { useRestartCheck } from "../../api/jobChecks";
+import { isActive, useJob, useJobForm, useJobLog } from "../../api/jobs";
+import { useRecording } from "../../api/recordings";
+import { describeParams } from "../../model/compareJobs";
+import { formatAgo, formatDuration, formatJobKind, formatName } from "../../model/format";
+import { CompareWith } from "./CompareWith";
+import { JobResult } from "./JobResult";
+import { Restart } from "./Restart";
+import { Failure } from "../parts/Failure";
+import { JobActions, JobBadge, jobProgress } from "../parts/JobRow";
+import { PageSkeleton } from "../parts/PageSkeleton";
+import { Fact } from "../parts/Fact";
+import { useTitle } from "../parts/useTitle";
 import classes from "./JobPage.module.css";
 
 function Log({ jobId, isLive }: { jobId: string; isLive: boolean }) {

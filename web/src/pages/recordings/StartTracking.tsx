@@ -1,10 +1,10 @@
-import { Button, Modal, Stack, Text, Title } from "@mantine/core";
+import { Text } from "@mantine/core";
+import { FormDialog } from "../parts/Dialog";
 import { useNavigate } from "react-router";
 import { useStartTracking } from "../../api/jobs";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
 import type { Recording } from "../../api/types";
-import { FormFooter } from "./Obstacles";
-import { TrackingForm, useTrackingOptions } from "./TrackingForm";
+import { TrackingForm, useTrackingOptions } from "../parts/TrackingForm";
 
 interface StartTrackingProps {
   recording: Recording;
@@ -35,28 +35,11 @@ export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps
       },
     );
   return (
-    <Modal opened={isOpen} onClose={onClose} size={760} title={<Title order={2}>Track {recording.name}</Title>}>
-      <form
-        onSubmit={(event) => {
-          event.preventDefault();
-          submit();
-        }}
-      >
-        <Stack gap="md">
-          <Text size="sm" className="quiet">
-            A hand is fitted to every frame. It starts {whereItStarts(recording)} You can go on working meanwhile, and close the browser.
-          </Text>
-          <TrackingForm options={options} recording={recording} />
-          <FormFooter check={check.data} failure={start.error}>
-            <Button variant="default" onClick={onClose}>
-              Cancel
-            </Button>
-            <Button type="submit" loading={start.isPending} disabled={!mayStart(check)} data-autofocus>
-              Start tracking
-            </Button>
-          </FormFooter>
-        </Stack>
-      </form>
-    </Modal>
+    <FormDialog title={`Track ${recording.name}`} size={760} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Start tracking" isFocused isBusy={start.isPending} isReady={mayStart(check)} check={check.data} failure={start.error}>
+      <Text size="sm" className="quiet">
+        A hand is fitted to every frame. It starts {whereItStarts(recording)} You can go on working meanwhile, and close the browser.
+      </Text>
+      <TrackingForm options={options} recording={recording} />
+    </FormDialog>
   );
 }

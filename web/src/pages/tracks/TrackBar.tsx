@@ -1,5 +1,4 @@
 import { ActionIcon, Badge, Button, Group, Menu, Select, Text, Tooltip } from "@mantine/core";
-import { notifications } from "@mantine/notifications";
 import {
   IconAlertTriangle,
   IconChartBar,
@@ -22,7 +21,7 @@ import type { Recording, Track } from "../../api/types";
 import { useHint } from "../../state/keys";
 import classes from "./TrackReview.module.css";
 import { For } from "../parts/For";
-import { offerUndo } from "../projects/offerUndo";
+import { intoBin } from "../parts/undo";
 
 interface TrackBarProps {
   track: Track;
@@ -52,13 +51,10 @@ export function TrackBar(props: TrackBarProps) {
   const navigate = useNavigate();
   const StatusIcon = STATUS_ICONS[status as keyof typeof STATUS_ICONS];
   const drop = (): void =>
-    remove.mutate(track.id, {
-      onSuccess: () => {
-        void navigate("/tracks");
-        offerUndo(`${track.name} was moved to the bin.`, () => restore.mutateAsync(track.id));
-      },
-      onError: (failure) => notifications.show({ color: "red", title: "Not deleted", message: failure.message }),
-    });
+    remove.mutate(
+      track.id,
+      intoBin(track.name, () => restore.mutateAsync(track.id), () => void navigate("/tracks")),
+    );
 
   return (
     <div className={classes.bar}>

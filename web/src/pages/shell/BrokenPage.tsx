@@ -1,6 +1,6 @@
 import { Button } from "@mantine/core";
 import { useRouteError } from "react-router";
-import { Failure } from "./parts/Failure";
+import { Failure } from "../parts/Failure";
 
 /** A page that threw: say so, and offer a way on. */
 export function BrokenPage() {

@@ -1,4 +1,5 @@
-import { ActionIcon, Button, Group, Modal, Stack, Text, TextInput, Title, Tooltip } from "@mantine/core";
+import { ActionIcon, Button, Group, Stack, Text, TextInput, Title, Tooltip } from "@mantine/core";
+import { Dialog } from "../parts/Dialog";
 import { IconArrowBackUp, IconPlus, IconSearch, IconX } from "@tabler/icons-react";
 import { useState } from "react";
 import { chordOf, faultOf, KEYMAP, type KeyBinding, type KeyFault } from "../../model/keymap";
@@ -137,7 +138,7 @@ export function KeySettings({ isOpen, onClose }: { isOpen: boolean; onClose: () 
   const found = map.filter((binding) => `${binding.label} ${binding.keys.join(" ")} ${nameOf(binding.group)}`.toLowerCase().includes(words));
   const groups = [...new Set(found.map((binding) => binding.group))];
   return (
-    <Modal opened={isOpen} onClose={onClose} title={<Title order={2}>Keys</Title>} size={760}>
+    <Dialog title="Keys" size={760} isOpen={isOpen} onClose={onClose}>
       <Group mb="md" wrap="nowrap">
         <TextInput
           flex={1}
@@ -168,6 +169,6 @@ export function KeySettings({ isOpen, onClose }: { isOpen: boolean; onClose: () 
         ))}
         {found.length === 0 && <Text className="quiet">Nothing has this name or key. Look for a part of it, such as “frame” or “Ctrl”.</Text>}
       </Stack>
-    </Modal>
+    </Dialog>
   );
 }

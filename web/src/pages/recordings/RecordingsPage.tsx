@@ -1,13 +1,13 @@
 import { Button, CloseButton, Group, SimpleGrid, Skeleton, TextInput, Title } from "@mantine/core";
 import { IconCamera, IconHandFinger, IconSearch } from "@tabler/icons-react";
 import { Link, useSearchParams } from "react-router";
-import { useRecordings } from "../api/recordings";
-import { formatCount } from "../model/format";
-import { EmptyState } from "./parts/EmptyState";
-import { Failure } from "./parts/Failure";
-import { ImportButton } from "./parts/ImportButton";
-import { RecordingCard } from "./parts/RecordingCard";
-import { useTitle } from "./parts/useTitle";
+import { useRecordings } from "../../api/recordings";
+import { formatCount } from "../../model/format";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { ImportButton } from "../parts/ImportButton";
+import { RecordingCard } from "./RecordingCard";
+import { useTitle } from "../parts/useTitle";
 
 const COLUMNS = { base: 2, sm: 3, lg: 4, xl: 5 };
 

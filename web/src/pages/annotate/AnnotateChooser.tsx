@@ -1,14 +1,14 @@
 import { SimpleGrid, Skeleton, Text, Title } from "@mantine/core";
 import { IconPencil } from "@tabler/icons-react";
 import { Link, Navigate } from "react-router";
-import { thumbnailUrl, useRecordings } from "../api/recordings";
-import { lastPlace } from "../state/lastPlace";
-import { EmptyState } from "./parts/EmptyState";
-import { Failure } from "./parts/Failure";
-import { ImportButton } from "./parts/ImportButton";
-import { Thumbnail } from "./parts/Thumbnail";
-import { useTitle } from "./parts/useTitle";
-import { workText } from "./parts/WorkProgress";
+import { thumbnailUrl, useRecordings } from "../../api/recordings";
+import { lastPlace } from "../../state/lastPlace";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { ImportButton } from "../parts/ImportButton";
+import { Thumbnail } from "../parts/Thumbnail";
+import { useTitle } from "../parts/useTitle";
+import { workText } from "../parts/WorkProgress";
 import classes from "./AnnotateChooser.module.css";
 
 /** "Annotate" without a recording: back to the last one, or a choice. */

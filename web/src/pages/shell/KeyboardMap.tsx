@@ -1,4 +1,5 @@
-import { Button, Group, Kbd, Modal, Stack, Text, Title } from "@mantine/core";
+import { Button, Group, Kbd, Stack, Text, Title } from "@mantine/core";
+import { Dialog } from "../parts/Dialog";
 import { IconKeyboard } from "@tabler/icons-react";
 import { Fragment } from "react";
 import { useLocation } from "react-router";
@@ -88,7 +89,7 @@ export function KeyboardMap({ isOpen, onClose, onSettings }: { isOpen: boolean; 
   const groupsOf = (some: readonly KeyBinding[]): string[] => [...new Set(some.map((binding) => binding.group))];
   const elsewhere = groupsOf(map.filter((binding) => !isHere(binding)));
   return (
-    <Modal opened={isOpen} onClose={onClose} title={<Title order={2}>Keyboard map</Title>} size={1040}>
+    <Dialog title="Keyboard map" size={1040} isOpen={isOpen} onClose={onClose}>
       <Group justify="space-between" mb="md">
         <Text size="sm" className="quiet">
           {scope ? "The keys of this page come first. " : ""}Every key can be put elsewhere.
@@ -125,6 +126,6 @@ export function KeyboardMap({ isOpen, onClose, onSettings }: { isOpen: boolean; 
           </div>
         </>
       )}
-    </Modal>
+    </Dialog>
   );
 }

@@ -4,7 +4,7 @@ import { useCalibrations } from "../../api/calibrations";
 import { useTakeCameras } from "../../api/imports";
 import type { Import } from "../../api/types";
 import { formatAgo, formatCount } from "../../model/format";
-import { Refusal } from "./Refusal";
+import { Refusal } from "../parts/Refusal";
 
 const OWN = "";
 

@@ -1,11 +1,11 @@
 import { Button } from "@mantine/core";
 import { Link, useParams } from "react-router";
-import { useRecording } from "../api/recordings";
-import { useTrack, useTrackFrames } from "../api/tracks";
-import { Failure } from "./parts/Failure";
-import { PageSkeleton } from "./parts/PageSkeleton";
-import { useTitle } from "./parts/useTitle";
-import { TrackReview } from "./track/TrackReview";
+import { useRecording } from "../../api/recordings";
+import { useTrack, useTrackFrames } from "../../api/tracks";
+import { Failure } from "../parts/Failure";
+import { PageSkeleton } from "../parts/PageSkeleton";
+import { useTitle } from "../parts/useTitle";
+import { TrackReview } from "./TrackReview";
 
 /** `?frame=&camera=&tab=` says where; the page keeps it up to date. */
 export default function TrackPage() {

@@ -2,12 +2,12 @@ import { Button, Group, Loader, Progress, Stack, Text, Title } from "@mantine/co
 import { IconUpload } from "@tabler/icons-react";
 import { useEffect } from "react";
 import { Link, useNavigate } from "react-router";
-import { cancelIncoming, sendIncoming, useIncoming } from "../state/incoming";
-import { formatBytes, formatCount } from "../model/format";
-import { EmptyState } from "./parts/EmptyState";
-import { Failure } from "./parts/Failure";
-import { ImportButton } from "./parts/ImportButton";
-import { useTitle } from "./parts/useTitle";
+import { cancelIncoming, sendIncoming, useIncoming } from "../../state/incoming";
+import { formatBytes, formatCount } from "../../model/format";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { ImportButton } from "../parts/ImportButton";
+import { useTitle } from "../parts/useTitle";
 
 /** Files on their way; when the server has looked at them, the report takes over. */
 export function NewImportPage() {

@@ -4,7 +4,7 @@ import { IconPencil } from "@tabler/icons-react";
 import { useState } from "react";
 import { useRenameRecording } from "../../api/recordings";
 import type { Recording } from "../../api/types";
-import { For } from "./For";
+import { For } from "../parts/For";
 
 /** A recording's name; the pencil turns it into a field. */
 export function EditableName({ recording }: { recording: Recording }) {

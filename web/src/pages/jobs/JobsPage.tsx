@@ -3,18 +3,18 @@ import { useDisclosure } from "@mantine/hooks";
 import { IconBriefcase, IconFilterOff } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link } from "react-router";
-import { useJobList } from "../api/jobs";
-import { Batches } from "./jobs/Batches";
-import { JobFilterBar } from "./jobs/JobFilterBar";
-import { SelectionBar } from "./jobs/SelectionBar";
-import { StartBatch } from "./jobs/StartBatch";
-import { useJobAddress } from "./jobs/useJobAddress";
-import { Workers } from "./jobs/Workers";
-import { EmptyState } from "./parts/EmptyState";
-import { Failure } from "./parts/Failure";
-import { JobRow } from "./parts/JobRow";
-import { useTitle } from "./parts/useTitle";
-import { For } from "./parts/For";
+import { useJobList } from "../../api/jobs";
+import { Batches } from "./Batches";
+import { JobFilterBar } from "./JobFilterBar";
+import { SelectionBar } from "./SelectionBar";
+import { StartBatch } from "./StartBatch";
+import { useJobAddress } from "./useJobAddress";
+import { Workers } from "./Workers";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { JobRow } from "../parts/JobRow";
+import { useTitle } from "../parts/useTitle";
+import { For } from "../parts/For";
 
 /** Queue and workers, live; batches; every job there was, to be found, chosen and acted on. */
 export function JobsPage() {

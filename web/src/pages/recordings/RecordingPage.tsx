@@ -1,36 +1,35 @@
 import { ActionIcon, Button, Code, Group, Menu, SimpleGrid, Skeleton, Stack, Text, Title, Tooltip } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
-import { notifications } from "@mantine/notifications";
 import { IconChartBar, IconDots, IconDownload, IconFileReport, IconFlag, IconPencil, IconPlayerPlay, IconTransfer, IconTrash } from "@tabler/icons-react";
 import { useMemo } from "react";
 import { Link, useNavigate, useParams } from "react-router";
-import { useAnnotations } from "../api/annotations";
-import { API } from "../api/client";
-import { useRecordingJobs } from "../api/jobs";
-import { useDeleteRecording, useRecording, useRestoreRecording } from "../api/recordings";
-import { useTracks } from "../api/tracks";
-import type { Recording } from "../api/types";
-import { FrameStrip } from "../canvas/FrameStrip";
-import { annotationRows } from "../model/annotationRows";
-import { formatAgo, formatCount, formatDuration, formatNumber } from "../model/format";
-import { workText } from "./parts/WorkProgress";
-import { fromWire, keyText, type Pose } from "../model/pose";
-import { CameraPicture } from "./parts/CameraPicture";
-import { EditableName } from "./parts/EditableName";
-import { Failure } from "./parts/Failure";
-import { HandBadge } from "./parts/HandBadge";
-import { ImportFacts } from "./parts/ImportFacts";
-import { JobRow } from "./parts/JobRow";
-import { PageSkeleton } from "./parts/PageSkeleton";
-import { RefineCameras } from "./parts/RefineCameras";
-import { Sentences } from "./parts/Sentences";
-import { Awaited } from "./parts/Awaited";
-import { StartTracking, whereItStarts } from "./parts/StartTracking";
-import { TrackButton, useTrackObstacles } from "./parts/TrackButton";
-import { TrackTable } from "./parts/TrackTable";
-import { useTitle } from "./parts/useTitle";
-import { offerUndo } from "./projects/offerUndo";
-import { For } from "./parts/For";
+import { useAnnotations } from "../../api/annotations";
+import { API } from "../../api/client";
+import { useRecordingJobs } from "../../api/jobs";
+import { useDeleteRecording, useRecording, useRestoreRecording } from "../../api/recordings";
+import { useTracks } from "../../api/tracks";
+import type { Recording } from "../../api/types";
+import { FrameStrip } from "../../canvas/FrameStrip";
+import { annotationRows } from "../../model/annotationRows";
+import { formatAgo, formatCount, formatDuration, formatNumber } from "../../model/format";
+import { workText } from "../parts/WorkProgress";
+import { fromWire, keyText, type Pose } from "../../model/pose";
+import { CameraPicture } from "./CameraPicture";
+import { EditableName } from "./EditableName";
+import { Failure } from "../parts/Failure";
+import { HandBadge } from "../parts/HandBadge";
+import { ImportFacts } from "../parts/ImportFacts";
+import { JobRow } from "../parts/JobRow";
+import { PageSkeleton } from "../parts/PageSkeleton";
+import { RefineCameras } from "./RefineCameras";
+import { Sentences } from "../parts/Sentences";
+import { Awaited } from "../parts/Awaited";
+import { StartTracking, whereItStarts } from "./StartTracking";
+import { TrackButton, useTrackObstacles } from "./TrackButton";
+import { TrackTable } from "../parts/TrackTable";
+import { useTitle } from "../parts/useTitle";
+import { intoBin } from "../parts/undo";
+import { For } from "../parts/For";
 
 function Cameras({ recording, tracks }: { recording: Recording; tracks: number }) {
   return (
@@ -97,13 +96,10 @@ export function RecordingPage() {
   if (!recording) return <PageSkeleton />;
 
   const drop = (): void =>
-    remove.mutate(recording, {
-      onSuccess: () => {
-        void navigate("/recordings");
-        offerUndo(`${recording.name} was moved to the bin.`, () => restore.mutateAsync(recording.id));
-      },
-      onError: (failure) => notifications.show({ color: "red", title: "Not deleted", message: failure.message }),
-    });
+    remove.mutate(
+      recording,
+      intoBin(recording.name, () => restore.mutateAsync(recording.id), () => void navigate("/recordings")),
+    );
   const openFrame = (frame: number): void => void navigate(`/recordings/${recording.id}/annotate?frame=${frame}`);
 
   return (

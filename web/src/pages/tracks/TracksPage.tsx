@@ -1,12 +1,12 @@
 import { Button, Skeleton, Stack, Title } from "@mantine/core";
 import { IconRoute } from "@tabler/icons-react";
 import { Link } from "react-router";
-import { useRecordings } from "../api/recordings";
-import { useTracks } from "../api/tracks";
-import { EmptyState } from "./parts/EmptyState";
-import { Failure } from "./parts/Failure";
-import { TrackTable } from "./parts/TrackTable";
-import { useTitle } from "./parts/useTitle";
+import { useRecordings } from "../../api/recordings";
+import { useTracks } from "../../api/tracks";
+import { EmptyState } from "../parts/EmptyState";
+import { Failure } from "../parts/Failure";
+import { TrackTable } from "../parts/TrackTable";
+import { useTitle } from "../parts/useTitle";
 
 export function TracksPage() {
   useTitle("Tracks");

@@ -41,7 +41,7 @@ def test_tracks_are_judged_and_exported_there(studio: Studio, client: TestClient
         f"{track}/evaluation/now-45/cam0/0/right.jpg",
         f"/evaluations/report.csv?track={tracked.track_id}",
         f"{track}/export/csv",
-        f"{recording}/labels/export?format=coco",
+        f"{recording}/labels/export?format=coco_keypoints",
     ]
     here = ask_all(client, paths)
     compute = start(studio)

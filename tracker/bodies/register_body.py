@@ -180,12 +180,16 @@ class Registrar:
     def fit_model(
         self, state: BodyState, points: ScanPoints, shown: tuple[bool, bool], anchor: Anchor | None = None
     ) -> Evaluation:
-        """Pose and shape, stage by stage; hands that have just been found have few components in all but the last."""
+        """Pose and shape, stage by stage; hands of few components in all but the last."""
         evaluation: Evaluation | None = None
-        is_known = state.num_coefficients == self.fine.space.size
+        known = state.hands
         for number, (count, settings) in enumerate(self.options.model_stages):
-            fit = self.fine if is_known or number == len(self.options.model_stages) - 1 else self.coarse
-            state = with_hands(state, fit.space, state.hands)
+            fit = self.fine if number == len(self.options.model_stages) - 1 else self.coarse
+            hands = with_hands(state, fit.space, state.hands).hands.copy()
+            for k in range(2):
+                if not shown[k]:
+                    hands[k] = with_hands(state, fit.space, known).hands[k]
+            state = with_hands(state, fit.space, hands)
             evaluation = self.holding(fit, state, shown, anchor).fit(state, points.first(count), settings)
             assert isinstance(evaluation.state, BodyState)
             state = evaluation.state

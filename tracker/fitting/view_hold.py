@@ -12,7 +12,7 @@ from tracker.terms.joint_prior import Regularization
 MANY = 4
 """So many views or more hold a hand by its contours better than single joints do."""
 
-TOLD = 0.8
+TOLD = 0.7
 """Share of the joints of hands in view that a detector for photographs tells, and more: all. One that tells only what
 it sees tells less; its few joints are held by contours, too."""
 

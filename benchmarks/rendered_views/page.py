@@ -84,8 +84,8 @@ FOOT = """## What holds it back
 - In two views a hidden finger that nothing tells of stays where it was bent last ("crossing", frames 13 to 18: an index
   fingertip 40 mm off). In four views likewise, for fewer frames.
 - In two views contours, a pull to the frame before (`BY_FEW_CONTOURS`) and leaving out false joints that lie farther
-  from where they are expected than a hand moves from frame to frame (`find_jumps`) took the mean from 8.9 to 2.7 mm: 3.5
-  with a pull of 0.1 in place of 0.3, 3.0 with all joints. False joints that lie near are left: with two views nobody
+  from where they are expected than a hand moves from frame to frame (`find_jumps`) took the mean from 8.9 to 2.7 mm. A
+  pull of 0.1 in place of 0.3 gave 3.5, all joints 3.0. False joints that lie near are left: with two views nobody
   outvotes them.
 - With eight views the worst joint was a fingertip in frame 27 of "crossing" that no view tells of, 14.7 mm off. Bends
   that go on as they did in the frame before took it to where the table has it; in two views they do harm (3.8 mm for

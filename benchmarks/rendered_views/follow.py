@@ -22,6 +22,7 @@ from tracker.fitting.options import TrackOptions
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.view_contours import ViewContours
 from tracker.fitting.view_hands import ViewHands
+from tracker.fitting.view_hold import BY_CONTOURS
 from tracker.landmarks import DetectedHand
 from tracker.model.scene import PosedScene
 from tracker.observation.image_flow import find_image_flow
@@ -30,13 +31,7 @@ from tracker.terms.collision import Collision
 from tracker.terms.contours import Contours
 from tracker.terms.flow import Flow, follow_surface, join_flows
 from tracker.terms.joint_prior import Regularization
-from tracker.tracking.fit_views import (
-    MANY_CONTOUR_ITERATIONS,
-    MANY_REGULARIZATION,
-    add_contours,
-    fit_views,
-    see_hands,
-)
+from tracker.tracking.fit_views import add_contours, fit_views, see_hands
 from tracker.tracking.state import TrackState
 from tracker.tracking.view_edges import EDGE_MARGIN, find_place
 from tracker.tracking.view_objects import judge_objects, list_objects
@@ -171,8 +166,8 @@ def _find_flow(posed: PosedScene, cameras, before, now, weight: float) -> Flow |
 def _fit_contours(setup: TrackSetup, objective: Objective, cameras, frames, pose: Array, iterations: int) -> Array:
     """The pose (D,) by contours without any joint, from far edges to near ones, as far as can be as `fit_views`."""
     scene, start = setup.scene, pose
-    objective = replace(objective, regularization=Regularization(weight=MANY_REGULARIZATION))
-    for reach, count in ((FAR_EDGE, iterations), (Contours.max_distance, MANY_CONTOUR_ITERATIONS)):
+    objective = replace(objective, regularization=Regularization(weight=BY_CONTOURS.regularization))
+    for reach, count in ((FAR_EDGE, iterations), (Contours.max_distance, BY_CONTOURS.iterations)):
         drawn = add_contours(objective, scene.pose_at(pose), _pair(cameras, frames))
         terms = {
             name: term.reaching(reach) if isinstance(term, ViewContours) else term for name, term in drawn.terms.items()

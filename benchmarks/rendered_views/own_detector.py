@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import tempfile
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -17,6 +18,8 @@ import numpy as np
 import tracker.tracking.fit_views as fit_views
 from tracker.capture.truth import load_truth
 from tracker.fitting.options import TrackOptions
+from tracker.fitting.view_hands import ViewHands
+from tracker.fitting.view_hold import ViewHold, choose_hold
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
 from tracker.synthesis.motion import perform
@@ -26,6 +29,11 @@ from tracker.tracking.start import start_tracking
 from tracker.tracking.track import join_chunks
 
 FRAMES = 24
+
+
+def hold_by_joints(seen: ViewHands) -> ViewHold:
+    """As the tracker chooses, without the iterations with contours."""
+    return replace(choose_hold(seen), iterations=0)
 
 
 def main() -> None:
@@ -41,9 +49,8 @@ def main() -> None:
         for count in given.cameras:
             ids = ",".join(camera.id for camera in sequence.cameras[:count])
             for has_contours in (False, True):
-                none = {} if has_contours else {"CONTOUR_ITERATIONS": 0, "MANY_CONTOUR_ITERATIONS": 0}
                 options = TrackOptions(calibrate=False, cameras=ids, use_depth=False)
-                with patch.multiple(fit_views, **none) if none else nullcontext():
+                with nullcontext() if has_contours else patch.object(fit_views, "choose_hold", hold_by_joints):
                     setup, state = start_tracking(sequence, options)
                     _, chunk = track_frames(sequence, setup, state, range(FRAMES))
                 track = join_chunks(sequence, setup, [chunk])

@@ -88,10 +88,8 @@ _CONCERNED = (
 def _check_shared_change(session: Session, account: Account, place: Place) -> None:
     where = {"sequence": place.sequence_id, "frame": place.frame, "account": account.id}
     concerned = session.execute(_CONCERNED, where).all()
-    for row in concerned:
-        is_blind = row.replica_set_id is not None and row.archived_at is None and row.deleted_at is None
-        if is_blind and place in _places(row):
-            raise ForbiddenError(f"You mark {place} blindly: open your replica instead of everybody's annotations.")
+    if any(_is_blind_at(row, place) for row in concerned):
+        raise ForbiddenError(f"You mark {place} blindly: open your replica instead of everybody's annotations.")
     found = [row for row in concerned if row.replica_set_id is None]
     if any(row.state == "accepted" for row in found):
         raise LockedError(
@@ -109,6 +107,11 @@ def _check_shared_change(session: Session, account: Account, place: Place) -> No
         raise NotYoursError(
             f"Frame {place.frame} is assigned to {', '.join(sorted(names.values()))}. Ask a lead to assign it to you."
         )
+
+
+def _is_blind_at(row: Any, place: Place) -> bool:
+    is_open = row.replica_set_id is not None and row.archived_at is None and row.deleted_at is None
+    return is_open and place in _places(row)
 
 
 def find_hidden(session: Session, account: Account, sequence_id: uuid.UUID, replica: str = "") -> list[HiddenPlaces]:

@@ -123,7 +123,6 @@ def describe_refusal(told: Path, path: Path, options: dict[str, Any]) -> str:
 
 def _write_example(told: Path, options: dict[str, Any], needed: list[Any], presets: list[str]) -> str:
     """A command with everything that is needed, the proposals where there are some."""
-    words = ["handloom", "import", shlex.quote(str(told))]
     values = {name: value for name, value in options.items() if name not in {question.field for question in needed}}
     if presets and any(question.field in ("fx", "cx", "cy", "preset") for question in needed):
         values["preset"] = presets[0]
@@ -132,6 +131,12 @@ def _write_example(told: Path, options: dict[str, Any], needed: list[Any], prese
         values[question.field] = True if question.kind == "boolean" else question.proposal
         if question.proposal is None and question.kind == "choice" and question.choices:
             values[question.field] = question.choices[0].value
+    return " ".join(["handloom", "import", shlex.quote(str(told)), *_write_options(values)])
+
+
+def _write_options(values: dict[str, Any]) -> list[str]:
+    """Options of a command; what is not known is an `N`, and True needs no value."""
+    words = []
     for name, value in values.items():
         words.append(f"--{name.replace('_', '-')}")
         if value is None:
@@ -139,7 +144,7 @@ def _write_example(told: Path, options: dict[str, Any], needed: list[Any], prese
         elif value is not True:
             text = ",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
             words.append(shlex.quote(text))
-    return " ".join(words)
+    return words
 
 
 def holds_scans(path: Path) -> bool:

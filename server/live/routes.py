@@ -38,31 +38,37 @@ async def get_visits(connection: HTTPConnection) -> Visits:
 VisitsDep = Annotated[Visits, Depends(get_visits)]
 
 
+async def get_listener(
+    account: CurrentAccount,
+    replica: ReplicaDep,
+    visit: Annotated[uuid.UUID | None, Query(description="Of the page that listens; it ends with the stream.")] = None,
+    reader: Annotated[uuid.UUID | None, Query(description="The account that the page was opened for.")] = None,
+) -> Listener:
+    """Who listens, who must be the one that the page was opened for."""
+    if reader is not None and reader != account.id:
+        raise OtherAccountError("This page belongs to somebody else. Log in again, or load the page.")
+    return Listener(account, replica, visit)
+
+
 @router.get("/live", response_class=StreamingResponse, responses=EVENT_STREAM)
 def stream_recording(
     sequence_id: uuid.UUID,
     request: Request,
     database: DatabaseDep,
-    account: CurrentAccount,
-    replica: ReplicaDep,
+    listener: Annotated[Listener, Depends(get_listener)],
     watches: Annotated[Watches, Depends(get_watches)],
     visits: VisitsDep,
     after: Annotated[
         str | None, Query(max_length=200, description="As `Last-Event-ID`, or `~` and the time of the labels at hand.")
     ] = None,
-    visit: Annotated[uuid.UUID | None, Query(description="Of the page that listens; it ends with the stream.")] = None,
-    reader: Annotated[uuid.UUID | None, Query(description="The account that the page was opened for.")] = None,
     last_event_id: Annotated[str | None, Header()] = None,
 ) -> StreamingResponse:
     """What others do in a recording, within a second: `event: label` with a hand as it is now, `event: keys` with all
     key frames, `event: work` when an assignment or a comment has changed, `event: people` with who else is here,
     `event: sight` with what is hidden from whoever listens, and `event: job` as in `/jobs/events`."""
-    if reader is not None and reader != account.id:
-        raise OtherAccountError("This page belongs to somebody else. Log in again, or load the page.")
     with database.reading() as session:
         get_sequence(session, sequence_id)
-        find_hidden(session, account, sequence_id, replica)
-    listener = Listener(account, replica, visit)
+        find_hidden(session, listener.account, sequence_id, listener.replica)
     return answer_stream(
         request, database, RecordingFeed.after(last_event_id or after, watches.of(sequence_id), visits, listener)
     )

@@ -12,6 +12,7 @@ from server.compute import ComputeContext
 from server.database.paging import read_cursor, write_cursor
 from server.quality import service
 from server.quality.finding import Finding, Kind
+from server.quality.labels import Label
 from server.quality.schemas import Checked, CheckOut, FlagOut, FlagPage
 from server.quality.service import FlagFinder
 from server.sequences.service import get_sequence
@@ -44,11 +45,7 @@ def make_flag_page(context: ComputeContext, asked: FlagQuestion) -> bytes:
         session.expunge_all()
     finder = context.keep(FlagFinder)
     found = finder.find(context.database, asked.sequence_id, sequence.content_key, sequence.hands, track)
-    shown = [
-        label
-        for label in found.labels
-        if not any(Place(asked.sequence_id, label.camera, label.frame, label.hand) in places for places in asked.hidden)
-    ]
+    shown = [label for label in found.labels if not _is_hidden(label, asked)]
     seen = {label.id for label in shown}
     flags = [flag for flag in found.findings if flag.label.id in seen]
     is_away = {id(flag): (flag.label.id, flag.label.revision, flag.kind) in put_away for flag in flags}
@@ -74,6 +71,11 @@ def make_flag_page(context: ComputeContext, asked: FlagQuestion) -> bytes:
         ),
     )
     return page.model_dump_json().encode()
+
+
+def _is_hidden(label: Label, asked: FlagQuestion) -> bool:
+    place = Place(asked.sequence_id, label.camera, label.frame, label.hand)
+    return any(place in places for places in asked.hidden)
 
 
 def _order(flag: Finding) -> tuple[int, str, str]:

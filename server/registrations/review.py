@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import uuid
 from collections import Counter, defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from datetime import datetime
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
@@ -98,26 +98,11 @@ def measure_agreement(session: Session, collection: str | None) -> ReviewAgreeme
     if collection is not None:
         shared, waiting = (query.where(ScanRow.collection == collection) for query in (shared, waiting))
     rows = session.scalars(shared.where(RegistrationRow.reviewer_count >= 2).order_by(RegistrationRow.id)).all()
-    ids = {row.id for row in rows}
-    blind = select(DecisionRow).where(DecisionRow.is_blind).order_by(DecisionRow.number)
-    standing: dict[uuid.UUID, list[DecisionRow]] = defaultdict(list)
-    held = {entry["id"] for row in rows for entry in row.standing.values()}
-    for made in session.scalars(blind):
-        if made.registration_id in ids and str(made.id) in held:
-            standing[made.registration_id].append(made)
-    tables: dict[tuple[uuid.UUID, uuid.UUID], Table] = defaultdict(Counter)
-    disputed = []
-    for id_, made in standing.items():
-        made = sorted(made, key=lambda one: str(one.account_id))
-        for a, first in enumerate(made):
-            for second in made[a + 1 :]:
-                tables[first.account_id, second.account_id][first.decision, second.decision] += 1
-        if len({one.decision for one in made}) > 1:
-            disputed.append(id_)
+    standing = _find_standing(session, rows)
+    tables = _count_pairs(standing.values())
+    disputed = [id_ for id_, made in standing.items() if len({one.decision for one in made}) > 1]
     names = find_names(session, (id_ for pair in tables for id_ in pair))
-    together: Table = Counter()
-    for table in tables.values():
-        together = Counter(together) + Counter(table)
+    together: Table = sum((Counter(table) for table in tables.values()), Counter())
     both = sum(together.values())
     return ReviewAgreement(
         both=both,
@@ -127,6 +112,26 @@ def measure_agreement(session: Session, collection: str | None) -> ReviewAgreeme
         waiting=session.scalar(waiting) or 0,
         disputed=disputed[:MOST_DISPUTED],
     )
+
+
+def _find_standing(session: Session, rows: Sequence[RegistrationRow]) -> dict[uuid.UUID, list[DecisionRow]]:
+    """The blind decisions about each registration that nobody took back, by the ids of their authors."""
+    ids = {row.id for row in rows}
+    held = {entry["id"] for row in rows for entry in row.standing.values()}
+    standing: dict[uuid.UUID, list[DecisionRow]] = defaultdict(list)
+    for made in session.scalars(select(DecisionRow).where(DecisionRow.is_blind).order_by(DecisionRow.number)):
+        if made.registration_id in ids and str(made.id) in held:
+            standing[made.registration_id].append(made)
+    return {id_: sorted(made, key=lambda one: str(one.account_id)) for id_, made in standing.items()}
+
+
+def _count_pairs(standing: Iterable[list[DecisionRow]]) -> dict[tuple[uuid.UUID, uuid.UUID], Table]:
+    """For each two people, how often one decided this and the other that about the same registration."""
+    tables: dict[tuple[uuid.UUID, uuid.UUID], Table] = defaultdict(Counter)
+    for made in standing:
+        for first, second in combinations(made, 2):
+            tables[first.account_id, second.account_id][first.decision, second.decision] += 1
+    return tables
 
 
 def _describe_pair(pair: tuple[uuid.UUID, uuid.UUID], table: Table, names: dict[uuid.UUID | None, str]) -> ReviewerPair:

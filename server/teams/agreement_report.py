@@ -9,9 +9,11 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import datetime
 from html import escape
+from itertools import product
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from pydantic import BaseModel, Field
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -26,6 +28,9 @@ from server.teams.agreement import Agreement, measure_agreement
 from server.teams.schemas import Hand
 from tracker import HAND_JOINTS, Annotation
 from tracker.capture import count_origins, describe_origin, find_counted, find_origin, say_left_out
+
+Place = tuple[int, str, str]
+"""A frame, a camera and a hand."""
 
 WORST_PLACES = 50
 T16_STD_PX = 1.46
@@ -115,18 +120,8 @@ def make_report(session: Session, replicas: ReplicaSetRow, source: Sequence[Sour
     rows = session.scalars(query.order_by(AssignmentRow.created_at, AssignmentRow.id)).all()
     names = find_names(session, [row.account_id for row in rows])
     done = [row for row in rows if row.state in ("submitted", "accepted")]
-    places = [(f, c, h) for f in replicas.frames for c in replicas.cameras for h in replicas.hands]
-    number = {place: index for index, place in enumerate(places)}
-    points = np.zeros((len(done), len(places), 21, 3))
-    is_marked = np.zeros(points.shape[:2], dtype=bool)
-    is_counted = np.ones(points.shape[:3], dtype=bool)
-    items: list[Annotation] = []
-    for person, row in enumerate(done):
-        for item in load_annotations(session, row.sequence_id, str(row.id)).items:
-            place = number[item.frame, item.camera, item.hand]
-            points[person, place], is_marked[person, place] = item.points, True
-            is_counted[person, place] = find_counted(item.sources, source)
-            items.append(item)
+    places = list(product(replicas.frames, replicas.cameras, replicas.hands))
+    points, is_marked, is_counted, items = _load_joints(session, done, places, source)
     sources = _count_sources(items, source)
     sequence = session.get(SequenceRow, replicas.sequence_id)
     assert sequence is not None, "a foreign key"
@@ -163,6 +158,29 @@ def make_report(session: Session, replicas: ReplicaSetRow, source: Sequence[Sour
     )
 
 
+def _load_joints(
+    session: Session, rows: Sequence[AssignmentRow], places: Sequence[Place], source: Sequence[SourceChoice]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_], npt.NDArray[np.bool_], list[Annotation]]:
+    """What each person marked at each place.
+
+    Returns:
+        Points (A, P, 21, 3) of A people at P places, as annotations have them; whether a person marked a place (A, P);
+        whether a joint counts (A, P, 21); and all annotations.
+    """
+    number = {place: index for index, place in enumerate(places)}
+    points = np.zeros((len(rows), len(places), 21, 3))
+    is_marked = np.zeros(points.shape[:2], dtype=bool)
+    is_counted = np.ones(points.shape[:3], dtype=bool)
+    items: list[Annotation] = []
+    for person, row in enumerate(rows):
+        for item in load_annotations(session, row.sequence_id, str(row.id)).items:
+            place = number[item.frame, item.camera, item.hand]
+            points[person, place], is_marked[person, place] = item.points, True
+            is_counted[person, place] = find_counted(item.sources, source)
+            items.append(item)
+    return points, is_marked, is_counted, items
+
+
 def _count_sources(items: Sequence[Annotation], source: Sequence[SourceChoice]) -> list[JointsOfSource]:
     """Placed joints of all annotators by where they came from: those that count first."""
     counted = [find_counted(item.sources, source) for item in items]
@@ -195,7 +213,7 @@ def _describe_person(found: Agreement, person: int, row: AssignmentRow, name: st
     }
 
 
-def _find_worst(found: Agreement, places: list[tuple[int, str, str]]) -> list[dict[str, Any]]:
+def _find_worst(found: Agreement, places: Sequence[Place]) -> list[dict[str, Any]]:
     measured = [
         (spread, place) for spread, place in zip(found.places, places, strict=True) if spread.std_px is not None
     ]

@@ -86,7 +86,8 @@ def _count_hands(session: Session, rows: Sequence[AssignmentRow]) -> dict[uuid.U
 
 
 def _measure(row: AssignmentRow, replicas: ReplicaSetRow | None, is_done: dict[int, bool]) -> Progress:
+    """Goes through the frames that were begun, and through others only up to the first that is missing."""
     wanted = range(row.frame_first, row.frame_last + 1) if replicas is None else sorted(replicas.frames)
-    missing = [frame for frame in wanted if not is_done.get(frame, False)]
-    partial = sum(frame in is_done for frame in missing)
-    return Progress(len(wanted), len(wanted) - len(missing), partial, missing[0] if missing else None)
+    begun = [done for frame, done in is_done.items() if replicas is None or frame in replicas.frames]
+    next_frame = next((frame for frame in wanted if not is_done.get(frame, False)), None)
+    return Progress(len(wanted), sum(begun), len(begun) - sum(begun), next_frame)

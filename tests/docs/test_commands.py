@@ -16,11 +16,16 @@ HANDLOOM = re.compile(r"^(?:[A-Z_]+=\S+ )*(?:\S*/)?handloom (?=[a-z])")
 PYTHON = re.compile(r"^(?:[A-Z_]+=\S+ )*(?:\S*/)?python3? (-m )?((?:benchmarks|scripts)[\w./]*)")
 
 
+PLACEHOLDERS = {"N": "2", "M": "0.5", "MM": "0.5", "X": "0.5", "A:B": "0:10", "WxH": "320x240"}
+"""What a page writes for numbers, and a number of that kind."""
+
+
 def words_of(line: str) -> list[str]:
     """The arguments of a command: what may be left out is given, of alternatives the first, dots left out."""
     plain = re.sub(r"(?<=\s)\[|\](?=[\s\]]|$)", "", line)
     words = shlex.split(plain, comments=True)
-    return [word.split("|")[0] for word in words if word != "..."]
+    first = [word.split("|")[0] for word in words if word != "..."]
+    return [PLACEHOLDERS.get(word, word) for word in first]
 
 
 def commands_of(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:

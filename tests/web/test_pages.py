@@ -151,7 +151,7 @@ def test_every_page_fits_a_phone_and_a_narrow_window(studio, track, open_page, s
 
 # Names and figures of which no word is left, because something else in their line takes the place.
 CUT_WORDS = """() => [...document.querySelectorAll("main :is(.one-line, .mantine-Badge-label)")]
-  .filter((element) => element.clientWidth > 0 && element.clientWidth < 48 && element.scrollWidth > element.clientWidth + 1)
+  .filter(({ clientWidth: seen, scrollWidth: whole }) => seen > 0 && seen < 48 && whole > seen + 1)
   .map((element) => element.innerText)"""
 HIGH_ROWS = """() => [...document.querySelectorAll("main tbody tr")]
   .map((row) => [row.innerText, row.getBoundingClientRect().height])

@@ -8,11 +8,11 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from tracker.bodies.body_fit import Anchor
+from tracker.bodies.body_fit import Anchor, BodyFit
 from tracker.bodies.body_registration import BodyRegistration
-from tracker.bodies.body_state import BodyState, with_hands
+from tracker.bodies.body_state import NUM_TURNED, BodyState, with_hands
 from tracker.bodies.hand_mixture import HandMixture, default_mixture
-from tracker.bodies.register_body import BodyOptions, Clock, Registrar, points_near_hands
+from tracker.bodies.register_body import BodyOptions, Clock, Registrar, arrange, points_near_hands
 from tracker.capture.scan import Scan
 from tracker.model.blend_model import BlendModel
 from tracker.registration.free_fit import FreeSettings
@@ -55,6 +55,10 @@ FOLLOW_STAGES = BodyOptions(
 """With a person's own template there is less to find out than in a single scan."""
 
 
+BODY_STAGE = (2500, FitSettings(40.0, 6, pose_weight=3.0, shape_weight=10.0, tolerance=5e-3))
+"""Number of points and settings with which the body is followed before the hands."""
+
+
 def choose_mixture(prior: str) -> HandMixture | None:
     """What the hands are expected to do."""
     mixture = default_mixture()
@@ -72,6 +76,10 @@ class BodyFollower:
     def __init__(self, model: BlendModel, options: FollowOptions | None = None) -> None:
         self.options = options or FollowOptions()
         self.registrar = Registrar(model, FOLLOW_STAGES, choose_mixture(self.options.prior))
+        coarse = self.registrar.coarse
+        columns = np.arange(NUM_TURNED)
+        self.body = BodyFit(model, coarse.prior, coarse.mixture, coarse.space.size, columns=columns)
+        """Without the hands' parameters: the body is followed first, so that it is known where hands should be."""
 
     def begin(self, scan: Scan, start: BodyState | None = None) -> BodyRegistration:
         """The first scan; without a start the body is searched."""
@@ -80,8 +88,10 @@ class BodyFollower:
     def follow(self, scan: Scan, before: BodyRegistration) -> BodyRegistration:
         """The scan behind a registered one."""
         registrar, clock = self.registrar, Clock()
+        with clock.measure("body"):
+            state = self._follow_body(scan, before)
         with clock.measure("hands"):
-            state, shown = self._find_hands(scan, before)
+            state, shown = self._find_hands(scan, state, before)
         with clock.measure("model"):
             points = registrar.points_for(scan, state)
             anchor = self._anchor(before, shown)
@@ -100,14 +110,24 @@ class BodyFollower:
         with clock.measure("judge"):
             return registrar.judge(scan, surface, shown, clock)
 
-    def _find_hands(self, scan: Scan, before: BodyRegistration) -> tuple[BodyState, tuple[bool, bool]]:
+    def _follow_body(self, scan: Scan, before: BodyRegistration) -> BodyState:
+        """The state of the frame before with the body moved to where it is now, hands held as they were."""
+        space = self.registrar.fine.space
+        few = with_hands(before.state, self.body.space, before.state.hands)
+        count, settings = BODY_STAGE
+        moved = self.body.fit(few, arrange(scan, None, count), settings).state
+        assert isinstance(moved, BodyState)
+        return with_hands(moved, space, before.state.hands)
+
+    def _find_hands(
+        self, scan: Scan, state: BodyState, before: BodyRegistration
+    ) -> tuple[BodyState, tuple[bool, bool]]:
         """Where to begin, and which hands are shown; hands that have come back are searched."""
-        registrar = self.registrar
-        shown = registrar.find_shown(before.state, scan)
+        shown = self.registrar.find_shown(state, scan)
         back = tuple(k for k in range(2) if shown[k] and not before.are_shown[k])
         if not back:
-            return before.state, shown
-        state, found = self._search(scan, before.state, back)
+            return state, shown
+        state, found = self._search(scan, state, back)
         return state, (shown[0] and found[0], shown[1] and found[1])
 
     def _search(self, scan: Scan, state: BodyState, sides: tuple[int, ...]) -> tuple[BodyState, tuple[bool, bool]]:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.fitting.objective import Objective
 from tracker.fitting.ray_agreement import ENOUGH, find_believed
+from tracker.fitting.view_jumps import find_jumps
 from tracker.landmarks import DetectedHand
 from tracker.model.joints import HAND_JOINTS
 from tracker.model.scene import PosedScene, Scene
@@ -80,6 +81,18 @@ class ViewHands:
             for view, hands in enumerate(self.hands)
         ]
         return replace(self, hands=tuple(kept))
+
+    def without_jumps(self, posed: PosedScene, names: tuple[str, ...]) -> ViewHands:
+        """The same without the joints that are told far from where a scene has them, and by one view alone."""
+        views = [dict(hands) for hands in self.hands]
+        for model, name in enumerate(names):
+            if self.count(name):
+                jumps = find_jumps(posed.landmarks(model), self.cameras, [hands.get(name) for hands in views])
+                for hands, own in zip(views, jumps, strict=True):
+                    if own.any():
+                        points = np.where(own[:, None], np.nan, hands[name].points)
+                        hands[name] = replace(hands[name], points=points)
+        return replace(self, hands=tuple(views))
 
     def rays(self, scene: Scene, model: int, name: str, reach: float = REACH) -> MarkedJoints:
         """The viewing rays of one hand's joints, in all views together, without those that most others contradict.

@@ -17,12 +17,15 @@ from tracker.registration.model_fit import MM, ModelFit, saturated
 from tracker.registration.scan_points import ScanPoints
 from tracker.registration.surface_search import Matches
 from tracker.solver.block_cholesky import factorize, find_block, find_block_pattern, solve_lower, solve_upper
-from tracker.solver.dogleg import ENOUGH, choose_dogleg_step, choose_radius
+from tracker.solver.minimize import TrustRegion, minimize
 
 Array = npt.NDArray[np.float64]
 
 VERTEX_SCALE = 0.01
 """m; what counts as much as 0.3 rad of a joint in the trust region."""
+
+FIRST_RADIUS, LEAST_RADIUS = 20.0, 1e-2
+"""Of the trust region."""
 
 
 @dataclass(frozen=True)
@@ -98,34 +101,15 @@ class FreeFit:
 
     def fit(self, start: FreeSurface, scan: ScanPoints, settings: FreeSettings) -> FreeSurface:
         """The best surface that `settings.iterations` dogleg steps find."""
-        here = self.evaluate(start.vertices, start.state, scan, settings, start.matches)
-        radius = 20.0
-        system: _System | None = None
-        for _ in range(settings.iterations):
-            if system is None:
-                try:
-                    system = self.linearize(here, settings)
-                except (SolveError, np.linalg.LinAlgError):
-                    break
-            longer = float(np.linalg.norm(system.newton)) > radius
-            curvature = system.curvature(system.gradient) if longer else 0.0
-            step = choose_dogleg_step(system.gradient, system.newton, curvature, radius)
-            promised = -float(2.0 * (system.gradient @ step)) - system.curvature(step)
-            if not np.isfinite(promised) or promised <= 0.2 * settings.tolerance * here.cost:
-                break
-            turn, move = system.split(step)
+
+        def move(here: FreeSurface, step: Array) -> FreeSurface:
+            turn, moved = self.split(step)
             state = self.fit_model.move(here.state, turn)
-            there = self.evaluate(here.vertices + move, state, scan, settings, here.matches)
-            decrease = here.cost - there.cost
-            radius = choose_radius(radius, float(np.linalg.norm(step)), decrease, promised)
-            if decrease > ENOUGH * promised:
-                is_done = decrease < settings.tolerance * here.cost
-                here, system = there, None
-                if is_done:
-                    break
-            elif radius < 1e-2:
-                break
-        return here
+            return self.evaluate(here.vertices + moved, state, scan, settings, here.matches)
+
+        region = TrustRegion(FIRST_RADIUS, LEAST_RADIUS, settings.iterations, settings.tolerance)
+        here = self.evaluate(start.vertices, start.state, scan, settings, start.matches)
+        return minimize(here, lambda surface: self.linearize(surface, settings), move, region)
 
     def evaluate(
         self, vertices: Array, state: HandState, scan: ScanPoints, settings: FreeSettings, seeds: Matches | None
@@ -149,8 +133,20 @@ class FreeFit:
         return FreeSurface(vertices, state, model_vertices, matches, weights, cost)
 
     def linearize(self, here: FreeSurface, settings: FreeSettings) -> _System:
-        """The normal equations at a surface, solved."""
-        return _System(self, here, settings)
+        """The normal equations at a surface, solved.
+
+        Raises:
+            SolveError: They are not positive definite.
+        """
+        try:
+            return _System(self, here, settings)
+        except np.linalg.LinAlgError as error:
+            raise SolveError("The model's equations are not positive definite.") from error
+
+    def split(self, step: Array) -> tuple[Array, Array]:
+        """Step of the model (P,) and of the vertices (V, 3), no longer scaled."""
+        scales = self.fit_model.scales
+        return step[: len(scales)] * scales, step[len(scales) :].reshape(-1, 3) * VERTEX_SCALE
 
 
 class _System:
@@ -221,11 +217,6 @@ class _System:
             + self.settings.coupling * float(np.einsum("ed,ed->", stretch, stretch))
             + float(turn @ self.prior @ turn)
         )
-
-    def split(self, step: Array) -> tuple[Array, Array]:
-        """Step of the model (P,) and of the vertices (V, 3), no longer scaled."""
-        size = self.J.shape[2]
-        return step[:size] * self.free.fit_model.scales, step[size:].reshape(-1, 3) * VERTEX_SCALE
 
 
 @njit(cache=True, nogil=True)

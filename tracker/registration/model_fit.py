@@ -7,7 +7,6 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import cho_factor, cho_solve
 
 from tracker.model.blend_model import BlendModel
 from tracker.registration.equations import add_model_rows, weigh_robustly
@@ -16,12 +15,15 @@ from tracker.registration.pose_prior import PosePrior
 from tracker.registration.scan_points import ScanPoints
 from tracker.registration.surface_search import MIN_COSINE, Matches, SurfaceSearch
 from tracker.registration.vertex_normals import find_unit_normals
-from tracker.solver.dogleg import ENOUGH, choose_dogleg_step, choose_radius
+from tracker.solver.minimize import DenseSystem, TrustRegion, minimize
 
 Array = npt.NDArray[np.float64]
 
 MM = 1e3
 """The objective counts in mm."""
+
+FIRST_RADIUS, LEAST_RADIUS = 3.0, 1e-3
+"""Of the trust region, in parameters scaled to 0.3 rad of a joint."""
 
 
 @dataclass(frozen=True)
@@ -95,35 +97,17 @@ class ModelFit:
 
     def fit(self, state: HandState, scan: ScanPoints, settings: FitSettings, seeds=None) -> Evaluation:
         """The best state that `settings.iterations` dogleg steps find."""
-        here = self.evaluate(state, scan, settings, seeds)
-        radius = 3.0
-        step_parts: tuple[Array, Array, Array] | None = None
         scales = self.scales
-        for _ in range(settings.iterations):
-            if step_parts is None:
-                JtJ, Jtr = self.linearize(here, scan, settings)
-                H, g = JtJ * scales[:, None] * scales, Jtr * scales
-                try:
-                    newton = -cho_solve(cho_factor(H, lower=True, check_finite=False), g, check_finite=False)
-                except np.linalg.LinAlgError:
-                    break
-                step_parts = (H, g, newton)
-            H, g, newton = step_parts
-            step = choose_dogleg_step(g, newton, float(g @ H @ g), radius)
-            promised = -float(2.0 * (g @ step) + step @ H @ step)
-            if not np.isfinite(promised) or promised <= 0.2 * settings.tolerance * here.cost:
-                break
-            there = self.evaluate(self.move(here.state, step * scales), scan, settings, here.matches.faces)
-            decrease = here.cost - there.cost
-            radius = choose_radius(radius, float(np.linalg.norm(step)), decrease, promised)
-            if decrease > ENOUGH * promised:
-                is_done = decrease < settings.tolerance * here.cost
-                here, step_parts = there, None
-                if is_done:
-                    break
-            elif radius < 1e-3:
-                break
-        return here
+
+        def linearize(here: Evaluation) -> DenseSystem:
+            JtJ, Jtr = self.linearize(here, scan, settings)
+            return DenseSystem(JtJ * scales[:, None] * scales, Jtr * scales)
+
+        def move(here: Evaluation, step: Array) -> Evaluation:
+            return self.evaluate(self.move(here.state, step * scales), scan, settings, here.matches.faces)
+
+        region = TrustRegion(FIRST_RADIUS, LEAST_RADIUS, settings.iterations, settings.tolerance)
+        return minimize(self.evaluate(state, scan, settings, seeds), linearize, move, region)
 
     def evaluate(self, state: HandState, scan: ScanPoints, settings: FitSettings, seeds=None) -> Evaluation:
         """Matches and cost at a state."""

@@ -13,6 +13,7 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame import CameraFrame, Frame
 from tracker.detection.image_hands import name_hands
 from tracker.fitting.attempt import UNSETTLED
+from tracker.fitting.choose_views import choose_views
 from tracker.fitting.depth_view import DepthView
 from tracker.fitting.frame_fit import Fit, FitOptions, draw, fit_frame
 from tracker.fitting.map_views import map_views
@@ -23,6 +24,7 @@ from tracker.fitting.setup import TrackSetup
 from tracker.fitting.sighting import find_hand_pixels
 from tracker.fitting.view_contours import ViewContours
 from tracker.fitting.view_hands import FOLLOWS, HOLDS, REACH, ViewHands
+from tracker.fitting.view_hold import choose_hold
 from tracker.landmarks import DetectedHand, HandDetector, default_hand_detector
 from tracker.model.scene import PosedScene
 from tracker.observation import observe
@@ -38,23 +40,7 @@ Array = npt.NDArray[np.float64]
 FAR_REACH = 4.0 * REACH
 """mm; the first iterations of a frame hear joints from farther off, where a hand moved fast."""
 
-MANY = 4
-"""Where so many views or more are tracked in, contours hold a hand better than single joints do, and the constants
-below count. They were chosen on rendered views (benchmarks/results/rendered_views.md); the real recordings at hand have
-two or three views, in which nothing changes."""
-
-MANY_REACH = 5.0
-"""mm; the reach of joints in the iterations with contours."""
-
-MANY_CONTOUR_ITERATIONS = 8
-
-MANY_REGULARIZATION = 0.1
-"""Weight of the pull to the frame before: a hidden finger that few joints tell of must not run away."""
-
 ALL_TURNS = (0, 1, 2, 3)
-
-CONTOUR_ITERATIONS = 4
-"""Iterations with contours: they are drawn anew in each, and the joints have brought them near."""
 
 BESIDE_JOINTS = 0.2
 """Share of their weights that the terms of depth have beside detected joints. Of 0.2, 1 and 10 this one follows
@@ -67,7 +53,8 @@ MOST = 11
 def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene, gone: set[int]) -> ViewHands:
     """The hands in all colour images of a moment, looked for where the pose has them, else in whole images.
 
-    While two views see every hand, one view a frame is looked through for what it does not see, in turn.
+    While two views see every hand, one view a frame is looked through for what it does not see, in turn. Of many views
+    only half look at all (`choose_views`), while none is gone.
 
     Args:
         setup: Models and options.
@@ -91,9 +78,18 @@ def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene
         idle.append(detector)
         return found
 
-    seen = map_views(follow, range(len(looked_at)), threads)
+    turn = range(len(looked_at)) if gone or not looked_at else choose_views(len(looked_at), looked_at[0].frame.index)
+    seen: list[dict[str, DetectedHand]] = [{} for _ in looked_at]
+    for view, hands in zip(turn, map_views(follow, turn, threads), strict=True):
+        seen[view] = hands
+    if any(sum(name in hands for hands in seen) < min(2, len(seen)) for name in names):
+        others = sorted(set(range(len(looked_at))) - set(turn))
+        for view, hands in zip(others, map_views(follow, others, threads), strict=True):
+            seen[view] = hands
+        turn = range(len(looked_at))
     detector = default_hand_detector()
-    for view, frame in enumerate(view.frame for view in looked_at):
+    for view in turn:
+        frame = looked_at[view].frame
         is_scarce = any(sum(name in hands for hands in seen) < min(2, len(seen)) for name in names)
         if len(seen[view]) < len(names) and (is_scarce or frame.index % len(seen) == view):
             turns = ALL_TURNS if gone else (0, 1 + frame.index % 3)
@@ -110,9 +106,9 @@ def fit_views(
     add, at last all contours in colour images.
     """
     scene, names = setup.scene, setup.names
-    has_many = len(seen.cameras) >= MANY
-    if has_many:
-        objective = replace(objective, regularization=Regularization(weight=MANY_REGULARIZATION))
+    hold = choose_hold(seen)
+    seen = seen.without_jumps(scene.pose_at(pose), names)
+    objective = replace(objective, regularization=Regularization(weight=hold.regularization))
     far = seen.add_to(replace(objective, terms={}), scene, names, FAR_REACH)
     first = fit_frame(scene, None, pose, pose, far, FitOptions(iterations=max(1, iterations // 2), fine=0))
     started = perf_counter()
@@ -122,10 +118,10 @@ def fit_views(
     held = near if objects is None else replace(near, terms=near.terms | {"objects": objects})
     second = fit_frame(scene, None, first.pose, pose, held, FitOptions(iterations=iterations))
     started = perf_counter()
-    last = seen.add_to(near, scene, names, MANY_REACH) if has_many else near
+    last = seen.add_to(near, scene, names, hold.reach)
     drawn = add_contours(last, scene.pose_at(second.pose), views, setup.options.threads)
     stages["finding edges"] = perf_counter() - started
-    count = FitOptions(iterations=MANY_CONTOUR_ITERATIONS if has_many else CONTOUR_ITERATIONS)
+    count = FitOptions(iterations=hold.iterations)
     third = fit_frame(scene, None, second.pose, pose, drawn, count)
     settled = leave_to_depth(drawn, scene.pose_at(third.pose))
     if settled is not None:

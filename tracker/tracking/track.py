@@ -186,7 +186,7 @@ def _compare_views(sequence: Sequence, setup: TrackSetup, chunk: TrackChunk, joi
     places = [setup.joint_names.index(f"{name}/{joint}") for name in setup.hand_names for joint in HAND_JOINTS]
     joints = joints_3d[:, places].reshape(len(joints_3d), len(setup.hand_names), len(HAND_JOINTS), 3)
     lost = chunk.hand_status == STATUSES.index("lost")
-    return measure_views([cameras[number] for number in numbers], chunk.seen[:, numbers], joints, lost)
+    return measure_views([cameras[number] for number in numbers], chunk.frame, chunk.seen[:, numbers], joints, lost)
 
 
 def _median(values: Array) -> float | None:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.capture.triangulation import triangulate
+from tracker.fitting.choose_views import choose_views
 from tracker.fitting.view_hands import REACH
 from tracker.geometry import se3
 from tracker.terms.normal_equations import MILLIMETRES
@@ -39,7 +40,7 @@ class ViewErrors:
             this one does not see there; NaN where there are none. Of three cameras side by side none is outvoted that
             is wrong along the line they stand on: each two of them agree somewhere.
         weight: (T, C, H) mean weight of the camera's viewing rays at the fit, 0 to 1 (`MarkedJoints`); 0 where it did
-            not see the hand, NaN of lost hands.
+            not see the hand, NaN of lost hands and where it was not its turn to look (`choose_views`).
     """
 
     camera_ids: npt.NDArray[np.str_]
@@ -66,7 +67,7 @@ class ViewErrors:
         said = []
         sees = np.asarray((self.weight > 0.0).any(axis=2))
         for number, camera in enumerate(self.camera_ids):
-            by_others = np.delete(sees, number, axis=1).any(axis=1)
+            by_others = np.delete(sees, number, axis=1).any(axis=1) & np.isfinite(self.weight[:, number]).any(axis=1)
             own = sees[by_others, number]
             outvoted = self.outvoted[:, number][np.isfinite(self.outvoted[:, number])]
             if own.size and own.mean() < RARELY:
@@ -93,18 +94,26 @@ class ViewErrors:
 
 
 def measure_views(
-    cameras: Sequence[Camera], seen: npt.NDArray[np.float32], joints: Array, lost: npt.NDArray[np.bool_]
+    cameras: Sequence[Camera],
+    frames: npt.NDArray[np.int64],
+    seen: npt.NDArray[np.float32],
+    joints: Array,
+    lost: npt.NDArray[np.bool_],
 ) -> ViewErrors:
     """Compare what the detector saw with the fit and with the other cameras.
 
     Args:
         cameras: C of them.
+        frames: (T,) their numbers.
         seen: (T, C, H, 21, 2) px as recorded; NaN where nothing was seen.
         joints: (T, H, 21, 3) of the fit, world, m.
         lost: (T, H) whether a hand was lost.
     """
     T, C, H = seen.shape[:3]
     fit, left_out, outvoted, weight = (np.full((T, C, H), np.nan) for _ in range(4))
+    is_resting = np.ones((T, C), dtype=np.bool_)
+    for row, frame in enumerate(frames):
+        is_resting[row, choose_views(C, int(frame))] = False
     for hand in range(H):
         marks = seen[:, :, hand].astype(np.float64)  # (T, C, 21, 2)
         found = triangulate(cameras, marks.transpose(0, 2, 1, 3).reshape(-1, C, 2))
@@ -124,6 +133,7 @@ def measure_views(
             away = np.linalg.norm(np.cross(here, rays), axis=1) / np.linalg.norm(rays, axis=1)
             weights = 1.0 / (1.0 + (MILLIMETRES * away / REACH) ** 2) ** 2
             weight[:, number, hand] = np.nan_to_num(weights).reshape(T, 21).mean(axis=1)
+        weight[:, :, hand][is_resting & ~np.isfinite(marks).any(axis=(2, 3))] = np.nan
         fit[lost[:, hand], :, hand] = weight[lost[:, hand], :, hand] = np.nan
     return ViewErrors(np.array([camera.id for camera in cameras], dtype=np.str_), fit, left_out, outvoted, weight)
 

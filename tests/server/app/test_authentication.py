@@ -33,7 +33,7 @@ from tests.server.conftest import BASE_URL
 __all__ = ["lab"]
 
 NONE = "00000000-0000-4000-8000-000000000009"
-SECURITY = Path(__file__).parents[3] / "docs" / "security.md"
+SECURITY = Path(__file__).parents[3] / "docs" / "operating.md"
 REQUESTS = Path(__file__).parents[3] / "web" / "src" / "api" / "requests.md"
 
 

@@ -1,4 +1,4 @@
-"""Every threat that docs/security.md lists names tests, and those tests are there."""
+"""Every threat that docs/operating.md lists names tests, and those tests are there."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 TESTS = Path(__file__).parents[2]
-PAGE = TESTS.parent / "docs" / "security.md"
+PAGE = TESTS.parent / "docs" / "operating.md"
 
 
 def test_every_threat_has_tests_that_are_there() -> None:

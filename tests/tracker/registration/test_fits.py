@@ -103,7 +103,7 @@ def test_the_free_gradient_is_that_of_the_cost_with_the_search_repeated(fit, nea
         step = rng.normal(size=len(system.gradient))
         costs = []
         for sign in (1.0, -1.0):
-            turn, move = system.split(sign * 1e-6 * step)
+            turn, move = free.split(sign * 1e-6 * step)
             costs.append(free.evaluate(vertices + move, state.retract(fit.model, turn), points, settings, None).cost)
         assert (costs[0] - costs[1]) / 2e-6 == pytest.approx(2.0 * system.gradient @ step, rel=3e-3, abs=0.1)
 

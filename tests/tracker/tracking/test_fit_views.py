@@ -16,6 +16,7 @@ from tracker.fitting.objective import Objective
 from tracker.fitting.options import TrackOptions
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.view_hands import ViewHands
+from tracker.fitting.view_hold import MANY
 from tracker.geometry import se3
 from tracker.landmarks import DetectedHand
 from tracker.model.default_hand import default_hand
@@ -25,7 +26,6 @@ from tracker.rendering import render_view
 from tracker.terms.marked_joints import MarkedJoints
 from tracker.tracking.fit_views import (
     BESIDE_JOINTS,
-    MANY,
     compose_near,
     fit_views,
     judge_hand,

@@ -203,3 +203,19 @@ def test_a_camera_that_moved_since_it_was_calibrated_is_named(views, tmp_path):
     _, chunk = track_frames(sequence, setup, start, range(4))
     (doubt,) = join_chunks(sequence, setup, [chunk]).summary()["doubts"]
     assert doubt.startswith("cam2 sees ")
+
+
+def test_of_six_views_all_look_for_a_hand_and_every_other_one_follows_it(tmp_path):
+    performance = perform({"right": default_hand("right")}, "wave", 60, 6, (320, 240))
+    sequence = write_recording(performance, tmp_path / "hand", RecordingOptions(range(4)), save_npz_model)
+    ids = ",".join(camera.id for camera in sequence.cameras)
+    setup, state = start_tracking(sequence, TrackOptions(calibrate=False, cameras=ids, use_depth=False))
+    _, chunk = track_frames(sequence, setup, state, range(4))
+    looks = np.isfinite(chunk.seen[:, :, 0]).all(axis=(2, 3))
+    assert looks[0, :2].all()  # not only every other one
+    for frame in range(1, 4):
+        assert not looks[frame, 1 - frame % 2 :: 2].any()
+        assert looks[frame].sum() >= 2
+    track = join_chunks(sequence, setup, [chunk])
+    assert "lost" not in track.status
+    assert track.summary()["doubts"] == []

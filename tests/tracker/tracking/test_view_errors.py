@@ -28,7 +28,7 @@ def measure(marks: np.ndarray, joints: np.ndarray, lost: int | None = None) -> V
     is_lost = np.zeros((FRAMES, 1), dtype=np.bool_)
     if lost is not None:
         is_lost[lost] = True
-    return measure_views(CAMERAS, marks, np.tile(joints, (FRAMES, 1, 1, 1)), is_lost)
+    return measure_views(CAMERAS, np.arange(FRAMES), marks, np.tile(joints, (FRAMES, 1, 1, 1)), is_lost)
 
 
 def test_a_camera_that_moved_is_far_from_what_the_others_see_and_its_rays_weigh_least(marks, joints):
@@ -74,3 +74,19 @@ def test_errors_come_back_from_their_file(marks, joints, tmp_path):
     (tmp_path / "views.npz").write_bytes(b"no archive")
     with pytest.raises(TrackingError):
         ViewErrors.load(tmp_path / "views.npz")
+
+
+def test_a_camera_that_looks_every_other_frame_weighs_as_much_and_raises_no_doubt(joints):
+    cameras = [look_from(angle) for angle in (-1.2, -0.6, 0.0, 0.6, 1.2, 1.8)]
+    seen = np.tile(np.stack([camera.project(joints) for camera in cameras])[None, :, None], (FRAMES, 1, 1, 1, 1))
+    for frame in range(FRAMES):
+        seen[frame, 1 - frame % 2 :: 2] = np.nan
+    fits, never_lost = np.tile(joints, (FRAMES, 1, 1, 1)), np.zeros((FRAMES, 1), dtype=np.bool_)
+    errors = measure_views(cameras, np.arange(FRAMES), seen.astype(np.float32), fits, never_lost)
+    assert np.isnan(errors.weight[0, 1::2, 0]).all() and np.isnan(errors.weight[1, ::2, 0]).all()
+    assert all(about["weight"] == pytest.approx(1.0) for about in errors.summary().values())
+    assert errors.doubts() == ()
+    seen[:, 3] = np.nan
+    blind = measure_views(cameras, np.arange(FRAMES), seen.astype(np.float32), fits, never_lost)
+    assert blind.doubts()[0].startswith("cam")
+    assert "saw a hand in 0 of 3 frames" in blind.doubts()[0]

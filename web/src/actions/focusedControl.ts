@@ -8,7 +8,7 @@ export interface FocusedControl {
   readonly isContentEditable: boolean;
   readonly type?: string;
   readonly readOnly?: boolean;
-  getAttribute(name: string): string | null;
+  getAttribute: (name: string) => string | null;
 }
 
 export function takesText(control: FocusedControl): boolean {

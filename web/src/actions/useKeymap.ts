@@ -13,9 +13,12 @@ function isOnPicture(target: EventTarget | null): boolean {
 }
 
 /** Answer the keys of a scope. A key without a handler here is left to whoever else listens. */
-export function useKeymap(scope: Scope, handlers: Handlers): void {
-  const current = useRef(handlers);
-  current.current = handlers;
+export const useKeymap = (scope: Scope, handlers: Handlers): void => useKeymapWith(scope, (id) => handlers[id]);
+
+/** As `useKeymap`, where what answers is looked up at each press. */
+export function useKeymapWith(scope: Scope, handlerOf: (id: string) => Handlers[string] | undefined): void {
+  const current = useRef(handlerOf);
+  current.current = handlerOf;
   const map = useCurrentKeymap();
   useEffect(() => {
     const bindings = bindingsFor(scope, map);
@@ -26,7 +29,7 @@ export function useKeymap(scope: Scope, handlers: Handlers): void {
       if (isTyping(event.target) && !(chord.startsWith("Ctrl+") && isHarmless(id))) return;
       if (document.querySelector('[role="dialog"][aria-modal="true"]')) return;
       if (!isOnPicture(event.target) && keepsKey(event.target as HTMLElement, chord)) return;
-      const handle = current.current[id];
+      const handle = current.current(id);
       if (!handle) return;
       event.preventDefault();
       handle(event);

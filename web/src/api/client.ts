@@ -23,13 +23,13 @@ export class ApiError extends Error {
 /** Stands at the way out: says in whose name requests go, and who has to log in before one can be tried again. */
 export interface Doorkeeper {
   /** Whose page this is; the server refuses a request when somebody else is logged in by now. */
-  account(): string | null;
+  account: () => string | null;
   /** How often somebody has logged in here: a refusal from before the last time says nothing about now. */
-  loginCount(): number;
+  loginCount: () => number;
   /** A request was refused because nobody is logged in. */
-  report(failure: ApiError): void;
+  report: (failure: ApiError) => void;
   /** Resolves when the same person is logged in again; rejects when `signal` aborts. */
-  wait(signal?: AbortSignal): Promise<void>;
+  wait: (signal?: AbortSignal) => Promise<void>;
 }
 
 let doorkeeper: Doorkeeper | null = null;

@@ -1,7 +1,8 @@
 import type { ReactNode } from "react";
 import { Circle, Group, Image, Layer, Line, Rect, Text } from "./shapes";
 import type { Camera } from "../api/types";
-import { usePointer, type PointerStore } from "../state/pointer";
+import type { PointerStore } from "../state/pointer";
+import { useStore } from "../state/useStore";
 import type { PaneLayer } from "./ImagePane";
 import { toScreen, type Size, type View } from "./view";
 
@@ -22,7 +23,7 @@ const LENS_FACTOR = 4;
 
 /** Cross hairs that follow the pointer in every pane of this camera, and the magnifier. */
 export function CursorLayer({ pointer, view, camera, label, layers, isMagnified, size, children }: CursorLayerProps) {
-  const pixel = usePointer(pointer);
+  const pixel = useStore(pointer);
   if (!pixel) return <Layer listening={false}>{children}</Layer>;
   const at = toScreen(view, pixel);
   const arm = 9;

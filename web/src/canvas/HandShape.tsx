@@ -1,8 +1,9 @@
+import { memo } from "react";
 import { Circle, Group, Line, Rect, Text } from "./shapes";
 import type { Side } from "../api/types";
 import { EDGES, HAND_COLORS, jointColor, jointLabel } from "../model/joints";
-import { isPlaced, isShown, type Pose } from "../model/pose";
-import { toScreen, type View } from "./view";
+import { isPlaced, isShown, type Pose, type Visibility } from "../model/pose";
+import { toScreen, type Point, type View } from "./view";
 
 interface HandShapeProps {
   pose: Pose;
@@ -40,9 +41,69 @@ function Cross({ x, y, color }: { x: number; y: number; color: string }) {
   );
 }
 
+interface BoneProps {
+  from: Point;
+  to: Point;
+  color: string;
+  isHidden: boolean;
+}
+
+const Bone = memo(function Bone({ from, to, color, isHidden }: BoneProps) {
+  const points = [from.x, from.y, to.x, to.y];
+  return (
+    <Group>
+      <Line points={points} stroke="#000" strokeWidth={4} opacity={0.45} lineCap="round" />
+      <Line points={points} stroke={color} strokeWidth={2} lineCap="round" {...(isHidden ? { dash: [5, 5] } : {})} />
+    </Group>
+  );
+}, sameBone);
+
+const samePoint = (a: Point, b: Point): boolean => a.x === b.x && a.y === b.y;
+
+function sameBone(a: BoneProps, b: BoneProps): boolean {
+  return samePoint(a.from, b.from) && samePoint(a.to, b.to) && a.color === b.color && a.isHidden === b.isHidden;
+}
+
+interface JointProps {
+  joint: number;
+  x: number;
+  y: number;
+  visibility: Visibility;
+  hand: Side;
+  isActive: boolean;
+  hasName: boolean;
+}
+
+const Joint = memo(function Joint({ joint, x, y, visibility, hand, isActive, hasName }: JointProps) {
+  const isOccluded = visibility === 1;
+  const color = jointColor(joint);
+  return (
+    <Group>
+      {isActive && <Mark hand={hand} x={x} y={y} radius={RADIUS + 5} stroke={HAND_COLORS[hand]} strokeWidth={2.5} />}
+      {visibility === 0 ? (
+        <Cross x={x} y={y} color={color} />
+      ) : (
+        <Mark
+          hand={hand}
+          x={x}
+          y={y}
+          radius={RADIUS}
+          fill={isOccluded ? "rgba(0,0,0,0.35)" : color}
+          stroke={isOccluded ? color : "#111"}
+          strokeWidth={isOccluded ? 2 : 1.25}
+          {...(isOccluded ? { dash: [3, 2.5] } : {})}
+        />
+      )}
+      {hasName && (
+        <Text x={x + 9} y={y - 6} text={jointLabel(joint)} fontSize={12} fontFamily="Inter Variable, sans-serif" fill="#fff" stroke="#000" strokeWidth={3} fillAfterStrokeEnabled />
+      )}
+    </Group>
+  );
+});
+
 /**
  * A hand by hand: fingers in their hues; the right one round, the left one square; occluded joints hollow and dashed, outside
- * ones crosses where they were.
+ * ones crosses where they were. A drag draws the joint that moves and its bones again, and nothing else of the hand.
  */
 export function HandShape({ pose, hand, view, active, isFaint = false, areNamesShown = false }: HandShapeProps) {
   const at = pose.map((point) => toScreen(view, point));
@@ -51,50 +112,12 @@ export function HandShape({ pose, hand, view, active, isFaint = false, areNamesS
       {EDGES.map(([from, to]) => {
         const [a, b] = [at[from], at[to]];
         if (!a || !b || !isPlaced(pose[from]) || !isPlaced(pose[to])) return null;
-        const isHidden = pose[from]?.v === 1 || pose[to]?.v === 1;
-        const points = [a.x, a.y, b.x, b.y];
-        return (
-          <Group key={`${from}-${to}`}>
-            <Line points={points} stroke="#000" strokeWidth={4} opacity={0.45} lineCap="round" />
-            <Line points={points} stroke={jointColor(to)} strokeWidth={2} lineCap="round" {...(isHidden ? { dash: [5, 5] } : {})} />
-          </Group>
-        );
+        return <Bone key={`${from}-${to}`} from={a} to={b} color={jointColor(to)} isHidden={pose[from]?.v === 1 || pose[to]?.v === 1} />;
       })}
       {pose.map((point, joint) => {
         const place = at[joint];
         if (!place || !isShown(point)) return null;
-        const isOccluded = point.v === 1;
-        return (
-          <Group key={joint}>
-            {joint === active && <Mark hand={hand} {...place} radius={RADIUS + 5} stroke={HAND_COLORS[hand]} strokeWidth={2.5} />}
-            {point.v === 0 ? (
-              <Cross {...place} color={jointColor(joint)} />
-            ) : (
-              <Mark
-                hand={hand}
-                {...place}
-                radius={RADIUS}
-                fill={isOccluded ? "rgba(0,0,0,0.35)" : jointColor(joint)}
-                stroke={isOccluded ? jointColor(joint) : "#111"}
-                strokeWidth={isOccluded ? 2 : 1.25}
-                {...(isOccluded ? { dash: [3, 2.5] } : {})}
-              />
-            )}
-            {areNamesShown && (
-              <Text
-                x={place.x + 9}
-                y={place.y - 6}
-                text={jointLabel(joint)}
-                fontSize={12}
-                fontFamily="Inter Variable, sans-serif"
-                fill="#fff"
-                stroke="#000"
-                strokeWidth={3}
-                fillAfterStrokeEnabled
-              />
-            )}
-          </Group>
-        );
+        return <Joint key={joint} joint={joint} x={place.x} y={place.y} visibility={point.v} hand={hand} isActive={joint === active} hasName={areNamesShown} />;
       })}
     </Group>
   );

@@ -11,21 +11,21 @@ export interface Setback {
 
 export interface FrameCache<T> {
   /** The picture if it is here. */
-  peek(address: string): T | undefined;
+  peek: (address: string) => T | undefined;
   /** Why it is not here, if asking for it failed; null while it is asked for the first time. */
-  setbackOf(address: string): Setback | null;
+  setbackOf: (address: string) => Setback | null;
   /**
    * Load these, the first ones first; what is under way and nobody wants any more is called off. Several can look at once,
    * each under its own name; the first picture of everybody comes before anybody's second. What failed is asked for again
    * after a pause that grows, and what will not come only when somebody comes to it anew.
    */
-  focus(addresses: readonly string[], viewer?: string): void;
+  focus: (addresses: readonly string[], viewer?: string) => void;
   /** A viewer that looks no more. */
-  leave(viewer: string): void;
+  leave: (viewer: string) => void;
   /** Ask at once for what failed. */
-  retry(address: string): void;
+  retry: (address: string) => void;
   /** Tells of each picture that has come or failed; returns the way to stop. */
-  watch(watcher: (address: string) => void): () => void;
+  watch: (watcher: (address: string) => void) => () => void;
 }
 
 type Load<T> = (address: string, signal: AbortSignal) => Promise<T>;

@@ -130,7 +130,7 @@ export function usePaneGestures(
   const far = (a: Point, b: Point): boolean => Math.hypot(a.x - b.x, a.y - b.y) > CLICK_RADIUS;
 
   return {
-    onContextMenu: (event: { preventDefault(): void }) => event.preventDefault(),
+    onContextMenu: (event: { preventDefault: () => void }) => event.preventDefault(),
 
     onPointerDown(event: ReactPointerEvent<HTMLElement>) {
       if (!isOwn(event)) return;

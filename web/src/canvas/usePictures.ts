@@ -1,4 +1,4 @@
-import { useEffect, useId, useMemo, useReducer, useRef } from "react";
+import { useCallback, useEffect, useId, useMemo, useReducer, useRef } from "react";
 import { fetchBitmap, fetchBytes } from "../api/client";
 import { colorUrl, depthUrl } from "../api/recordings";
 import type { Camera, Recording } from "../api/types";
@@ -110,22 +110,20 @@ export function usePictures(recording: Recording, camera: Camera, frame: number,
   const found = useRef<{ of: string; range: DepthRange } | null>(null);
   if (now?.depth && found.current?.of !== of) found.current = { of, range: findRange(now.depth) };
   const usedRange = range ?? (found.current?.of === of ? found.current.range : null);
-  const painted = useMemo(
-    () => (now?.depth && usedRange ? paintDepth(now.depth, usedRange, wanted.palette ?? "warm") : null),
-    [now?.depth, usedRange?.near, usedRange?.far, wanted.palette],
-  );
 
-  return {
-    color: now?.color ?? null,
-    depth: painted,
-    depthImage: now?.depth ?? null,
-    range: usedRange,
-    shownFrame: now?.frame ?? null,
-    isStale: now?.frame !== frame,
-    setback: color.setback ?? depth.setback,
-    retry() {
-      if (color.setback && colors[0] !== undefined) colorCache.retry(colors[0]);
-      if (depth.setback && depths[0] !== undefined) depthCache.retry(depths[0]);
-    },
-  };
+  const [firstColor, firstDepth] = [colors[0], depths[0]];
+  const retry = useCallback(() => {
+    if (firstColor !== undefined && colorCache.setbackOf(firstColor)) colorCache.retry(firstColor);
+    if (firstDepth !== undefined && depthCache.setbackOf(firstDepth)) depthCache.retry(firstDepth);
+  }, [firstColor, firstDepth]);
+
+  const [shownColor, shownDepth, shownFrame] = [now?.color ?? null, now?.depth ?? null, now?.frame ?? null];
+  const palette = wanted.palette ?? "warm";
+  const painted = useMemo(() => (shownDepth && usedRange ? paintDepth(shownDepth, usedRange, palette) : null), [shownDepth, usedRange, palette]);
+  const setback = color.setback ?? depth.setback;
+  const isStale = shownFrame !== frame;
+  return useMemo(
+    () => ({ color: shownColor, depth: painted, depthImage: shownDepth, range: usedRange, shownFrame, isStale, setback, retry }),
+    [shownColor, painted, shownDepth, usedRange, shownFrame, isStale, setback, retry],
+  );
 }

@@ -12,11 +12,11 @@ export interface TouchGestures {
 }
 
 interface Handlers {
-  onPointerDown(event: ReactPointerEvent<HTMLElement>): void;
-  onPointerMove(event: ReactPointerEvent<HTMLElement>): void;
-  onPointerUp(event: ReactPointerEvent<HTMLElement>): void;
-  onPointerCancel(event: ReactPointerEvent<HTMLElement>): void;
-  onDoubleClick(event: ReactMouseEvent<HTMLElement>): void;
+  onPointerDown: (event: ReactPointerEvent<HTMLElement>) => void;
+  onPointerMove: (event: ReactPointerEvent<HTMLElement>) => void;
+  onPointerUp: (event: ReactPointerEvent<HTMLElement>) => void;
+  onPointerCancel: (event: ReactPointerEvent<HTMLElement>) => void;
+  onDoubleClick: (event: ReactMouseEvent<HTMLElement>) => void;
 }
 
 interface Place {

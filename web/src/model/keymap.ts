@@ -203,8 +203,8 @@ const meet = (a: KeyBinding, b: KeyBinding): boolean => a.scope === b.scope || a
  */
 export function withRemap(map: readonly KeyBinding[], remap: Remap): readonly KeyBinding[] {
   const chosen = map.map((binding) => {
-    const keys = remap[binding.id];
-    return Array.isArray(keys) ? { ...binding, keys: keys.filter((key) => typeof key === "string" && !RESERVED.includes(key)) } : binding;
+    const keys: unknown = remap[binding.id];
+    return Array.isArray(keys) ? { ...binding, keys: keys.filter((key: unknown): key is string => typeof key === "string" && !RESERVED.includes(key)) } : binding;
   });
   const own = chosen.filter((binding, index) => binding !== map[index]);
   return chosen.map((binding, index) =>

@@ -24,7 +24,10 @@ const UNSET: JointPoint = { x: 0, y: 0, v: 0 };
 /** Absent by decision: told from unset by its place outside the image, because v = 0 says both in COCO. */
 const OUTSIDE: JointPoint = { x: -1, y: -1, v: 0 };
 
-export const emptyPose = (): Pose => Array.from({ length: JOINT_COUNT }, () => UNSET);
+const EMPTY: Pose = Array.from({ length: JOINT_COUNT }, () => UNSET);
+
+/** Always the same one, so that what shows it is not drawn again. */
+export const emptyPose = (): Pose => EMPTY;
 
 export function statusOf(point: JointPoint | undefined): JointStatus {
   if (!point) return "unset";

@@ -21,7 +21,7 @@ test("each joint is suggested by the first source that has it, hidden ones left 
   expect(openJoints(seen, undefined, new Set()).map((joint) => joint?.from.kind)).toEqual([...Array<string>(3).fill("track"), ...Array<string>(18).fill("detector")]);
   const both = { track: suggestion("track", 10), interpolation: suggestion("interpolation", 20, 5) };
   const open = openJoints(both, undefined, new Set());
-  expect(open.map((joint) => joint?.px[0])).toEqual([...Array(5).fill(20), ...Array(16).fill(10)]);
+  expect(open.map((joint) => joint?.px[0])).toEqual([...Array<number>(5).fill(20), ...Array<number>(16).fill(10)]);
   expect(openJoints(both, undefined, new Set<Source>(["interpolation"])).every((joint) => joint?.source === "track")).toBe(true);
 });
 

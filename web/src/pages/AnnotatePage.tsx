@@ -1,5 +1,5 @@
 import { Button } from "@mantine/core";
-import { useEffect } from "react";
+import { useEffect, useMemo } from "react";
 import { Link, useParams, useSearchParams } from "react-router";
 import { ApiError } from "../api/client";
 import { useRecording } from "../api/recordings";
@@ -22,6 +22,7 @@ export default function AnnotatePage() {
     frame: Number(address.get("frame") ?? 0) || 0,
     hand: address.get("hand") === "left" ? "left" : address.get("hand") === "right" ? "right" : recording?.hands[0] === "left" ? "left" : "right",
   }), replica);
+  const shown = useMemo(() => recording && (replica ? { ...recording, best_track: null } : recording), [recording, replica]);
   useTitle(recording ? `Annotate ${recording.name}` : "Annotate");
   const isMissing = error instanceof ApiError && error.status === 404;
   useEffect(() => {
@@ -38,6 +39,6 @@ export default function AnnotatePage() {
     );
   }
   if (failure) return <Failure what="The annotations could not be loaded" error={failure} safe="They are untouched on the server." onRetry={retry} />;
-  if (!recording || !session) return <AnnotatorSkeleton />;
-  return <Annotator key={scopeOf(recording.id, replica)} recording={replica ? { ...recording, best_track: null } : recording} session={session} />;
+  if (!recording || !shown || !session) return <AnnotatorSkeleton />;
+  return <Annotator key={scopeOf(recording.id, replica)} recording={shown} session={session} replica={replica} />;
 }

@@ -29,6 +29,10 @@ export const poseAt = (state: AnnotatorState, key: PoseKey): Pose | undefined =>
 /** The active hand as it is to be drawn; empty when it has no annotation yet. */
 export const activePose = (state: AnnotatorState): Pose => state.draft ?? poseAt(state, activeKey(state)) ?? emptyPose();
 
+/** The active hand in any camera's picture of this frame, as it is to be drawn. */
+export const poseIn = (state: AnnotatorState, camera: string): Pose =>
+  camera === state.camera ? activePose(state) : (poseAt(state, { ...activeKey(state), camera }) ?? emptyPose());
+
 /** Store a pose for the active hand (and end a drag). */
 export const withActivePose = (state: AnnotatorState, pose: Pose): AnnotatorState => ({
   ...state,

@@ -15,10 +15,12 @@ function aLog(before: readonly Partial<LoggedDecision>[] = []) {
   return { log, added };
 }
 
+const CHOICE = { queue: "undecided", order: "likely_failures" } as const;
+
 function opened(names: string, more: Parameters<typeof aLog>[0] = []) {
   const { log, added } = aLog(more);
   let time = 0;
-  const curation = openCuration(log, () => time);
+  const curation = openCuration(log, CHOICE, () => time);
   curation.append([...names].map((name) => registration(name)), false);
   return { curation, added, pass: (seconds: number) => (time += 1000 * seconds), shown: () => shownIn(curation.store.get())?.id ?? null };
 }
@@ -65,7 +67,7 @@ test("who decides otherwise and takes it back has the first decision again", () 
 
 test("a decision of an earlier visit can be taken back once", () => {
   const { log, added } = aLog();
-  const curation = openCuration(log);
+  const curation = openCuration(log, CHOICE);
   curation.append([registration("a", { my_decision: "accept", my_decision_id: "d7" })], false);
   curation.undo();
   curation.undo();

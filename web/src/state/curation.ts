@@ -1,6 +1,6 @@
 /** Where a curator is in the queue, what they decided in this visit, and the way back. */
 
-import type { Registration } from "../api/registrations";
+import type { QueueChoice, Registration } from "../api/registrations";
 import type { DecisionLog, Standing } from "./decisionLog";
 import { createStore, type Store } from "./store";
 
@@ -24,14 +24,16 @@ export interface CurationState {
 }
 
 export interface Curation {
+  /** Which registrations the queue asks for. */
+  readonly choice: QueueChoice;
   readonly store: Store<CurationState>;
-  decide(decision: Standing, reasons?: readonly string[]): void;
+  decide: (decision: Standing, reasons?: readonly string[]) => void;
   /** Takes the last decision of this visit back; without one, what stands of mine about the registration shown. */
-  undo(): void;
-  go(by: number): void;
-  goTo(registrationId: string): void;
+  undo: () => void;
+  go: (by: number) => void;
+  goTo: (registrationId: string) => void;
   /** More of the queue has come. */
-  append(items: readonly Registration[], hasMore: boolean): void;
+  append: (items: readonly Registration[], hasMore: boolean) => void;
 }
 
 export const shownIn = (state: CurationState): Registration | null => state.items[state.place] ?? null;
@@ -45,7 +47,7 @@ export function soonShown({ items, place }: CurationState, ahead = 5, behind = 2
   return at.flatMap((one) => items[one] ?? []);
 }
 
-export function openCuration(log: DecisionLog, now: () => number = Date.now): Curation {
+export function openCuration(log: DecisionLog, choice: QueueChoice, now: () => number = Date.now): Curation {
   // What still waits from an earlier visit stands already.
   const waiting: Record<string, Standing | null> = {};
   for (const one of log.waiting()) waiting[one.registrationId] = one.decision === "undo" ? null : one.decision;
@@ -62,6 +64,7 @@ export function openCuration(log: DecisionLog, now: () => number = Date.now): Cu
   }
 
   return {
+    choice,
     store,
     decide(decision, reasons = []) {
       const state = store.get();

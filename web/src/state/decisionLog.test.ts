@@ -137,7 +137,7 @@ test("after a login has ended nothing is asked until the person is back, and the
   expect(server.stored.map((one) => one.registrationId)).toEqual(["a", "b"]);
 });
 
-test("each person has a log of their own, and two tabs do not write over each other's", async () => {
+test("each person has a log of their own, and two tabs do not write over each other's", () => {
   const storage = new MemoryStorage();
   const never = (): Promise<DecisionOutcome> => new Promise(() => undefined);
   createDecisionLog({ send: never, storage, account: "anna" }).add(about("a"));

@@ -46,15 +46,15 @@ export interface DecisionStatus {
 }
 
 export interface DecisionLog {
-  add(decision: Omit<LoggedDecision, "operationId" | "madeAt">): string;
+  add: (decision: Omit<LoggedDecision, "operationId" | "madeAt">) => string;
   /** What waits, oldest first. */
-  waiting(): readonly LoggedDecision[];
+  waiting: () => readonly LoggedDecision[];
   /** Drop what the server refuses to take. */
-  discard(operationId: string): void;
-  flush(): void;
-  status(): DecisionStatus;
-  watch(watcher: () => void): () => void;
-  stop(): void;
+  discard: (operationId: string) => void;
+  flush: () => void;
+  status: () => DecisionStatus;
+  watch: (watcher: () => void) => () => void;
+  stop: () => void;
 }
 
 /** Each person's own. */

@@ -23,9 +23,9 @@ export function findWaiting(storage: Storage, account: string): string[] {
 }
 
 export interface Journal {
-  load(): Map<string, PendingSave[]>;
+  load: () => Map<string, PendingSave[]>;
   /** Returns false when it could not be kept (storage full or forbidden). */
-  keep(key: string, saves: readonly PendingSave[]): boolean;
+  keep: (key: string, saves: readonly PendingSave[]) => boolean;
 }
 
 /** In localStorage, because it is written before the next line runs; IndexedDB may lose the last gesture on a crash. */

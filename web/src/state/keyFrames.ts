@@ -10,10 +10,10 @@ export interface KeyFrameStore {
   readonly store: Store<KeyFrames>;
   readonly queue: SaveQueue;
   /** Make it one, or none any more; taken back here when the server does not take it. */
-  toggle(key: string): void;
+  toggle: (key: string) => void;
   /** All that the server has now; what still waits here stays. */
-  learn(found: Iterable<string>): void;
-  close(): void;
+  learn: (found: Iterable<string>) => void;
+  close: () => void;
 }
 
 /** A key frame has no points of its own: these say that it is one, null that it is none any more. */

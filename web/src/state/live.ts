@@ -11,7 +11,7 @@ export interface LiveRoom {
   readonly since: string;
   readonly handlers: Readonly<Record<string, (data: unknown) => void>>;
   /** The stream is there, for the first time or again. */
-  onOpen(): void;
+  onOpen: () => void;
 }
 
 const store = createStore<LiveRoom | null>(null);

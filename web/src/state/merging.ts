@@ -13,10 +13,10 @@ import type { Store } from "./store";
 export type Label = Pick<Annotation, "camera" | "frame" | "hand" | "revision" | "author" | "sources"> & { readonly points: Annotation["points"] | null };
 
 export interface Merging {
-  hear(label: Label): void;
+  hear: (label: Label) => void;
   /** The labels as they are now, all of them: what is not among them is gone, or not to be seen any more. */
-  reload(labels: readonly Label[]): void;
-  stop(): void;
+  reload: (labels: readonly Label[]) => void;
+  stop: () => void;
 }
 
 export function startMerging(store: Store<AnnotatorState>, queue: SaveQueue): Merging {

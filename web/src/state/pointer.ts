@@ -1,14 +1,11 @@
 /** Where the pointer is, in image pixels; apart from the rest of the state, because it changes with every movement. */
 
-import { useSyncExternalStore } from "react";
 import type { Point } from "../canvas/view";
 import { createStore, type Store } from "./store";
 
 export type PointerStore = Store<Point | null>;
 
 export const createPointerStore = (): PointerStore => createStore<Point | null>(null);
-
-export const usePointer = (pointer: PointerStore): Point | null => useSyncExternalStore((tell) => pointer.watch(tell), pointer.get);
 
 /** The pointer in one of several cameras' pictures. */
 export interface Hover {
@@ -20,8 +17,6 @@ export type HoverStore = Store<Hover | null>;
 
 export const createHoverStore = (): HoverStore => createStore<Hover | null>(null);
 
-export const useHover = (hover: HoverStore): Hover | null => useSyncExternalStore(hover.watch, hover.get);
-
 /** The joint that a click would choose, in a camera's pictures. */
 export interface Over {
   readonly camera: string;
@@ -31,8 +26,6 @@ export interface Over {
 export type OverStore = Store<Over | null>;
 
 export const createOverStore = (): OverStore => createStore<Over | null>(null);
-
-export const useOver = (over: OverStore): Over | null => useSyncExternalStore(over.watch, over.get);
 
 /** The pointer as the pictures of one camera know it. */
 export function pointerOn(hover: HoverStore, camera: string): PointerStore {

@@ -53,26 +53,26 @@ export interface SaveQueue {
    * The server's revisions as loaded; what still waits keeps the revision it was made on. False, and nothing is learnt,
    * when a save has overtaken the loading: load again. `isFinal` takes it as it is, because others may have deleted.
    */
-  learn(revisions: ReadonlyMap<string, number>, isFinal?: boolean): boolean;
+  learn: (revisions: ReadonlyMap<string, number>, isFinal?: boolean) => boolean;
   /**
    * Somebody else has stored a version. "news": learnt, and to be shown. "known": no newer than what is here, or shown
    * where a conflict is settled. "busy": something of the person's own waits; ask again when the status has changed.
    */
-  hear(key: string, heard: Heard): "news" | "known" | "busy";
+  hear: (key: string, heard: Heard) => "news" | "known" | "busy";
   /** Nothing is known of a hand any more; false when something of the person's own waits. */
-  forget(key: string): boolean;
-  put(key: string, points: KeptPoint[] | null): void;
+  forget: (key: string) => boolean;
+  put: (key: string, points: KeptPoint[] | null) => void;
   /** What waits, newest version by key. */
-  waiting(): ReadonlyMap<string, KeptPoint[] | null>;
+  waiting: () => ReadonlyMap<string, KeptPoint[] | null>;
   /** Settle a conflict with these points (null deletes); "theirs" drops what waits. */
-  settle(key: string, choice: KeptPoint[] | null | "theirs"): void;
+  settle: (key: string, choice: KeptPoint[] | null | "theirs") => void;
   /** Drop what the server refuses to take. */
-  discard(key: string): void;
+  discard: (key: string) => void;
   /** Try everything now. */
-  flush(): void;
-  status(): SaveStatus;
-  watch(watcher: () => void): () => void;
-  stop(): void;
+  flush: () => void;
+  status: () => SaveStatus;
+  watch: (watcher: () => void) => () => void;
+  stop: () => void;
 }
 
 /** Of hands and of key frames together; a drag that has not ended is not saved either. */

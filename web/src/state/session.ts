@@ -21,11 +21,11 @@ export interface Session {
   /** Who else has the recording open. */
   readonly people: Store<readonly PersonHere[]>;
   /** Of everything that the person does here: hands, key frames, and what they have in hand. */
-  saving(): SaveStatus;
-  watchSaving(watcher: () => void): () => void;
+  saving: () => SaveStatus;
+  watchSaving: (watcher: () => void) => () => void;
   /** Try to send everything now. */
-  flush(): void;
-  close(): void;
+  flush: () => void;
+  close: () => void;
 }
 
 /** Where the person starts: the address, or the beginning. */

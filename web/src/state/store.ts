@@ -6,10 +6,10 @@ export type Origin = "person" | "server" | "history";
 export type Watcher<S> = (now: S, before: S, origin: Origin) => void;
 
 export interface Store<S> {
-  get(): S;
-  set(next: S, origin: Origin): void;
+  get: () => S;
+  set: (next: S, origin: Origin) => void;
   /** Returns the way to stop. */
-  watch(watcher: Watcher<S>): () => void;
+  watch: (watcher: Watcher<S>) => () => void;
 }
 
 export function createStore<S>(initial: S): Store<S> {

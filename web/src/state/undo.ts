@@ -24,11 +24,11 @@ const placeOf = ({ camera, frame, hand, joint }: AnnotatorState): Place => ({ ca
 const LIMIT = 500;
 
 export interface UndoStack {
-  canUndo(): boolean;
-  canRedo(): boolean;
-  undo(): void;
-  redo(): void;
-  stop(): void;
+  canUndo: () => boolean;
+  canRedo: () => boolean;
+  undo: () => void;
+  redo: () => void;
+  stop: () => void;
 }
 
 export function createUndoStack(store: Store<AnnotatorState>): UndoStack {

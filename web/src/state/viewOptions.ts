@@ -1,9 +1,10 @@
 /** How the annotator shows pictures; kept in the browser, because it is a matter of the person and the screen. */
 
-import { useLocalStorage } from "@mantine/hooks";
-import type { PlaceMode } from "../actions/annotate/place";
+import { PLACE_MODES, type PlaceMode } from "../actions/annotate/place";
 import type { Camera } from "../api/types";
 import type { Palette } from "../canvas/depth";
+import { createKept } from "./kept";
+import type { Store } from "./store";
 
 export type Arrangement = "color" | "depth" | "side" | "over";
 
@@ -14,6 +15,8 @@ export interface ViewOptions {
   readonly contrast: number;
   readonly areHandsShown: boolean;
   readonly areNamesShown: boolean;
+  /** Epipolar lines of the active joint and of the cursor, between several cameras. */
+  readonly areLinesShown: boolean;
   readonly placeMode: PlaceMode;
   readonly palette: Palette;
   /** Of depth over colour, 0..1. */
@@ -22,12 +25,25 @@ export interface ViewOptions {
   readonly isTouchMarking: boolean;
 }
 
-const DEFAULTS: ViewOptions = { arrangement: "color", brightness: 1, contrast: 1, areHandsShown: true, areNamesShown: false, placeMode: "joint", palette: "warm", depthOpacity: 0.55, isTouchMarking: false };
+const DEFAULTS: ViewOptions = {
+  arrangement: "color",
+  brightness: 1,
+  contrast: 1,
+  areHandsShown: true,
+  areNamesShown: false,
+  areLinesShown: true,
+  placeMode: "joint",
+  palette: "warm",
+  depthOpacity: 0.55,
+  isTouchMarking: false,
+};
 
-export function useViewOptions(): [ViewOptions, (change: Partial<ViewOptions>) => void] {
-  const [options, setOptions] = useLocalStorage<ViewOptions>({ key: "handloom/view", defaultValue: DEFAULTS, getInitialValueInEffect: false });
-  return [{ ...DEFAULTS, ...options }, (change) => setOptions((now) => ({ ...DEFAULTS, ...now, ...change }))];
-}
+const parse = (found: unknown): ViewOptions => (typeof found === "object" ? { ...DEFAULTS, ...found } : DEFAULTS);
+
+let options: Store<ViewOptions> | null = null;
+
+/** The options of this browser: one store, whichever recording is open. */
+export const viewOptions = (): Store<ViewOptions> => (options ??= createKept("handloom/view", parse));
 
 export function arrangementsOf(camera: Camera): Arrangement[] {
   if (camera.has_color && camera.has_depth) return ["color", "depth", "side", "over"];
@@ -39,3 +55,9 @@ export const arrangementFor = (camera: Camera, wanted: Arrangement): Arrangement
   arrangementsOf(camera).includes(wanted) ? wanted : (arrangementsOf(camera)[0] ?? "color");
 
 export const clampFactor = (value: number): number => Math.min(4, Math.max(0.25, Math.round(value * 100) / 100));
+
+const next = <T>(all: readonly T[], now: T): T => all[(all.indexOf(now) + 1) % all.length] ?? now;
+
+export const nextArrangement = (camera: Camera, now: Arrangement): Arrangement => next(arrangementsOf(camera), arrangementFor(camera, now));
+
+export const nextPlaceMode = (now: PlaceMode): PlaceMode => next(PLACE_MODES, now);

@@ -10,8 +10,8 @@ const PAUSE_MS = 400;
 const STILL_HERE_MS = 10_000;
 
 export interface VisitReport {
-  now(): void;
-  stop(): void;
+  now: () => void;
+  stop: () => void;
 }
 
 export function startVisit(store: Store<AnnotatorState>, send: (place: Omit<PersonHere, "name">) => void): VisitReport {

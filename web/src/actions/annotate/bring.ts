@@ -3,7 +3,7 @@ import { ofIndependent } from "../../model/source";
 import { withActivePose, type Action, type AnnotatorState } from "../../state/annotator";
 
 /** Frames of this camera with an annotation of the given hand (or any), in order. */
-export function annotatedFrames(state: AnnotatorState, hand?: string): number[] {
+export function annotatedFrames(state: Pick<AnnotatorState, "poses" | "camera">, hand?: string): number[] {
   const frames = Object.entries(state.poses).flatMap(([text, pose]) => {
     const key = parseKey(text);
     return key.camera === state.camera && (!hand || key.hand === hand) && !isEmpty(pose) ? [key.frame] : [];

@@ -17,10 +17,10 @@ export interface Shown {
 }
 
 export interface CamerasStage {
-  show(shown: Shown): void;
-  lookFrom(side: "behind" | "above" | "side"): void;
-  resize(width: number, height: number): void;
-  stop(): void;
+  show: (shown: Shown) => void;
+  lookFrom: (side: "behind" | "above" | "side") => void;
+  resize: (width: number, height: number) => void;
+  stop: () => void;
 }
 
 const FIELD_DEG = 40;

@@ -7,15 +7,15 @@ import type { Staged } from "./staged";
 
 export interface Shelf {
   /** What is wanted, the most urgent first; everything else may be put away. */
-  want(ids: readonly string[]): void;
+  want: (ids: readonly string[]) => void;
   /** A hand that can be drawn at once; null while it is on its way. What failed for a passing reason is asked for again by itself. */
-  get(id: string): Staged | null;
-  failureOf(id: string): Error | null;
+  get: (id: string) => Staged | null;
+  failureOf: (id: string) => Error | null;
   /** Ask again for what failed. */
-  retry(id: string): void;
+  retry: (id: string) => void;
   /** Tells which one has come, or failed. */
-  watch(watcher: (id: string) => void): () => void;
-  stop(): void;
+  watch: (watcher: (id: string) => void) => () => void;
+  stop: () => void;
 }
 
 type Load = (id: string, signal: AbortSignal) => Promise<HandGeometry>;

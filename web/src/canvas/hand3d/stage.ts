@@ -23,22 +23,22 @@ const SECONDS_A_TURN = 8;
 
 export interface Stage {
   /** Get a hand ready: its buffers are on the card when this returns. */
-  prepare(geometry: HandGeometry): Staged;
+  prepare: (geometry: HandGeometry) => Staged;
   /** Draw this hand from now on; null draws nothing. Returns when it is drawn. */
-  show(hand: Staged | null): void;
-  setLook(look: Look): void;
-  lookFrom(side: ViewSide): void;
+  show: (hand: Staged | null) => void;
+  setLook: (look: Look) => void;
+  lookFrom: (side: ViewSide) => void;
   /** Degrees to the right and up. */
-  orbit(right: number, up: number): void;
-  zoom(factor: number): void;
+  orbit: (right: number, up: number) => void;
+  zoom: (factor: number) => void;
   /** The whole hand, from the palm's side. */
-  reset(): void;
-  setGestures(areOn: boolean): void;
+  reset: () => void;
+  setGestures: (areOn: boolean) => void;
   /** Scan frame to clip space as things are on the screen now. */
-  projection(): Projection;
-  draw(): void;
-  resize(width: number, height: number): void;
-  stop(): void;
+  projection: () => Projection;
+  draw: () => void;
+  resize: (width: number, height: number) => void;
+  stop: () => void;
 }
 
 export function createStage(canvas: HTMLCanvasElement, onDrawn: () => void): Stage {

@@ -16,16 +16,16 @@ export interface Staged {
   readonly mesh: Mesh | null;
   readonly wireframe: LineSegments | null;
   /** Made when they are first asked for; null without a mesh. */
-  lines(): LineSegments | null;
-  hasLines(): boolean;
+  lines: () => LineSegments | null;
+  hasLines: () => boolean;
   /** Of what is shown, m. */
   readonly radius: number;
   readonly geometry: HandGeometry;
   /** 1 for points of the scan to be shown as taken away. */
-  take(taken: Uint8Array): void;
+  take: (taken: Uint8Array) => void;
   /** Put the mesh's vertices elsewhere; what is in the middle stays. */
-  move(positions: Float32Array): void;
-  release(): void;
+  move: (positions: Float32Array) => void;
+  release: () => void;
 }
 
 function bufferOf({ positions, normals, colors, index, errorMm, taken }: Surface): BufferGeometry {

@@ -24,7 +24,7 @@ export function useStage(drawn?: RefObject<string>): StageParts {
   const holder = useCallback(
     (found: HTMLElement | null) => {
       element.current = found;
-      ref(found as HTMLDivElement | null);
+      ref(found);
     },
     [ref],
   );

@@ -64,7 +64,7 @@ export default function PeoplePage() {
         <form onSubmit={submit}>
           <Group align="end" gap="md" mb="md">
             <TextInput w={232} label="Name" value={name} onChange={(event) => setName(event.currentTarget.value)} required withAsterisk={false} maxLength={80} />
-            <Select w={144} label="Role" data={roles} value={role} onChange={(value) => setRole((value ?? "annotator") as Role)} allowDeselect={false} />
+            <Select w={144} label="Role" data={roles} value={role} onChange={(value) => setRole((value ?? "annotator"))} allowDeselect={false} />
             <Button type="submit" loading={add.isPending}>
               Add person
             </Button>
@@ -102,7 +102,7 @@ export default function PeoplePage() {
                     </Table.Td>
                     <Table.Td>
                       {person.may_manage ? (
-                        <Select w={136} size="xs" aria-label={`Role of ${person.name}`} data={roles} value={person.role} onChange={(value) => value && change.mutate({ person, role: value as Role })} allowDeselect={false} />
+                        <Select w={136} size="xs" aria-label={`Role of ${person.name}`} data={roles} value={person.role} onChange={(value) => value && change.mutate({ person, role: value })} allowDeselect={false} />
                       ) : (
                         person.role
                       )}

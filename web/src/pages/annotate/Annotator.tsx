@@ -1,72 +1,65 @@
-import { memo, useDeferredValue, useEffect, useRef, type ComponentType, type ReactNode } from "react";
+import { memo, useEffect, useLayoutEffect, useRef, useState } from "react";
 import type { Recording } from "../../api/types";
 import type { Session } from "../../state/session";
 import { AnnotatingContext } from "./annotating";
 import classes from "./Annotator.module.css";
+import { AnnotatorAddress, AnnotatorKeys, AnnotatorPlayback } from "./AnnotatorKeys";
+import { CameraKeys } from "./CameraKeys";
+import { createAnnotating } from "./createAnnotating";
 import { FrameBar } from "./FrameBar";
-import { CamerasProvider } from "./CamerasProvider";
 import { BARS, CARDS } from "./mounts";
 import { Panes } from "./Panes";
 import { SidePanel } from "./SidePanel";
 import { StatusLine } from "./StatusLine";
 import { Timeline } from "./Timeline";
 import { ToolRail } from "./ToolRail";
-import { useAnnotatorParts } from "./useAnnotatorParts";
-import { useUnhurried } from "./useUnhurried";
 
 interface AnnotatorProps {
   recording: Recording;
   session: Session;
+  /** The blind replica that is marked, if one is. */
+  replica: string | null;
 }
 
-/** A part whose properties never change: it is drawn again only for what it reads itself. */
-const Steady = memo(function Steady({ of: Part }: { of: ComponentType }) {
-  return <Part />;
-});
-
-const SteadyFrameBar = memo(FrameBar);
-
-/** The annotator: the picture has the space, everything else stands around it, and nothing is modal. */
-export function Annotator({ recording, session }: AnnotatorProps) {
-  const frameField = useRef<HTMLInputElement>(null);
+/**
+ * The annotator: the picture has the space, everything else stands around it, and nothing is modal. Drawn once for a recording;
+ * its parts hear of what they show by themselves.
+ */
+export const Annotator = memo(function Annotator({ recording, session, replica }: AnnotatorProps) {
+  const [annotating] = useState(() => createAnnotating(recording, session, replica, new URLSearchParams(window.location.search).get("cameras")?.split(",") ?? []));
   const middle = useRef<HTMLDivElement>(null);
-  const annotating = useAnnotatorParts(recording, session, frameField);
-  // The picture comes first: while somebody scrubs, what stands around it follows when there is time.
-  const later = useDeferredValue(useUnhurried(annotating));
-  const around = (parts: ReactNode): ReactNode => <AnnotatingContext value={later}>{parts}</AnnotatingContext>;
-
+  useEffect(() => annotating.start(), [annotating]);
+  useLayoutEffect(() => annotating.recording.set(recording, "server"), [annotating, recording]);
   useEffect(() => {
     middle.current?.querySelector<HTMLElement>("[data-picture]")?.focus({ preventScroll: true });
   }, []);
 
   return (
     <AnnotatingContext value={annotating}>
-      <CamerasProvider>
-        <div className={classes.page}>
-          {around(
-            <>
-              <SteadyFrameBar frameField={frameField} />
-              {BARS.map((Bar, index) => (
-                <Steady key={index} of={Bar} />
+      <AnnotatorKeys />
+      <AnnotatorAddress />
+      <AnnotatorPlayback />
+      <CameraKeys />
+      <div className={classes.page}>
+        <FrameBar />
+        {BARS.map((Bar, index) => (
+          <Bar key={index} />
+        ))}
+        <div className={classes.middle} ref={middle}>
+          <ToolRail />
+          <div className={classes.panes}>
+            <Panes />
+            <div className={classes.corner}>
+              {CARDS.map((Card, index) => (
+                <Card key={index} />
               ))}
-            </>,
-          )}
-          <div className={classes.middle} ref={middle}>
-            {around(<Steady of={ToolRail} />)}
-            <div className={classes.panes}>
-              <Panes />
-              <div className={classes.corner}>
-                {around(
-                  CARDS.map((Card, index) => <Steady key={index} of={Card} />),
-                )}
-              </div>
             </div>
-            {around(<Steady of={SidePanel} />)}
           </div>
-          {around(<Steady of={Timeline} />)}
-          <StatusLine />
+          <SidePanel />
         </div>
-      </CamerasProvider>
+        <Timeline />
+        <StatusLine />
+      </div>
     </AnnotatingContext>
   );
-}
+});

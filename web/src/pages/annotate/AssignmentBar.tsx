@@ -1,7 +1,7 @@
 import { Button, Text, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { IconEyeOff, IconMessage } from "@tabler/icons-react";
-import { useEffect, useRef, useState } from "react";
+import { useEffect, useMemo, useRef, useState } from "react";
 import { Link } from "react-router";
 import { goToFrame, keepToFrames, selectCamera } from "../../actions/annotate/select";
 import { assignmentAddress, useTeamChange, type Assignment } from "../../api/teams";
@@ -12,6 +12,7 @@ import type { SaveStatus } from "../../state/saveQueue";
 import { StateBadge } from "../projects/StateBadge";
 import { WorkProgress } from "../parts/WorkProgress";
 import { useActions, useAnnotating } from "./annotating";
+import { useAnnotation, useOpenRecording, useSaving } from "./reading";
 import classes from "./AssignmentBar.module.css";
 import { useAssignmentHere } from "./useAssignmentHere";
 import { Words } from "./Words";
@@ -22,7 +23,11 @@ const isStuck = ({ conflicts, refusals }: SaveStatus): boolean => conflicts.size
 
 /** The work that this frame belongs to: how far it is, and what comes next. Draws nothing where nobody was given anything. */
 export function AssignmentBar() {
-  const { recording, session, state, saving, act, setLock } = useAnnotating();
+  const { session, act, show } = useAnnotating();
+  const { hands } = useOpenRecording();
+  const [frame, camera, hand, joint] = [useAnnotation((state) => state.frame), useAnnotation((state) => state.camera), useAnnotation((state) => state.hand), useAnnotation((state) => state.joint)];
+  const poses = useAnnotation((state) => state.poses);
+  const saving = useSaving((now) => now);
   const { me, assignment, replicas, blind, failure } = useAssignmentHere();
   const change = useTeamChange<Assignment>();
   const hint = useHint();
@@ -35,21 +40,21 @@ export function AssignmentBar() {
     act(keepToFrames, asked?.frames ?? null);
   }, [asked, act]);
   useEffect(() => {
-    const camera = asked?.cameras[0];
-    if (camera && !asked.cameras.includes(state.camera)) act(selectCamera, camera);
-  }, [asked, state.camera, act]);
+    const first = asked?.cameras[0];
+    if (first && !asked.cameras.includes(camera)) act(selectCamera, first);
+  }, [asked, camera, act]);
 
-  const reason = blind ? "You mark this frame blindly: open your own version of it" : lockReason(assignment, me, replicas, state.hand);
+  const reason = blind ? "You mark this frame blindly: open your own version of it" : lockReason(assignment, me, replicas, hand);
   useEffect(() => {
-    setLock(reason);
-    return () => setLock(null);
-  }, [reason, setLock]);
+    show({ lock: reason });
+    return () => show({ lock: null });
+  }, [reason, show]);
   useEffect(() => {
     setSure(false);
     setWaiting(false);
-  }, [assignment?.id, state.frame]);
+  }, [assignment?.id, frame]);
 
-  const progress = assignment && progressOf(assignment, replicas, state.poses, recording.hands);
+  const progress = useMemo(() => assignment && progressOf(assignment, replicas, poses, hands), [assignment, replicas, poses, hands]);
   const unfinished = progress ? describeUnfinished(progress) : "";
   const isMine = assignment !== undefined && assignment.account_id === me?.id;
   const isOpen = assignment?.state === "open" || assignment?.state === "returned";
@@ -114,7 +119,7 @@ export function AssignmentBar() {
       <div className={classes.bar}>
         <IconEyeOff size={16} aria-hidden />
         <Text size="sm">You mark this frame blindly; what others marked in it is hidden from you.</Text>
-        <Button size="compact-xs" variant="default" component={Link} to={assignmentAddress(blind, state.frame)} reloadDocument>
+        <Button size="compact-xs" variant="default" component={Link} to={assignmentAddress(blind, frame)} reloadDocument>
           Open my version
         </Button>
       </div>
@@ -137,13 +142,13 @@ export function AssignmentBar() {
       {writing ? (
         <Words
           key={writing}
-          label={writing === "return" ? "What is to be changed" : `Comment on the ${state.hand} ${jointLabel(state.joint)}`}
+          label={writing === "return" ? "What is to be changed" : `Comment on the ${hand} ${jointLabel(joint)}`}
           isBusy={change.isPending}
           onCancel={() => setWriting(null)}
           onSend={(text) =>
             writing === "return"
               ? send("return", { text })
-              : send("comments", { text, camera: state.camera, frame: state.frame, hand: state.hand, joint: state.joint })
+              : send("comments", { text, camera, frame, hand, joint })
           }
           // To return work needs no words of its own where comments say what is to be changed.
           mayBeEmpty={writing === "return" && assignment.open_comments > 0}

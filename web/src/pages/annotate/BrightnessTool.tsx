@@ -3,6 +3,7 @@ import { IconSun } from "@tabler/icons-react";
 import { useHint } from "../../state/keys";
 import { clampFactor } from "../../state/viewOptions";
 import { useAnnotating } from "./annotating";
+import { useOption } from "./reading";
 import { ToolPopover } from "./ToolPopover";
 
 const FACTORS = [
@@ -11,9 +12,10 @@ const FACTORS = [
 ] as const;
 
 export function BrightnessTool() {
-  const { options, setOptions } = useAnnotating();
+  const { setOptions } = useAnnotating();
+  const factors = { brightness: useOption("brightness"), contrast: useOption("contrast") };
   const hint = useHint();
-  const isAdjusted = options.brightness !== 1 || options.contrast !== 1;
+  const isAdjusted = factors.brightness !== 1 || factors.contrast !== 1;
   return (
     <ToolPopover label="Brightness and contrast" icon={<IconSun size={18} />} isOn={isAdjusted}>
       {() => (
@@ -23,10 +25,10 @@ export function BrightnessTool() {
               <Group justify="space-between" mb={4}>
                 <Text size="xs">{hint(label, id)}</Text>
                 <Text size="xs" className="quiet">
-                  {options[name].toFixed(2)}
+                  {factors[name].toFixed(2)}
                 </Text>
               </Group>
-              <Slider aria-label={label} thumbLabel={label} min={0.25} max={4} step={0.05} value={options[name]} onChange={(value) => setOptions({ [name]: clampFactor(value) })} label={null} />
+              <Slider aria-label={label} thumbLabel={label} min={0.25} max={4} step={0.05} value={factors[name]} onChange={(value) => setOptions({ [name]: clampFactor(value) })} label={null} />
             </div>
           ))}
           <Button size="xs" variant="default" disabled={!isAdjusted} onClick={() => setOptions({ brightness: 1, contrast: 1 })}>

@@ -3,7 +3,7 @@ import { useRef, type KeyboardEvent, type PointerEvent } from "react";
 import { arrangePanes, moveBorder } from "../../model/paneGrid";
 import classes from "./CameraGrid.module.css";
 import { CameraPane } from "./CameraPane";
-import { useCameras } from "./cameras";
+import { useLargeCamera, useShownCameras } from "./reading";
 
 type Shares = Readonly<Record<string, readonly number[]>>;
 
@@ -60,7 +60,8 @@ function Border({ direction, at, onMove, onReset }: BorderProps) {
 
 /** The shown cameras' pictures side by side. */
 export function CameraGrid() {
-  const { shown, large } = useCameras();
+  const shown = useShownCameras();
+  const large = useLargeCamera();
   const { ref, width, height } = useElementSize();
   const [shares, setShares] = useLocalStorage<Shares>({ key: "handloom/panes", defaultValue: {}, getInitialValueInEffect: false });
   const enlarged = shown.findIndex((camera) => camera.id === large);

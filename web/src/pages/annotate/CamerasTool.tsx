@@ -2,13 +2,16 @@ import { Button, Checkbox, Group, Popover, Stack, Text } from "@mantine/core";
 import { IconLayoutGrid, IconTopologyStar3, IconVectorSpline, IconZoomInArea } from "@tabler/icons-react";
 import { MAX_SHOWN } from "../../state/shownCameras";
 import { useAnnotating } from "./annotating";
-import { useCameras } from "./cameras";
+import { useCamera, useOpenRecording, useOption, useShownCameras } from "./reading";
+import { useTriangulation } from "./useTriangulation";
 import { Tool } from "../parts/Tool";
 
 /** Which cameras are shown side by side. */
 export function CamerasTool() {
-  const { recording, camera } = useAnnotating();
-  const { shown, setShown } = useCameras();
+  const { showCameras } = useAnnotating();
+  const recording = useOpenRecording();
+  const camera = useCamera();
+  const shown = useShownCameras();
   const all = recording.cameras.map((one) => one.id);
   if (all.length < 2) return null;
   const names = shown.map((one) => one.id);
@@ -21,7 +24,7 @@ export function CamerasTool() {
       </Popover.Target>
       <Popover.Dropdown>
         <Stack gap="sm" miw={200}>
-          <Checkbox.Group label="Shown side by side" value={names} onChange={setShown}>
+          <Checkbox.Group label="Shown side by side" value={names} onChange={showCameras}>
             <Stack gap="sm" mt="sm" mah={280} style={{ overflowY: "auto" }}>
               {recording.cameras.map((one) => (
                 <Checkbox
@@ -35,10 +38,10 @@ export function CamerasTool() {
             </Stack>
           </Checkbox.Group>
           <Group gap="sm" grow>
-            <Button size="compact-xs" variant="default" onClick={() => setShown(all.slice(0, MAX_SHOWN))}>
+            <Button size="compact-xs" variant="default" onClick={() => showCameras(all.slice(0, MAX_SHOWN))}>
               {all.length > MAX_SHOWN ? `First ${MAX_SHOWN}` : "All"}
             </Button>
-            <Button size="compact-xs" variant="default" onClick={() => setShown([camera.id])}>
+            <Button size="compact-xs" variant="default" onClick={() => showCameras([camera.id])}>
               Only {camera.id}
             </Button>
           </Group>
@@ -55,8 +58,10 @@ export function CamerasTool() {
 
 /** In the tool rail: what is done with several cameras. */
 export function CameraTools() {
-  const { recording, run } = useAnnotating();
-  const { areLinesShown, joints } = useCameras();
+  const { run } = useAnnotating();
+  const recording = useOpenRecording();
+  const areLinesShown = useOption("areLinesShown");
+  const { joints } = useTriangulation();
   if (recording.cameras.length < 2) return null;
   return (
     <>

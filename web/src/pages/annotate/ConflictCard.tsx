@@ -52,7 +52,7 @@ export function ConflictCard({ poseKey, mine, theirs, isHere, onGo, onSettle }: 
                 aria-label={jointLabel(joint)}
                 data={["mine", "theirs"]}
                 value={picks[joint] ?? "mine"}
-                onChange={(pick) => setPicks((now) => ({ ...now, [joint]: pick as Pick }))}
+                onChange={(pick) => setPicks((now) => ({ ...now, [joint]: pick }))}
               />
             </Group>
           ))}

@@ -3,6 +3,7 @@ import { IconStack2 } from "@tabler/icons-react";
 import { useMemo } from "react";
 import { findRange, histogramOf, PALETTE_ANCHORS, PALETTE_NAMES, type Palette } from "../../canvas/depth";
 import { useAnnotating } from "./annotating";
+import { useArrangement, useOption, usePage, usePicturesHere } from "./reading";
 import classes from "./DepthTool.module.css";
 import { ToolPopover } from "./ToolPopover";
 
@@ -12,8 +13,11 @@ const cssOf = (palette: Palette): string => `linear-gradient(90deg, ${PALETTE_AN
 
 /** How depth is coloured: which map, over which distances, and how strongly over the colour image. */
 function DepthColors() {
-  const { pictures, setRange, range, options, setOptions, arrangement } = useAnnotating();
-  const image = pictures.depthImage;
+  const { setOptions, show } = useAnnotating();
+  const range = usePage((page) => page.range);
+  const arrangement = useArrangement();
+  const [chosen, opacity] = [useOption("palette"), useOption("depthOpacity")];
+  const image = usePicturesHere((pictures) => pictures?.depthImage ?? null);
   // Room on both sides of what the image holds, so that the handles have somewhere to go.
   const limits = useMemo(() => {
     if (!image) return { near: 0, far: 2 };
@@ -21,13 +25,13 @@ function DepthColors() {
     return { near: Math.max(0, Math.floor(10 * (found.near - 0.15)) / 10), far: Math.ceil(10 * (found.far + 0.3)) / 10 };
   }, [image]);
   const bars = useMemo(() => (image ? histogramOf(image, limits, BINS) : []), [image, limits]);
-  const used = pictures.range ?? limits;
+  const used = usePicturesHere((pictures) => pictures?.range ?? null) ?? limits;
   const share = (metres: number): number => Math.min(100, Math.max(0, ((metres - limits.near) / (limits.far - limits.near)) * 100));
   return (
     <Stack gap="sm">
       <div role="radiogroup" aria-label="Colour map" className={classes.maps}>
         {PALETTE_NAMES.map((palette) => (
-          <button key={palette} type="button" role="radio" aria-checked={options.palette === palette} className={classes.map} onClick={() => setOptions({ palette })}>
+          <button key={palette} type="button" role="radio" aria-checked={chosen === palette} className={classes.map} onClick={() => setOptions({ palette })}>
             <span style={{ background: cssOf(palette) }} />
             {NAMES[palette]}
           </button>
@@ -39,7 +43,7 @@ function DepthColors() {
             <rect key={index} x={index} y={40 - 40 * bar} width={0.85} height={40 * bar} />
           ))}
         </svg>
-        <div className={classes.ramp} style={{ marginLeft: `${share(used.near)}%`, marginRight: `${100 - share(used.far)}%`, background: cssOf(options.palette) }} />
+        <div className={classes.ramp} style={{ marginLeft: `${share(used.near)}%`, marginRight: `${100 - share(used.far)}%`, background: cssOf(chosen) }} />
         <RangeSlider
           size="sm"
           min={limits.near}
@@ -49,7 +53,7 @@ function DepthColors() {
           thumbFromLabel="Nearest distance"
           thumbToLabel="Farthest distance"
           value={[Math.max(limits.near, used.near), Math.min(limits.far, used.far)]}
-          onChange={([near, far]) => setRange({ near, far })}
+          onChange={([near, far]) => show({ range: { near, far } })}
           label={null}
         />
         <Group justify="space-between" mt={4}>
@@ -63,12 +67,12 @@ function DepthColors() {
       {arrangement === "over" && (
         <div>
           <Text size="xs" mb={4}>
-            Depth over colour, {Math.round(100 * options.depthOpacity)} %
+            Depth over colour, {Math.round(100 * opacity)} %
           </Text>
-          <Slider aria-label="Strength of depth over colour" thumbLabel="Strength of depth over colour" min={0.05} max={1} step={0.05} value={options.depthOpacity} onChange={(depthOpacity) => setOptions({ depthOpacity })} label={null} />
+          <Slider aria-label="Strength of depth over colour" thumbLabel="Strength of depth over colour" min={0.05} max={1} step={0.05} value={opacity} onChange={(depthOpacity) => setOptions({ depthOpacity })} label={null} />
         </div>
       )}
-      <Button size="xs" variant="default" disabled={range === null} onClick={() => setRange(null)}>
+      <Button size="xs" variant="default" disabled={range === null} onClick={() => show({ range: null })}>
         Range from the image
       </Button>
     </Stack>
@@ -76,10 +80,11 @@ function DepthColors() {
 }
 
 export function DepthTool() {
-  const { range, options, arrangement } = useAnnotating();
-  const isSeen = arrangement !== "color";
+  const isSeen = useArrangement() !== "color";
+  const isChosen = usePage((page) => page.range !== null);
+  const isPainted = useOption("palette") !== "warm";
   return (
-    <ToolPopover label={isSeen ? "Depth colours" : "Depth colours (where depth is shown)"} isDisabled={!isSeen} icon={<IconStack2 size={18} />} isOn={range !== null || options.palette !== "warm"} width={288}>
+    <ToolPopover label={isSeen ? "Depth colours" : "Depth colours (where depth is shown)"} isDisabled={!isSeen} icon={<IconStack2 size={18} />} isOn={isChosen || isPainted} width={288}>
       {() => <DepthColors />}
     </ToolPopover>
   );

@@ -1,12 +1,14 @@
+import type { Camera } from "../../api/types";
 import { Group, Line, Text } from "../../canvas/shapes";
 import { toScreen, type Point, type View } from "../../canvas/view";
 import { epipolarCurve, type Curve } from "../../model/epipolar";
 import { jointColor } from "../../model/joints";
 import { isPlaced, keyText } from "../../model/pose";
-import { useHover } from "../../state/pointer";
+import { activePose } from "../../state/annotator";
+import { useSelect } from "../../state/useStore";
 import { useAnnotating } from "./annotating";
-import { useCameras } from "./cameras";
 import type { LayerProps } from "./mounts";
+import { useAnnotation, useOpenRecording, useOption } from "./reading";
 
 /** Beside the line, a little inside of where it leaves the picture on the left or the top: far from the hand. */
 function labelPlace(on: readonly Point[]): Point {
@@ -36,11 +38,11 @@ const clipTo = (camera: LayerProps["camera"], view: View) => ({ clipX: view.x, c
 
 /** Where what is under the cursor in another camera's picture can be in this one; drawn apart, because it moves with the cursor. */
 export function CursorCurve({ view, camera }: Omit<LayerProps, "frame">) {
-  const { recording, hover } = useAnnotating();
-  const { areLinesShown } = useCameras();
-  const here = useHover(hover);
-  const from = areLinesShown && here && here.camera !== camera.id ? recording.cameras.find((one) => one.id === here.camera) : undefined;
-  if (!from || !here) return null;
+  const { hover } = useAnnotating();
+  const { cameras } = useOpenRecording();
+  const here = useSelect(hover, (now) => (now?.camera === camera.id ? null : now));
+  const from = here ? cameras.find((one) => one.id === here.camera) : undefined;
+  if (!useOption("areLinesShown") || !from || !here) return null;
   return (
     <Group listening={false} {...clipTo(camera, view)}>
       <CurveShape curve={epipolarCurve(from, here.pixel, camera)} view={view} color="#fff" label="" isFaint />
@@ -48,19 +50,27 @@ export function CursorCurve({ view, camera }: Omit<LayerProps, "frame">) {
   );
 }
 
+/** The line of the active joint of the active hand, as it is marked in another camera's picture. */
+function JointCurve({ of, view, camera, frame }: LayerProps & { of: Camera }) {
+  const joint = useAnnotation((state) => state.joint);
+  const mark = useAnnotation((state) => {
+    const isHere = of.id === state.camera && frame === state.frame;
+    return (isHere ? activePose(state) : state.poses[keyText({ camera: of.id, frame, hand: state.hand })])?.[state.joint];
+  });
+  return isPlaced(mark) ? <CurveShape curve={epipolarCurve(of, mark, camera)} view={view} color={jointColor(joint)} label={of.id} /> : null;
+}
+
 /** Epipolar lines of the active joint, from every camera that has it. */
 export function EpipolarLayer({ view, camera, frame }: LayerProps) {
-  const { recording, state, pose } = useAnnotating();
-  const { areLinesShown } = useCameras();
-  if (!areLinesShown || recording.cameras.length < 2) return null;
+  const { cameras } = useOpenRecording();
+  if (!useOption("areLinesShown") || cameras.length < 2) return null;
   return (
     <Group listening={false} {...clipTo(camera, view)}>
-      {recording.cameras.map((other) => {
-        if (other.id === camera.id) return null;
-        const isActive = other.id === state.camera && frame === state.frame;
-        const mark = (isActive ? pose : state.poses[keyText({ camera: other.id, frame, hand: state.hand })])?.[state.joint];
-        return isPlaced(mark) && <CurveShape key={other.id} curve={epipolarCurve(other, mark, camera)} view={view} color={jointColor(state.joint)} label={other.id} />;
-      })}
+      {cameras
+        .filter(({ id }) => id !== camera.id)
+        .map((other) => (
+          <JointCurve key={other.id} of={other} view={view} camera={camera} frame={frame} />
+        ))}
     </Group>
   );
 }

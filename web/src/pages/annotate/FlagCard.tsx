@@ -7,10 +7,12 @@ import { flagKeys, useDismissal, useFlags } from "../../api/flags";
 import type { Flag } from "../../api/types";
 import { KIND_NAMES, nextFlag } from "../../model/flag";
 import type { FrameMarks } from "../../model/frameMarks";
+import { keyText } from "../../model/pose";
+import { activeKey } from "../../state/annotator";
 import { useKeyOf } from "../../state/keys";
 import { useIsCompact } from "../parts/useScreen";
 import { useActions, useAnnotating } from "./annotating";
-import { useIsBlind } from "./useIsBlind";
+import { useAnnotation, useIsBlind, useSaving } from "./reading";
 import classes from "./Annotator.module.css";
 
 /** Labels are checked anew this long after they were saved. */
@@ -18,7 +20,10 @@ const CHECK_AFTER_MS = 1500;
 
 /** Why the label in view looks wrong, and the keys that walk from one such label to the next. */
 export function FlagCard() {
-  const { recording, session, state, saving, act, run } = useAnnotating();
+  const { recording: opened, session, act, run } = useAnnotating();
+  const recording = opened.get();
+  const key = useAnnotation((state) => keyText(activeKey(state)));
+  const poses = useAnnotation((state) => state.poses);
   const client = useQueryClient();
   const isBlind = useIsBlind();
   const found = useFlags(recording.id).data?.items;
@@ -28,16 +33,17 @@ export function FlagCard() {
   // On a phone the picture has no room for a card: one line stands below it, and opens.
   const isCompact = useIsCompact();
   const [isOpen, setOpen] = useState(false);
-  const isSaved = saving.waiting === 0 && !saving.isSending;
+  const isSaved = useSaving((saving) => saving.waiting === 0 && !saving.isSending);
+  const savedAt = useSaving((saving) => saving.lastSavedAt);
 
   // A save may come and go between two drawings: `isSaved` alone would not tell. What others save changes the poses.
   useEffect(() => {
     if (!isSaved) return;
     const timer = setTimeout(() => void client.invalidateQueries({ queryKey: flagKeys.of(recording.id) }), CHECK_AFTER_MS);
     return () => clearTimeout(timer);
-  }, [client, isSaved, saving.lastSavedAt, state.poses, recording.id]);
+  }, [client, isSaved, savedAt, poses, recording.id]);
 
-  const here = flags.filter((flag) => flag.frame === state.frame && flag.camera === state.camera && flag.hand === state.hand);
+  const here = flags.filter((flag) => keyText(flag) === key);
   const first = here[0];
   const walk = (direction: 1 | -1) => (): void => {
     const now = session.store.get();
@@ -48,10 +54,8 @@ export function FlagCard() {
     if (next.hand !== now.hand) act(switchHand, undefined);
     if (next.joints[0] !== undefined) act(selectJoint, next.joints[0]);
   };
-  // The cards follow a moment later than the picture: what is put away is of the hand that is in view.
   const putAway = (flag: Flag | undefined): void => {
-    const { camera, frame, hand } = session.store.get();
-    if (flag && flag.camera === camera && flag.frame === frame && flag.hand === hand) dismissal.mutate({ flag, isRight: true });
+    if (flag) dismissal.mutate({ flag, isRight: true });
   };
   useActions({ "flag.next": walk(1), "flag.previous": walk(-1), "flag.dismiss": () => putAway(first) });
 
@@ -99,8 +103,8 @@ export function FlagCard() {
 
 /** Flagged frames of this camera, for the timeline. */
 export function useFlagMarks(): FrameMarks {
-  const { recording, state } = useAnnotating();
-  const flags = useFlags(recording.id).data?.items;
+  const flags = useFlags(useAnnotating().recording.get().id).data?.items;
+  const camera = useAnnotation((state) => state.camera);
   const isBlind = useIsBlind();
-  return useMemo(() => ({ flagged: new Set((isBlind ? [] : (flags ?? [])).filter((flag) => flag.camera === state.camera).map((flag) => flag.frame)) }), [flags, isBlind, state.camera]);
+  return useMemo(() => ({ flagged: new Set((isBlind ? [] : (flags ?? [])).filter((flag) => flag.camera === camera).map((flag) => flag.frame)) }), [flags, isBlind, camera]);
 }

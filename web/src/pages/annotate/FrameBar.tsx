@@ -1,23 +1,49 @@
 import { ActionIcon, Group, NumberInput, SegmentedControl, Select, Text, Tooltip } from "@mantine/core";
 import { IconChevronLeft, IconChevronRight, IconPlayerPause, IconPlayerPlay } from "@tabler/icons-react";
-import type { RefObject } from "react";
+import { useRef } from "react";
 import { Link } from "react-router";
 import { goToFrame, selectCamera } from "../../actions/annotate/select";
 import { useHint } from "../../state/keys";
 import { arrangementsOf, type Arrangement } from "../../state/viewOptions";
-import { useAnnotating } from "./annotating";
+import { useActions, useAnnotating } from "./annotating";
 import classes from "./Annotator.module.css";
 import { FRAME_TOOLS } from "./mounts";
-
-interface FrameBarProps {
-  frameField: RefObject<HTMLInputElement | null>;
-}
+import { useAnnotation, useArrangement, useCamera, useOpenRecording, usePage } from "./reading";
 
 const NAMES: Record<Arrangement, string> = { color: "Colour", depth: "Depth", side: "Side by side", over: "Depth over colour" };
 
+/** The frame's number, to read and to go to another one. */
+function FrameField() {
+  const { act } = useAnnotating();
+  const { frame_count: frameCount } = useOpenRecording();
+  const frame = useAnnotation((state) => state.frame);
+  const field = useRef<HTMLInputElement>(null);
+  useActions({ "frame.goto": () => field.current?.select() });
+  return (
+    <NumberInput
+      ref={field}
+      size="xs"
+      w={72}
+      aria-label="Frame"
+      className={classes.frameField}
+      hideControls
+      allowDecimal={false}
+      allowNegative={false}
+      max={frameCount - 1}
+      value={frame}
+      onChange={(value) => typeof value === "number" && act(goToFrame, value)}
+      onKeyDown={(event) => (event.key === "Enter" || event.key === "Escape") && event.currentTarget.blur()}
+    />
+  );
+}
+
 /** Which recording, camera and frame, and which pictures of it. */
-export function FrameBar({ frameField }: FrameBarProps) {
-  const { recording, camera, state, isPlaying, arrangement, setOptions, act, run } = useAnnotating();
+export function FrameBar() {
+  const { setOptions, act, run } = useAnnotating();
+  const recording = useOpenRecording();
+  const camera = useCamera();
+  const arrangement = useArrangement();
+  const isPlaying = usePage((page) => page.isPlaying);
   const hint = useHint();
   const arrangements = arrangementsOf(camera);
   return (
@@ -35,7 +61,7 @@ export function FrameBar({ frameField }: FrameBarProps) {
           aria-label="Pictures"
           data={arrangements.map((value) => ({ value, label: NAMES[value] }))}
           value={arrangement}
-          onChange={(value) => setOptions({ arrangement: value as Arrangement })}
+          onChange={(value) => setOptions({ arrangement: value })}
         />
       )}
       {FRAME_TOOLS.map((FrameTool, index) => (
@@ -52,20 +78,7 @@ export function FrameBar({ frameField }: FrameBarProps) {
             <IconChevronLeft size={18} />
           </ActionIcon>
         </Tooltip>
-        <NumberInput
-          ref={frameField}
-          size="xs"
-          w={72}
-          aria-label="Frame"
-          className={classes.frameField}
-          hideControls
-          allowDecimal={false}
-          allowNegative={false}
-          max={recording.frame_count - 1}
-          value={state.frame}
-          onChange={(value) => typeof value === "number" && act(goToFrame, value)}
-          onKeyDown={(event) => (event.key === "Enter" || event.key === "Escape") && event.currentTarget.blur()}
-        />
+        <FrameField />
         <Text size="xs" className="quiet" style={{ whiteSpace: "nowrap" }}>
           of 0–{recording.frame_count - 1}
         </Text>

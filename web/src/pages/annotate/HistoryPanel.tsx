@@ -1,6 +1,5 @@
 import { Button, ScrollArea, Skeleton, Text } from "@mantine/core";
 import { useEffect, useMemo } from "react";
-import { useSearchParams } from "react-router";
 import { restorePose } from "../../actions/annotate/restore";
 import { useAnnotationHistory } from "../../api/annotations";
 import { formatAgo, formatCount } from "../../model/format";
@@ -9,6 +8,7 @@ import { jointLabel } from "../../model/joints";
 import { decidedCount, keyText } from "../../model/pose";
 import { activeKey } from "../../state/annotator";
 import { useAnnotating } from "./annotating";
+import { useAnnotation, usePage, useSaving } from "./reading";
 import classes from "./HistoryPanel.module.css";
 
 function describeChange({ isDeleted, changed, sameAs, isNew }: HistoryEntry): string {
@@ -21,12 +21,16 @@ function describeChange({ isDeleted, changed, sameAs, isNew }: HistoryEntry): st
 
 /** Every version of the active hand: look at one as a ghost, make it the newest again. */
 export function HistoryPanel() {
-  const { recording, state, saving, preview, setPreview, act, lock } = useAnnotating();
-  const [address] = useSearchParams();
-  const key = keyText(activeKey(state));
-  const { data, error } = useAnnotationHistory(recording.id, key, saving.lastSavedAt, address.get("replica"));
+  const { recording, replica, act, show } = useAnnotating();
+  const frame = useAnnotation((state) => state.frame);
+  const hand = useAnnotation((state) => state.hand);
+  const key = useAnnotation((state) => keyText(activeKey(state)));
+  const preview = usePage((page) => page.preview);
+  const isLocked = usePage((page) => page.lock !== null);
+  const savedAt = useSaving((saving) => saving.lastSavedAt);
+  const { data, error } = useAnnotationHistory(recording.get().id, key, savedAt, replica);
   const entries = useMemo(() => readHistory(data ?? []), [data]);
-  useEffect(() => () => setPreview(null), [setPreview]);
+  useEffect(() => () => show({ preview: null }), [show]);
 
   if (error) return <Text className={classes.empty}>The history could not be loaded. {error.message}</Text>;
   if (!data) {
@@ -41,7 +45,7 @@ export function HistoryPanel() {
   if (entries.length === 0) {
     return (
       <Text size="sm" className={classes.empty}>
-        Nobody has marked the {state.hand} hand in frame {state.frame} yet. Every gesture on it will be listed here, and any version can be brought back.
+        Nobody has marked the {hand} hand in frame {frame} yet. Every gesture on it will be listed here, and any version can be brought back.
       </Text>
     );
   }
@@ -49,12 +53,12 @@ export function HistoryPanel() {
   return (
     <ScrollArea className={classes.list} type="auto" scrollbarSize={6}>
       <Text size="xs" className={classes.head}>
-        {state.hand} hand, frame {state.frame}
+        {hand} hand, frame {frame}
       </Text>
       <ol className={classes.entries} aria-label="Versions, newest first">
         {entries.map((entry, index) => (
           <li key={entry.revision} className={classes.entry} data-shown={isShown(entry)}>
-            <button type="button" className={classes.look} aria-pressed={isShown(entry)} disabled={index === 0} onClick={() => setPreview(isShown(entry) ? null : entry.pose)}>
+            <button type="button" className={classes.look} aria-pressed={isShown(entry)} disabled={index === 0} onClick={() => show({ preview: isShown(entry) ? null : entry.pose })}>
               <span className={classes.what}>{describeChange(entry)}</span>
               <span className={classes.who}>
                 {entry.author}, {formatAgo(entry.at)}
@@ -66,11 +70,8 @@ export function HistoryPanel() {
               <Button
                 size="compact-xs"
                 m="0 12px 8px"
-                disabled={lock !== null}
-                onClick={() => {
-                  // The list follows a moment later than the picture: it may be of another hand than the active one by now.
-                  if (act(restorePose, { key, pose: entry.pose })) setPreview(null);
-                }}
+                disabled={isLocked}
+                onClick={() => act(restorePose, { key, pose: entry.pose }) && show({ preview: null })}
               >
                 Bring revision {entry.revision} back
               </Button>

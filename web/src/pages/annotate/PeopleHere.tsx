@@ -1,6 +1,6 @@
 import { Tooltip } from "@mantine/core";
-import { useSyncExternalStore } from "react";
 import { goToFrame } from "../../actions/annotate/select";
+import { useStore } from "../../state/useStore";
 import { useAnnotating } from "./annotating";
 import classes from "./StatusLine.module.css";
 
@@ -10,7 +10,7 @@ const NAMED = 3;
 /** Who else has the recording open, and at which frame; a click goes there. */
 export function PeopleHere() {
   const { session, act } = useAnnotating();
-  const people = useSyncExternalStore(session.people.watch, session.people.get);
+  const people = useStore(session.people);
   if (people.length === 0) return null;
   return (
     <span className={classes.people} role="group" aria-label="Also here">

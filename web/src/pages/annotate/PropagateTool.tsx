@@ -7,10 +7,12 @@ import { isEmpty, keyText } from "../../model/pose";
 import { activeKey, poseAt } from "../../state/annotator";
 import { useHint } from "../../state/keys";
 import { useAnnotating } from "./annotating";
+import { useAnnotation } from "./reading";
 import { ToolPopover } from "./ToolPopover";
 
 function Propagate({ close }: { close: () => void }) {
-  const { state, act, run } = useAnnotating();
+  const { act, run } = useAnnotating();
+  const state = useAnnotation((now) => now);
   const hint = useHint();
   const open = openFramesAhead(state);
   const end = open.at(-1) ?? state.frame;
@@ -62,9 +64,9 @@ function Propagate({ close }: { close: () => void }) {
 
 /** The pose, carried over a range of frames. */
 export function PropagateTool() {
-  const { state } = useAnnotating();
+  const isNothing = useAnnotation((state) => isEmpty(poseAt(state, activeKey(state))));
   return (
-    <ToolPopover label="Carry the pose on" icon={<IconCopyPlus size={18} />} isDisabled={isEmpty(poseAt(state, activeKey(state)))} width={248}>
+    <ToolPopover label="Carry the pose on" icon={<IconCopyPlus size={18} />} isDisabled={isNothing} width={248}>
       {(close) => <Propagate close={close} />}
     </ToolPopover>
   );

@@ -1,12 +1,14 @@
 import { Button, Text } from "@mantine/core";
 import { parseKey } from "../../model/pose";
 import { useAnnotating } from "./annotating";
+import { useSaving } from "./reading";
 import classes from "./Annotator.module.css";
 
 /** What the server refuses to take, and what one can do about it. */
 export function RefusalCards() {
-  const { saving, session } = useAnnotating();
-  return [...saving.refusals].map(([key, reason]) => (
+  const { session } = useAnnotating();
+  const refusals = useSaving((saving) => saving.refusals);
+  return [...refusals].map(([key, reason]) => (
     <div key={key} className={`card ${classes.notice}`} role="alert">
       <Text size="sm" fw={600}>
         The server does not take the {parseKey(key).hand} hand of frame {parseKey(key).frame}

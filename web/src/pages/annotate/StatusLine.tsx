@@ -1,17 +1,19 @@
-import type { DepthImage } from "../../canvas/depth";
-import { depthAt } from "../../canvas/depth";
-import { useOver, usePointer, type PointerStore } from "../../state/pointer";
-import { useSearchParams } from "react-router";
+import { depthAt, type DepthImage } from "../../canvas/depth";
+import { activePose } from "../../state/annotator";
 import { scopeOf } from "../../state/saving";
+import { useSelect } from "../../state/useStore";
 import { SaveState } from "../parts/SaveState";
 import { useHasFingers, useIsCompact } from "../parts/useScreen";
 import { useAnnotating } from "./annotating";
 import { describeClick, describeWait } from "./nextClick";
 import { PeopleHere } from "./PeopleHere";
+import { useAnnotation, useOption, usePage, usePicturesHere, useSaving } from "./reading";
 import classes from "./StatusLine.module.css";
 
-function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | null }) {
-  const pixel = usePointer(pointer);
+/** What is under the pointer in the active camera's picture. */
+function Here({ depth }: { depth: DepthImage | null }) {
+  const camera = useAnnotation((state) => state.camera);
+  const pixel = useSelect(useAnnotating().hover, (hover) => (hover?.camera === camera ? hover.pixel : null));
   if (!pixel) return null;
   const distance = depth && depthAt(depth, pixel.x, pixel.y);
   return (
@@ -28,21 +30,47 @@ function Here({ pointer, depth }: { pointer: PointerStore; depth: DepthImage | n
   );
 }
 
+function NextClick() {
+  const lock = usePage((page) => page.lock);
+  const isPlaying = usePage((page) => page.isPlaying);
+  const isRefused = usePage((page) => page.isRefused);
+  const frame = useAnnotation((state) => state.frame);
+  const pictures = usePicturesHere((now) => now);
+  const placeMode = useOption("placeMode");
+  const chosen = useSelect(useAnnotating().over, (over) => over?.joint ?? null);
+  const click = useAnnotation((state) => describeClick(state, activePose(state), placeMode, chosen));
+  const [isCompact, hasFingers, isMarking] = [useIsCompact(), useHasFingers(), useOption("isTouchMarking")];
+  const isLooking = isCompact && hasFingers && !isMarking;
+  return (
+    <span className={classes.next} data-testid="next-click">
+      {lock ?? describeWait(frame, pictures, isPlaying, isRefused) ?? (isLooking ? "Swipe for frames, tap to choose a joint" : `Next click ${click}`)}
+    </span>
+  );
+}
+
+function Saved() {
+  const { recording, replica, session } = useAnnotating();
+  const saving = useSaving((now) => now);
+  return (
+    <SaveState
+      status={{ ...saving, conflicts: saving.conflicts.size, refusals: saving.refusals.size }}
+      own={{ scope: scopeOf(recording.get().id, replica) }}
+      what="Every gesture is saved by itself"
+      action="save.now"
+      onFlush={() => session.flush()}
+    />
+  );
+}
+
 export function StatusLine() {
-  const [address] = useSearchParams();
-  const { recording, state, pose, saving, pointer, pictures, lock, session, options, isPlaying, isRefused, over } = useAnnotating();
-  const chosen = useOver(over);
-  const [isCompact, hasFingers] = [useIsCompact(), useHasFingers()];
-  const isLooking = isCompact && hasFingers && !options.isTouchMarking;
+  const depth = usePicturesHere((now) => now?.depthImage ?? null);
   return (
     <div className={classes.line}>
-      <SaveState status={{ ...saving, conflicts: saving.conflicts.size, refusals: saving.refusals.size }} own={{ scope: scopeOf(recording.id, address.get("replica")) }} what="Every gesture is saved by itself" action="save.now" onFlush={() => session.flush()} />
-      <span className={classes.next} data-testid="next-click">
-        {lock ?? describeWait(state, pictures, isPlaying, isRefused) ?? (isLooking ? "Swipe for frames, tap to choose a joint" : `Next click ${describeClick(state, pose, options.placeMode, chosen?.joint ?? null)}`)}
-      </span>
+      <Saved />
+      <NextClick />
       <span className={classes.here}>
         <PeopleHere />
-        <Here pointer={pointer} depth={pictures.depthImage} />
+        <Here depth={depth} />
       </span>
     </div>
   );

@@ -1,21 +1,25 @@
 import { SuggestShape } from "../../canvas/SuggestShape";
 import { HANDS } from "../../model/joints";
 import { keyText } from "../../model/pose";
-import { openJointsAt } from "../../state/suggestions";
-import { useAnnotating } from "./annotating";
+import { activePose } from "../../state/annotator";
 import type { LayerProps } from "./mounts";
-import { useSuggestions } from "./useSession";
+import { useAnnotation, useOption } from "./reading";
+import { useOpenJoints } from "./useOpenJoints";
+import type { Side } from "../../api/types";
+
+/** What is suggested for one hand of a picture. */
+function SuggestedHand({ hand, view, camera, frame }: LayerProps & { hand: Side }) {
+  const place = { camera: camera.id, frame, hand };
+  const open = useOpenJoints(place);
+  const isEmpty = open.every((joint) => joint === null);
+  const active = useAnnotation((state) => (camera.id === state.camera && frame === state.frame && hand === state.hand ? state.joint : -1));
+  // Lines go to what is marked already; without a suggestion there are none.
+  const pose = useAnnotation((state) => (isEmpty ? undefined : active >= 0 ? activePose(state) : state.poses[keyText(place)]));
+  return isEmpty ? null : <SuggestShape open={open} pose={pose} hand={hand} view={view} active={active} />;
+}
 
 /** What is suggested for either hand of a picture, below what people marked. */
-export function SuggestLayer({ view, camera, frame }: LayerProps) {
-  const { session, state, pose, options } = useAnnotating();
-  const suggestions = useSuggestions(session);
-  if (!options.areHandsShown) return null;
-  return HANDS.map((hand) => {
-    const place = { camera: camera.id, frame, hand };
-    const open = openJointsAt(suggestions, state, place);
-    if (open.every((joint) => joint === null)) return null;
-    const isActive = camera.id === state.camera && frame === state.frame && hand === state.hand;
-    return <SuggestShape key={hand} open={open} pose={isActive ? pose : state.poses[keyText(place)]} hand={hand} view={view} active={isActive ? state.joint : -1} />;
-  });
+export function SuggestLayer(props: LayerProps) {
+  if (!useOption("areHandsShown")) return null;
+  return HANDS.map((hand) => <SuggestedHand key={hand} hand={hand} {...props} />);
 }

@@ -1,25 +1,27 @@
 import { Button, Text, Tooltip } from "@mantine/core";
 import { formatCount } from "../../model/format";
 import { JOINT_COUNT } from "../../model/joints";
-import { decidedCount, keyText } from "../../model/pose";
+import { decidedCount, keyText, parseKey } from "../../model/pose";
 import { SOURCES } from "../../model/suggestion";
-import { activeKey } from "../../state/annotator";
+import { activeKey, activePose } from "../../state/annotator";
 import { useHint, useKeyOf } from "../../state/keys";
-import { openJointsAt } from "../../state/suggestions";
 import { useAnnotating } from "./annotating";
 import classes from "./SuggestLine.module.css";
-import { useSuggestions } from "./useSession";
+import { useAnnotation, usePage, useSuggestions } from "./reading";
+import { useOpenJoints } from "./useOpenJoints";
 
 /** Who suggests what for the active hand, and the button that takes it. */
 export function SuggestLine() {
-  const { session, state, pose, run, lock } = useAnnotating();
-  const suggestions = useSuggestions(session);
+  const { run } = useAnnotating();
+  const isLocked = usePage((page) => page.lock !== null);
   const hint = useHint();
   const keyOf = useKeyOf();
-  const here = activeKey(state);
-  const open = openJointsAt(suggestions, state, here);
+  const key = useAnnotation((state) => keyText(activeKey(state)));
+  const isDone = useAnnotation((state) => decidedCount(activePose(state)) === JOINT_COUNT);
+  const areAllHidden = useSuggestions((state) => state.hidden.size === SOURCES.length);
+  const open = useOpenJoints(parseKey(key));
   const count = open.filter((joint) => joint !== null).length;
-  const bySource = suggestions.byPlace[keyText(here)];
+  const bySource = useSuggestions((state) => state.byPlace[key]);
   const labels = SOURCES.filter((source) => open.some((joint) => joint?.source === source)).flatMap((source) => bySource?.[source]?.label ?? []);
   return (
     <div className={classes.line} data-testid="suggested-by" aria-live="polite">
@@ -30,9 +32,9 @@ export function SuggestLine() {
           </>
         ) : (
           <span className="quiet">
-            {decidedCount(pose) === JOINT_COUNT
+            {isDone
               ? "Every joint of this hand is decided"
-              : suggestions.hidden.size === SOURCES.length
+              : areAllHidden
                 ? `Suggestions are hidden (${keyOf("suggestion.toggle")} shows them)`
                 : "Nothing suggested for this hand yet"}
           </span>
@@ -40,7 +42,7 @@ export function SuggestLine() {
       </Text>
       {count > 0 && (
         <Tooltip label={hint("Or one joint at a time", "suggestion.joint")}>
-          <Button fullWidth size="compact-xs" variant="light" color="violet" disabled={lock !== null} onClick={() => run("suggestion.hand")} rightSection={<kbd className={classes.key}>{keyOf("suggestion.hand")}</kbd>}>
+          <Button fullWidth size="compact-xs" variant="light" color="violet" disabled={isLocked} onClick={() => run("suggestion.hand")} rightSection={<kbd className={classes.key}>{keyOf("suggestion.hand")}</kbd>}>
             Accept {formatCount(count, "joint")}
           </Button>
         </Tooltip>

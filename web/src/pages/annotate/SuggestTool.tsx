@@ -1,15 +1,13 @@
 import { ActionIcon, Popover, Select, Stack, Switch, Text, Tooltip } from "@mantine/core";
 import { IconSparkles } from "@tabler/icons-react";
 import { useState } from "react";
-import { useSearchParams } from "react-router";
 import { acceptHand, acceptJoint } from "../../actions/annotate/accept";
 import { useTracks } from "../../api/tracks";
 import { SOURCE_NAMES, SOURCES, type Source } from "../../model/suggestion";
 import { useHint } from "../../state/keys";
 import { setHidden } from "../../state/suggestions";
 import { useActions, useAnnotating } from "./annotating";
-import { useIsBlind } from "./useIsBlind";
-import { useSuggestions } from "./useSession";
+import { useCamera, useIsBlind, useOpenRecording, useSuggestions } from "./reading";
 import { DetectRecording, useDetectJobs } from "./DetectRecording";
 import { useDetectedSuggestions, useFitSuggestion, useTrackSuggestions } from "./useSuggestionSources";
 
@@ -23,27 +21,25 @@ const ABOUT: Record<Source, string> = {
 
 /** A blind replica is marked without suggestions: people who accept the same ones would seem to agree. */
 export function SuggestTool() {
-  const [address] = useSearchParams();
-  return address.has("replica") ? null : <Suggest />;
+  return useIsBlind() ? null : <Suggest />;
 }
 
 /** Asks the machines, answers the keys that accept, and lets one choose who may suggest. */
 function Suggest() {
-  const { recording, session, state, act } = useAnnotating();
-  const suggestions = useSuggestions(session);
+  const { session, act } = useAnnotating();
+  const recording = useOpenRecording();
   const tracks = useTracks(recording.id).data ?? [];
   const [chosen, setChosen] = useState<string | null>(null);
   const hint = useHint();
   const track = tracks.find((one) => one.id === chosen)?.id ?? recording.best_track?.id;
-  const { hidden } = suggestions;
+  const hidden = useSuggestions((state) => state.hidden);
   const isOn = hidden.size < SOURCES.length;
 
-  const isBlind = useIsBlind();
-  useTrackSuggestions(track, !isBlind);
-  const failure = useFitSuggestion(!isBlind && !hidden.has("fit"));
-  const hasColor = recording.cameras.find((camera) => camera.id === state.camera)?.has_color === true;
+  useTrackSuggestions(track);
+  const failure = useFitSuggestion(!hidden.has("fit"));
+  const hasColor = useCamera().has_color;
   const detectJobs = useDetectJobs(recording.id);
-  const detectorFailure = useDetectedSuggestions(detectJobs.found?.id, detectJobs.isKnown && hasColor && !isBlind && !hidden.has("detector"));
+  const detectorFailure = useDetectedSuggestions(detectJobs.found?.id, detectJobs.isKnown && hasColor && !hidden.has("detector"));
   const toggle = (): void => setHidden(session.suggestions, isOn ? SOURCES : []);
   useActions({
     "suggestion.joint": () => act(acceptJoint, session.suggestions.get()),

@@ -1,44 +1,60 @@
-import { ActionIcon, Tooltip } from "@mantine/core";
-import { IconArrowsHorizontal, IconZoomIn, IconZoomOut } from "@tabler/icons-react";
 import { useEffect, useMemo, useState } from "react";
 import { goToFrame } from "../../actions/annotate/select";
 import { useTrackFrames } from "../../api/tracks";
-import { lanesOf } from "../../canvas/drawTimeline";
-import { wholeWindow, windowWith, zoomWindow } from "../../canvas/frameWindow";
+import { lanesOf, type TimelineContent } from "../../canvas/drawTimeline";
+import { wholeWindow, windowWith, type FrameWindow } from "../../canvas/frameWindow";
 import { TimelineStrip } from "../../canvas/TimelineStrip";
-import { mergeMarks } from "../../model/frameMarks";
 import { describeFrame, handFrames, withSuggested } from "../../model/frameStates";
 import { trackRows } from "../../model/trackRows";
 import { useAnnotating } from "./annotating";
-import { MARKS } from "./mounts";
+import { useMarks } from "./mounts";
+import { useAnnotation, useKeyFrames, useOpenRecording, useSuggestions } from "./reading";
 import classes from "./Timeline.module.css";
-import { TimelineLegend } from "./TimelineLegend";
-import { useKeyFrames, useSuggestions } from "./useSession";
+import { TimelineTools } from "./TimelineTools";
+
+/** What is known of every frame of the active camera. */
+function useContent(): { content: TimelineContent; describe: (frame: number) => readonly string[] } {
+  const { best_track: best, frame_count: frameCount } = useOpenRecording();
+  const camera = useAnnotation((state) => state.camera);
+  const poses = useAnnotation((state) => state.poses);
+  const frames = useAnnotation((state) => state.frames);
+  const keys = useKeyFrames((now) => now);
+  const byPlace = useSuggestions((state) => state.byPlace);
+  const hidden = useSuggestions((state) => state.hidden);
+  const marks = useMarks();
+  const track = useTrackFrames(best?.id).data;
+  const rows = useMemo(() => (track ? trackRows(track, frameCount) : []), [track, frameCount]);
+  const annotated = useMemo(() => handFrames(poses, keys, frameCount, camera), [poses, keys, frameCount, camera]);
+  const hands = useMemo(() => withSuggested(annotated, poses, byPlace, hidden, camera), [annotated, poses, byPlace, hidden, camera]);
+  return useMemo(
+    () => ({
+      content: { hands, rows, marks, frameCount, asked: frames ? new Set(frames) : null },
+      describe: (frame) => describeFrame(frame, hands, marks),
+    }),
+    [hands, rows, marks, frameCount, frames],
+  );
+}
+
+interface StripProps extends ReturnType<typeof useContent> {
+  window: FrameWindow;
+  onWindow: (change: (now: FrameWindow) => FrameWindow) => void;
+}
+
+/** The strip itself, which follows the frame. */
+function Strip({ content, describe, window: shown, onWindow }: StripProps) {
+  const { act } = useAnnotating();
+  const frame = useAnnotation((state) => state.frame);
+  const { frameCount } = content;
+  // The window turns its page when the frame leaves it; a person may look elsewhere meanwhile.
+  useEffect(() => onWindow((now) => windowWith(now, frame, frameCount)), [onWindow, frame, frameCount]);
+  return <TimelineStrip content={content} frame={frame} window={shown} onWindow={(next) => onWindow(() => next)} onSeek={(to) => act(goToFrame, to)} describe={describe} />;
+}
 
 /** Every frame of the recording with what is known about it. */
 export function Timeline() {
-  const { recording, session, state, act } = useAnnotating();
-  const { frame_count: frameCount } = recording;
+  const { content, describe } = useContent();
+  const { frameCount } = content;
   const [shown, setWindow] = useState(() => wholeWindow(frameCount));
-  const keys = useKeyFrames(session);
-  const suggestions = useSuggestions(session);
-  const track = useTrackFrames(recording.best_track?.id).data;
-  const rows = useMemo(() => (track ? trackRows(track, frameCount) : []), [track, frameCount]);
-  const sources = MARKS.map((useMarks) => useMarks());
-  // Every source keeps its answer as long as nothing changes.
-  const marks = useMemo(() => mergeMarks(sources), sources);
-  const annotated = useMemo(() => handFrames(state.poses, keys, frameCount, state.camera), [state.poses, keys, frameCount, state.camera]);
-  const hands = useMemo(
-    () => withSuggested(annotated, state.poses, suggestions.byPlace, suggestions.hidden, state.camera),
-    [annotated, state.poses, suggestions, state.camera],
-  );
-  const asked = useMemo(() => (state.frames ? new Set(state.frames) : null), [state.frames]);
-  const content = useMemo(() => ({ hands, rows, marks, frameCount, asked }), [hands, rows, marks, frameCount, asked]);
-  // The window turns its page when the frame leaves it; a person may look elsewhere meanwhile.
-  useEffect(() => setWindow((now) => windowWith(now, state.frame, frameCount)), [state.frame, frameCount]);
-
-  const share = (state.frame + 0.5 - shown.from) / shown.count;
-  const isWhole = shown.count >= frameCount;
   return (
     <div className={classes.timeline}>
       <div className={classes.labels} aria-hidden>
@@ -48,32 +64,8 @@ export function Timeline() {
           </span>
         ))}
       </div>
-      <TimelineStrip
-        content={content}
-        frame={state.frame}
-        window={shown}
-        onWindow={setWindow}
-        onSeek={(frame) => act(goToFrame, frame)}
-        describe={(frame) => describeFrame(frame, hands, marks)}
-      />
-      <div className={classes.tools}>
-        <Tooltip label="Closer (wheel)">
-          <ActionIcon size={24} aria-label="Zoom the timeline in" onClick={() => setWindow(zoomWindow(shown, 2, share, frameCount))}>
-            <IconZoomIn size={15} />
-          </ActionIcon>
-        </Tooltip>
-        <Tooltip label="Farther">
-          <ActionIcon size={24} aria-label="Zoom the timeline out" onClick={() => setWindow(zoomWindow(shown, 0.5, share, frameCount))}>
-            <IconZoomOut size={15} />
-          </ActionIcon>
-        </Tooltip>
-        <Tooltip label={isWhole ? "All frames are shown" : "All frames"}>
-          <ActionIcon size={24} aria-label="Show all frames" aria-disabled={isWhole} data-disabled={isWhole || undefined} onClick={() => setWindow(wholeWindow(frameCount))}>
-            <IconArrowsHorizontal size={15} />
-          </ActionIcon>
-        </Tooltip>
-        <TimelineLegend hasTrack={rows.length > 0} />
-      </div>
+      <Strip content={content} describe={describe} window={shown} onWindow={setWindow} />
+      <TimelineTools window={shown} frameCount={frameCount} hasTrack={content.rows.length > 0} onWindow={setWindow} />
     </div>
   );
 }

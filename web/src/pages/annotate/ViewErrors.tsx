@@ -1,14 +1,16 @@
 import { Text, Tooltip } from "@mantine/core";
+import type { TriangulatedJoint } from "../../api/triangulation";
 import { jointLabel } from "../../model/joints";
 import { errorOf, gradeOf, worstMarks } from "../../model/triangulated";
 import { useKeyOf } from "../../state/keys";
 import { useAnnotating } from "./annotating";
-import { useCameras } from "./cameras";
+import { useAnnotation, useOpenRecording } from "./reading";
 import classes from "./ViewErrors.module.css";
 
 const GRADES = { good: "", fair: "±", bad: "!" } as const;
 
-function Pixels({ error }: { error: number }) {
+/** An error with its grade, which is told apart by sign as well as colour. */
+export function Pixels({ error }: { error: number }) {
   const grade = gradeOf(error);
   return (
     <span className={classes.pixels} data-grade={grade}>
@@ -18,27 +20,27 @@ function Pixels({ error }: { error: number }) {
   );
 }
 
-/** How far a joint's marks are off at worst, in its line of the joints. */
-export function JointError({ joint }: { joint: number }) {
-  const { joints } = useCameras();
-  const here = joints?.[joint];
-  const errors = here?.views.flatMap((view) => errorOf(here, view) ?? []) ?? [];
-  return errors.length > 0 ? <Pixels error={Math.max(...errors)} /> : null;
+/** How far a joint's marks are off at worst, px; null where nothing can be compared. */
+export function largestError(joint: TriangulatedJoint | undefined): number | null {
+  const errors = joint?.views.flatMap((view) => errorOf(joint, view) ?? []) ?? [];
+  return errors.length > 0 ? Math.max(...errors) : null;
 }
 
 /** How well the marks of the active joint agree, camera by camera. */
-export function ViewErrors() {
-  const { recording, state, act, run } = useAnnotating();
-  const { joints } = useCameras();
+export function ViewErrors({ joints }: { joints: readonly TriangulatedJoint[] | null }) {
+  const { act, run } = useAnnotating();
+  const recording = useOpenRecording();
+  const joint = useAnnotation((state) => state.joint);
+  const camera = useAnnotation((state) => state.camera);
   const keyOf = useKeyOf();
   if (recording.cameras.length < 2) return null;
-  const here = joints?.[state.joint];
+  const here = joints?.[joint];
   const worst = worstMarks(joints ?? [])[0];
   const views = here?.views.filter((view) => view.residual_px !== null) ?? [];
   return (
     <section className={classes.section} aria-label="Agreement of the cameras">
       <Text size="xs" fw={600}>
-        {jointLabel(state.joint)} in the cameras
+        {jointLabel(joint)} in the cameras
       </Text>
       {views.length === 0 && (
         <Text size="xs" className="quiet">
@@ -53,7 +55,7 @@ export function ViewErrors() {
             position="left"
             label={left === null ? "From the mark to the point that both views make" : `${left.toFixed(2)} px to the point of the other views, ${own?.toFixed(2)} px to the point of all that count`}
           >
-            <button type="button" className={classes.view} aria-current={view.camera === state.camera} onClick={() => act((now) => ({ ...now, camera: view.camera, draft: null }), undefined)}>
+            <button type="button" className={classes.view} aria-current={view.camera === camera} onClick={() => act((now) => ({ ...now, camera: view.camera, draft: null }), undefined)}>
               <span className="one-line">{view.camera}</span>
               {!view.is_used && <span className={classes.aside}>set aside</span>}
               <Pixels error={(here && errorOf(here, view)) ?? 0} />

@@ -1,12 +1,12 @@
 /**
- * Where the annotator's parts stand, each mounted by one line. A part reads and acts through `useAnnotating()`, and
- * answers keys with `useActions()`; the key itself is a line of `model/keymap.ts`.
+ * Where the annotator's parts stand, each mounted by one line. A part reads through the hooks of `reading.ts`, acts through
+ * `useAnnotating()`, and answers keys with `useActions()`; the key itself is a line of `model/keymap.ts`.
  */
 
-import type { ComponentType } from "react";
+import { useMemo, type ComponentType } from "react";
 import type { Camera } from "../../api/types";
 import type { View } from "../../canvas/view";
-import type { FrameMarks } from "../../model/frameMarks";
+import { mergeMarks } from "../../model/frameMarks";
 import { AssignmentBar } from "./AssignmentBar";
 import { AssignmentComments } from "./AssignmentComments";
 import { CamerasTool, CameraTools } from "./CamerasTool";
@@ -57,5 +57,8 @@ export const FRAME_TOOLS: readonly ComponentType[] = [CamerasTool, SuggestTool];
 /** Buttons at the end of the tool rail. */
 export const TOOLS: readonly ComponentType[] = [CameraTools];
 
-/** Hooks that say which frames the timeline has to mark. */
-export const MARKS: readonly (() => FrameMarks)[] = [useFlagMarks, useSubmittedMarks];
+/** Hooks that say which frames the timeline has to mark, in one. */
+export function useMarks(): ReturnType<typeof mergeMarks> {
+  const [flagged, submitted] = [useFlagMarks(), useSubmittedMarks()];
+  return useMemo(() => mergeMarks([flagged, submitted]), [flagged, submitted]);
+}

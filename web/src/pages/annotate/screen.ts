@@ -2,9 +2,9 @@
 
 export interface Screen {
   /** A pane has drawn a frame of a camera; null: it shows none. */
-  note(pane: string, camera: string, frame: number | null): void;
+  note: (pane: string, camera: string, frame: number | null) => void;
   /** Whether the camera's pictures on the screen are of this frame, all of them. */
-  shows(camera: string, frame: number): boolean;
+  shows: (camera: string, frame: number) => boolean;
 }
 
 export function createScreen(): Screen {

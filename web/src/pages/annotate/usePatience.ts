@@ -4,8 +4,8 @@ import { isForGood, onNetworkBack, pauseAfter } from "../../canvas/patience";
 interface Patience {
   /** Another one when it is time to ask again: later and later, and as soon as the network is back. */
   readonly round: number;
-  failed(failure: Error): void;
-  succeeded(): void;
+  failed: (failure: Error) => void;
+  succeeded: () => void;
 }
 
 /** Asks again for what failed for a passing reason. */

@@ -1,19 +1,22 @@
 import { useQueryClient } from "@tanstack/react-query";
-import { useCallback, useEffect, useState, useSyncExternalStore } from "react";
+import { useCallback, useEffect, useEffectEvent, useState } from "react";
 import { notifications } from "@mantine/notifications";
 import { annotationKeys, fetchAnnotations, fetchKeyFrames } from "../../api/annotations";
 import { ApiError } from "../../api/client";
 import { recordingKeys } from "../../api/recordings";
 import type { Recording } from "../../api/types";
-import type { AnnotatorState } from "../../state/annotator";
 import { useMe } from "../../state/me";
 import { keyQueueOf, queueOf, scopeOf } from "../../state/saving";
-import type { SaveStatus } from "../../state/saveQueue";
-import { createKeyFrames, type KeyFrames } from "../../state/keyFrames";
+import { createKeyFrames } from "../../state/keyFrames";
 import { keyText } from "../../model/pose";
-import type { SuggestionsState } from "../../state/suggestions";
 import { openSession, revisionsOf, type Session, type Start } from "../../state/session";
 import { openLive } from "./openLive";
+
+/** A session that is being opened, until its page is left. */
+interface Opening {
+  isGone: boolean;
+  close: () => void;
+}
 
 interface Opened {
   session: Session | null;
@@ -30,46 +33,46 @@ export function useSession(recording: Recording | undefined, start: () => Start,
   const me = useMe();
   const id = recording?.id;
 
-  useEffect(() => {
+  const open = useEffectEvent(async (opening: Opening): Promise<void> => {
     if (!recording) return;
-    let isGone = false;
-    let close = (): void => undefined;
     const scope = scopeOf(recording.id, replica);
     const queue = queueOf(scope);
-    const open = async (): Promise<void> => {
-      for (let tries = 0; tries < 3; tries += 1) {
-        const [annotations, keys] = await Promise.all([fetchAnnotations(recording.id, replica), fetchKeyFrames(recording.id, replica)]);
-        if (isGone) return;
-        // A save of an earlier visit may arrive while we load: then load again.
-        if (!queue.learn(revisionsOf(annotations), tries === 2)) continue;
-        const keyFrames = createKeyFrames(keys.map(keyText), keyQueueOf(scope), (message) =>
-          notifications.show({ color: "red", title: "The key frame was not kept", message }),
-        );
-        keyFrames.queue.flush();
-        const opened = openSession(recording, annotations, queue, start(), keyFrames);
-        const leave = openLive({ recording, replica, session: opened, me, annotations, client });
-        close = () => {
-          leave();
-          opened.close();
-        };
-        setSession(opened);
-        return;
-      }
-    };
-    open().then(
-      () => !isGone && setFailure(null),
-      (reason: Error) => !isGone && setFailure(reason),
+    for (let tries = 0; tries < 3; tries += 1) {
+      const [annotations, keys] = await Promise.all([fetchAnnotations(recording.id, replica), fetchKeyFrames(recording.id, replica)]);
+      if (opening.isGone) return;
+      // A save of an earlier visit may arrive while we load: then load again.
+      if (!queue.learn(revisionsOf(annotations), tries === 2)) continue;
+      const keyFrames = createKeyFrames(keys.map(keyText), keyQueueOf(scope), (message) =>
+        notifications.show({ color: "red", title: "The key frame was not kept", message }),
+      );
+      keyFrames.queue.flush();
+      const opened = openSession(recording, annotations, queue, start(), keyFrames);
+      const leave = openLive({ recording, replica, session: opened, me, annotations, client });
+      opening.close = () => {
+        leave();
+        opened.close();
+      };
+      setSession(opened);
+      return;
+    }
+  });
+
+  // Only another recording or replica, or another try, opens another session.
+  useEffect(() => {
+    if (id === undefined) return;
+    const opening: Opening = { isGone: false, close: () => undefined };
+    open(opening).then(
+      () => !opening.isGone && setFailure(null),
+      (reason: Error) => !opening.isGone && setFailure(reason),
     );
     return () => {
-      isGone = true;
-      close();
+      opening.isGone = true;
+      opening.close();
       setSession(null);
-      void client.invalidateQueries({ queryKey: annotationKeys.of(recording.id) });
+      void client.invalidateQueries({ queryKey: annotationKeys.of(id) });
       void client.invalidateQueries({ queryKey: recordingKeys.all });
     };
-    // Only another recording or replica, or another try, opens another session.
-    // eslint-disable-next-line react-hooks/exhaustive-deps
-  }, [id, replica, attempt]);
+  }, [client, id, replica, attempt]);
 
   useEffect(() => {
     // A server that is only away for a moment needs nobody to press a button.
@@ -80,15 +83,3 @@ export function useSession(recording: Recording | undefined, start: () => Start,
 
   return { session, failure, retry: useCallback(() => setAttempt((count) => count + 1), []) };
 }
-
-export const useAnnotatorState = (session: Session): AnnotatorState =>
-  useSyncExternalStore(useCallback((tell) => session.store.watch(tell), [session]), session.store.get);
-
-export const useSaveStatus = (session: Session): SaveStatus =>
-  useSyncExternalStore(session.watchSaving, session.saving);
-
-export const useSuggestions = (session: Session): SuggestionsState =>
-  useSyncExternalStore(useCallback((tell) => session.suggestions.watch(tell), [session]), session.suggestions.get);
-
-export const useKeyFrames = (session: Session): KeyFrames =>
-  useSyncExternalStore(useCallback((tell) => session.keyFrames.store.watch(tell), [session]), session.keyFrames.store.get);

@@ -1,8 +1,9 @@
 import { queryOptions, useQuery, useQueryClient } from "@tanstack/react-query";
-import { useCallback } from "react";
+import { useCallback, useMemo } from "react";
 import { fetchTriangulation, type MarkedView, type TriangulatedJoint, type Triangulation } from "../../api/triangulation";
 import { canTriangulate, markedViews } from "../../model/triangulated";
 import { useAnnotating } from "./annotating";
+import { useAnnotation, useOpenRecording } from "./reading";
 
 /** The same marks always make the same joints, so an answer is never asked for twice. */
 const triangulationOf = (recording: string, views: readonly MarkedView[]) =>
@@ -22,20 +23,24 @@ interface Found {
 }
 
 export function useTriangulation(): Found {
-  const { recording, state, session } = useAnnotating();
+  const { recording, session } = useAnnotating();
+  const { id, cameras } = useOpenRecording();
   const client = useQueryClient();
-  const cameras = recording.cameras.map((camera) => camera.id);
-  const views = cameras.length > 1 ? markedViews(state.poses, cameras, state.frame, state.hand) : [];
+  const poses = useAnnotation((state) => state.poses);
+  const frame = useAnnotation((state) => state.frame);
+  const hand = useAnnotation((state) => state.hand);
+  const views = useMemo(() => (cameras.length > 1 ? markedViews(poses, cameras.map((camera) => camera.id), frame, hand) : []), [cameras, poses, frame, hand]);
   const isPossible = canTriangulate(views);
   const query = useQuery({
-    ...triangulationOf(recording.id, views),
+    ...triangulationOf(id, views),
     enabled: isPossible,
   });
   const fetchNow = useCallback(async () => {
     const now = session.store.get();
-    const marked = markedViews(now.poses, recording.cameras.map((camera) => camera.id), now.frame, now.hand);
+    const opened = recording.get();
+    const marked = markedViews(now.poses, opened.cameras.map((camera) => camera.id), now.frame, now.hand);
     if (!canTriangulate(marked)) return null;
-    return { found: await client.fetchQuery(triangulationOf(recording.id, marked)), views: marked };
+    return { found: await client.fetchQuery(triangulationOf(opened.id, marked)), views: marked };
   }, [client, recording, session]);
   return { joints: isPossible && query.data ? query.data.joints : null, fetchNow };
 }

@@ -47,7 +47,7 @@ export default function BodyPage() {
       <Group justify="space-between" mb="lg" gap="md">
         <Group gap="md" align="center">
           <Title order={1}>Body with hands</Title>
-          <SegmentedControl size="xs" aria-label="Whose mean and deviations" data={POPULATIONS.map((value) => ({ value, label: NAMES[value] }))} value={population} onChange={(value) => setPopulation(value as Population)} />
+          <SegmentedControl size="xs" aria-label="Whose mean and deviations" data={POPULATIONS.map((value) => ({ value, label: NAMES[value] }))} value={population} onChange={(value) => setPopulation(value)} />
         </Group>
         <Group gap="sm">
           <FileButton accept=".npz" onChange={read}>

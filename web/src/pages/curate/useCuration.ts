@@ -1,9 +1,10 @@
-import { useCallback, useEffect, useMemo, useRef, useState, useSyncExternalStore } from "react";
+import { useEffect, useMemo, useRef, useState, useSyncExternalStore } from "react";
 import { fetchQueue, type QueueChoice, type Registration } from "../../api/registrations";
 import { request } from "../../api/client";
 import { openCuration, type Curation, type CurationState } from "../../state/curation";
 import { decisionLog } from "../../state/deciding";
 import type { DecisionStatus } from "../../state/decisionLog";
+import { useStore } from "../../state/useStore";
 
 /** More is asked for when no more than this is left behind the one shown. */
 const RESERVE = 12;
@@ -21,8 +22,8 @@ interface Opened {
 export function useCuration(choice: QueueChoice, first: string | null): Opened {
   // Another queue is another visit; where one starts is asked only once.
   const start = useRef(first);
-  const curation = useMemo(() => openCuration(decisionLog()), [choice]);
-  const state = useSyncExternalStore(useCallback((tell) => curation.store.watch(tell), [curation]), curation.store.get);
+  const curation = useMemo(() => openCuration(decisionLog(), choice), [choice]);
+  const state = useStore(curation.store);
   const [failure, setFailure] = useState<Error | null>(null);
   const [attempt, setAttempt] = useState(0);
   const cursor = useRef<{ of: Curation; next: string | null }>({ of: curation, next: null });
@@ -37,7 +38,7 @@ export function useCuration(choice: QueueChoice, first: string | null): Opened {
       const wanted = start.current;
       start.current = null;
       const before: Registration[] = wanted ? await request<Registration>("GET", `/registrations/${wanted}`).then((one) => [one], () => []) : [];
-      const page = await fetchQueue(choice, cursor.current.next);
+      const page = await fetchQueue(curation.choice, cursor.current.next);
       if (busy.current !== curation) return;
       cursor.current = { of: curation, next: page.next_cursor };
       busy.current = null;
@@ -49,12 +50,12 @@ export function useCuration(choice: QueueChoice, first: string | null): Opened {
       busy.current = null;
       setFailure(reason);
     });
-  }, [curation, choice, isShort, state.items.length, attempt]);
+  }, [curation, isShort, state.items.length, attempt]);
 
   return { curation, state, isLoading: state.items.length === 0 && state.hasMore, failure, retry: () => setAttempt((count) => count + 1) };
 }
 
 export function useDecisionStatus(): DecisionStatus {
   const log = decisionLog();
-  return useSyncExternalStore(useCallback((tell) => log.watch(tell), [log]), log.status);
+  return useSyncExternalStore(log.watch, log.status);
 }

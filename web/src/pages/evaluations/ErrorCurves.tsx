@@ -37,17 +37,17 @@ export function ErrorCurves({ comparison, camera, onWithin }: ErrorCurvesProps) 
     return { frames: all, curves: made, lost: isOne ? (own[0]?.track.lost_frames ?? []) : [] };
   }, [tracks, recording]);
 
+  const isOfSeveral = recordings.length > 1;
   const shares = useMemo(
     () =>
       tracks.map((track, place): Curve => ({
-        label: recordings.length > 1 ? `${track.name}, ${track.recording}` : track.name,
+        label: isOfSeveral ? `${track.name}, ${track.recording}` : track.name,
         unit: "%",
         values: track.shares.map((share) => (share === null ? null : 100 * share)),
         axis: "Joints below, %",
         ...trackStyle(place),
       })),
-    // eslint-disable-next-line react-hooks/exhaustive-deps -- the recordings come from the tracks
-    [tracks],
+    [tracks, isOfSeveral],
   );
   const nearest = thresholds.reduce((best, at) => (Math.abs(at - within) < Math.abs(best - within) ? at : best), thresholds[0] ?? 0);
   const place = frame === null ? "" : `frame=${frame}${camera ? `&camera=${encodeURIComponent(camera)}` : ""}`;

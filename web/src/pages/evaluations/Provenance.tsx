@@ -8,7 +8,8 @@ import { TrackName } from "./TrackName";
 const wordOf = (value: unknown): string => {
   if (typeof value === "boolean") return value ? "on" : "off";
   if (value === null || value === undefined) return "–";
-  return value === "" ? "automatic" : String(value);
+  if (typeof value === "string") return value === "" ? "automatic" : value;
+  return JSON.stringify(value);
 };
 
 /** Parameters that differ between the runs, side by side. */

@@ -9,8 +9,8 @@ const LAYERS: readonly Layers[] = ["both", "scan", "mesh"];
 export interface LookControl {
   readonly look: Look;
   /** What of it can be changed here; a scan without a mesh has neither errors nor wires. */
-  change(patch: Partial<Look>): void;
-  nextLayers(): void;
+  change: (patch: Partial<Look>) => void;
+  nextLayers: () => void;
 }
 
 /** How a person wants to see hands, on every page and after a reload; the turntable stands still at first. */

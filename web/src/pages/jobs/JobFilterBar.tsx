@@ -36,7 +36,7 @@ export function JobFilterBar({ filters, jobs, onChange }: JobFilterBarProps) {
         placeholder={filters.states.length === 0 ? "Any state" : undefined}
         data={JOB_STATES.map((state) => ({ value: state, label: LABELS[state] }))}
         value={filters.states}
-        onChange={(states) => onChange({ states: states as JobState[] })}
+        onChange={(states) => onChange({ states: states })}
         clearable
       />
       <Select

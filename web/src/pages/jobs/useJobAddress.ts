@@ -18,7 +18,7 @@ export function useJobAddress(): [JobFilters, (changes: Partial<JobFilters>) => 
   const change = (changes: Partial<JobFilters>): void => {
     const next = { ...filters, ...changes };
     const pairs = [...next.states.map((state) => ["state", state]), ...(["recording", "person", "batch", "search"] as const).flatMap((name) => (next[name] ? [[name, next[name]]] : []))];
-    setAddress(new URLSearchParams(pairs as string[][]), { replace: true });
+    setAddress(new URLSearchParams(pairs), { replace: true });
   };
   return [filters, change];
 }

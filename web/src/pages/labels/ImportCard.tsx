@@ -93,7 +93,7 @@ export function ImportCard({ recording }: { recording: Recording }) {
           <Stack gap="sm">
             <Select label="Format" data={[{ value: ANY, label: "Recognise it" }, ...(formats?.items ?? []).map((item) => ({ value: item.name, label: item.title }))]} value={options.format ?? ANY} onChange={(value) => change({ format: value || null })} allowDeselect={false} />
             <Group grow gap="sm">
-              <Select label="Hand" data={[{ value: ANY, label: "In the files" }, { value: "right", label: "Right" }, { value: "left", label: "Left" }]} value={options.hand ?? ANY} onChange={(value) => change({ hand: (value || null) as "right" | "left" | null })} allowDeselect={false} />
+              <Select label="Hand" data={[{ value: ANY, label: "In the files" }, { value: "right", label: "Right" }, { value: "left", label: "Left" }]} value={options.hand ?? ANY} onChange={(value) => change({ hand: (value || null) })} allowDeselect={false} />
               <Select label="Camera" data={[{ value: ANY, label: "In the files" }, ...recording.cameras.map((camera) => ({ value: camera.id, label: camera.id }))]} value={options.camera ?? ANY} onChange={(value) => change({ camera: value || null })} allowDeselect={false} />
             </Group>
             <Group grow gap="sm">

@@ -15,7 +15,7 @@ export function EvaluateChoice({ value, onChange, hasPeople }: EvaluateChoicePro
       label="Evaluate on the subjects left out"
       description={hasPeople ? "Once the model is stored and can be used" : "Leave subjects out, and the model can be judged on them"}
       value={hasPeople ? value : "no"}
-      onChange={(chosen) => onChange(chosen as Evaluate)}
+      onChange={(chosen) => onChange(chosen)}
     >
       <Stack gap="sm" mt="sm">
         <Radio value="no" label="No" disabled={!hasPeople} />

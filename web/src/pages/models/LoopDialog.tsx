@@ -49,7 +49,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
             {model ? `Scans are registered with ${model.name}` : "Scans are registered with the first model"}, a better one is trained from what is chosen, and all scans are registered again with that. It goes on when the browser is closed.
           </Text>
           <TextInput label="Name of the models" description="The round is added" placeholder="Hand model" maxLength={200} value={name} onChange={(event) => setName(event.currentTarget.value)} data-autofocus />
-          <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value as typeof by)}>
+          <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value)}>
             <Stack gap="sm" mt="sm">
               <Radio value="verdict" label="What the program calls good, and nobody has rejected" />
               <Radio value="decisions" label="What people have accepted by now: one round, then its registrations wait for people" />

@@ -64,7 +64,7 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
       >
         <Stack gap="md">
           <TextInput label="Name of the model" placeholder="Hand model" maxLength={200} value={name} onChange={(event) => setName(event.currentTarget.value)} data-autofocus />
-          <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value as typeof by)}>
+          <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value)}>
             <Stack gap="sm" mt="sm">
               <Radio value="decisions" label="What people have accepted" />
               <Radio value="verdict" label="What the program itself calls good, and nobody has rejected" />

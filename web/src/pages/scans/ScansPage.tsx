@@ -4,7 +4,6 @@ import { IconChecks, IconFilterOff, IconScan, IconSearch, IconTrash } from "@tab
 import { useState } from "react";
 import { Link } from "react-router";
 import { useDeleteScans, useScanCollections, useScanList, type Scan, scanThumbnailUrl } from "../../api/scans";
-import type { Side } from "../../api/types";
 import { formatAgo, formatCount } from "../../model/format";
 import { judgeSize } from "../../model/scanUnit";
 import { VerdictBadge } from "../curate/Verdict";
@@ -166,7 +165,7 @@ export default function ScansPage() {
           allowDeselect={false}
           value={filters.state ?? ANY}
           data={[{ value: ANY, label: "Any state" }, { value: "new", label: "New" }, { value: "registered", label: "Registered" }, { value: "failed", label: "Failed" }]}
-          onChange={(value) => setFilters({ state: (value || undefined) as Scan["state"] | undefined })}
+          onChange={(value) => setFilters({ state: (value || undefined) })}
         />
         <Select
           aria-label="Hand"
@@ -174,7 +173,7 @@ export default function ScansPage() {
           allowDeselect={false}
           value={filters.side ?? ANY}
           data={[{ value: ANY, label: "Either hand" }, { value: "right", label: "Right" }, { value: "left", label: "Left" }]}
-          onChange={(value) => setFilters({ side: (value || undefined) as Side | undefined })}
+          onChange={(value) => setFilters({ side: (value || undefined) })}
         />
         {filters.subject && (
           <Button variant="light" size="xs" onClick={() => setFilters({ subject: undefined })}>

@@ -52,7 +52,7 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
     else dropDraft();
   });
 
-  const draft = useMemo<Draft>(() => kept ?? { base: scan.revision, cuts: (saved?.strokes as readonly Cut[] | undefined) ?? [], undone: [], dropsObjects: saved?.drops_objects ?? false }, [kept, saved]);
+  const draft = useMemo<Draft>(() => kept ?? { base: scan.revision, cuts: (saved?.strokes as readonly Cut[] | undefined) ?? [], undone: [], dropsObjects: saved?.drops_objects ?? false }, [kept, saved, scan.revision]);
   const taken = useMemo(() => {
     if (!geometry) return null;
     const { positions, colors } = geometry.scan;
@@ -76,7 +76,7 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
     isReady,
     save,
     canFlip,
-    cut(points: readonly Point[], projection: Projection): void {
+    cut: (points: readonly Point[], projection: Projection): void => {
       const stroke = readStroke(points);
       if (!stroke || !geometry || !saved) return;
       const side = smallerSide(stroke, projection, geometry.scan.positions);
@@ -85,7 +85,7 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
       setLast({ stroke, side, projection, count: draft.cuts.length + 1 });
       set({ cuts: [...draft.cuts, cutOf(corners, projection)], undone: [] });
     },
-    flip(): void {
+    flip: (): void => {
       if (!last || !canFlip) return;
       const side = 1 - last.side;
       const corners = last.stroke.polygons[side];
@@ -93,27 +93,27 @@ export function useCrop(scan: Scan, geometry: HandGeometry | null) {
       setLast({ ...last, side });
       set({ cuts: [...draft.cuts.slice(0, -1), cutOf(corners, last.projection)] });
     },
-    undo(): void {
+    undo: (): void => {
       const gone = draft.cuts.at(-1);
       if (gone) set({ cuts: draft.cuts.slice(0, -1), undone: [...draft.undone, gone] });
     },
-    redo(): void {
+    redo: (): void => {
       const back = draft.undone.at(-1);
       if (back) set({ cuts: [...draft.cuts, back], undone: draft.undone.slice(0, -1) });
     },
-    clear(): void {
+    clear: (): void => {
       if (draft.cuts.length > 0) set({ cuts: [], undone: [] });
     },
     setDropsObjects: (dropsObjects: boolean): void => set({ dropsObjects }),
     /** As the server has it. */
-    drop(): void {
+    drop: (): void => {
       dropDraft();
       save.reset();
     },
     /** Somebody else has cropped it meanwhile, and what is drawn here was not made from that. */
     isOvertaken: kept !== null && kept.base !== scan.revision,
     /** Over the crop it was made from, or over somebody else's when that was asked for. */
-    store(revision: number = draft.base): void {
+    store: (revision: number = draft.base): void => {
       if (save.isPending) return;
       sent.current = JSON.stringify(kept);
       save.mutate({ scan: { ...scan, revision }, crop: { strokes: draft.cuts as unknown as ScanCrop["strokes"], drops_objects: draft.dropsObjects } });

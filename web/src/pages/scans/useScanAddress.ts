@@ -10,7 +10,7 @@ export function useScanAddress(): readonly [ScanFilters, (patch: Partial<ScanFil
   const text = address.toString();
   const filters = useMemo(() => {
     const query = new URLSearchParams(text);
-    return Object.fromEntries(NAMES.flatMap((name) => (query.get(name) ? [[name, query.get(name)]] : []))) as ScanFilters;
+    return Object.fromEntries(NAMES.flatMap((name) => (query.get(name) ? [[name, query.get(name)]] : [])));
   }, [text]);
   const change = (patch: Partial<ScanFilters>): void => {
     const entries = Object.entries({ ...filters, ...patch }).filter((entry): entry is [string, string] => Boolean(entry[1]));

@@ -9,7 +9,7 @@ import { badFrames, nextIn } from "../../model/badFrames";
 import { frameError } from "../../model/frameError";
 import { formatMeasure } from "../../model/format";
 import { trackRows } from "../../model/trackRows";
-import { usePlayback } from "../annotate/usePlayback";
+import { usePlayback } from "../parts/usePlayback";
 import { useLateAddress } from "../parts/useLateAddress";
 import { useIsCompact } from "../parts/useScreen";
 import { ErrorLegend } from "./ErrorLegend";
@@ -63,12 +63,14 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
   const seek = useCallback((to: number) => setFrame(clamp(to)), [clamp]);
 
   const readyPictures = useRef<Record<string, boolean>>({});
-  const [isPlaying, setPlaying] = usePlayback(recording.fps, {
+  const [isPlaying, setPlaying] = useState(false);
+  usePlayback(isPlaying, recording.fps, {
     isReady: () => cameras.every(({ id }) => readyPictures.current[id] !== false),
     step: () => {
       setFrame((now) => clamp(now + 1));
       return frame + 1 < last;
     },
+    end: () => setPlaying(false),
   });
 
   useLateAddress({ frame: String(frame), camera: isAll ? ALL : (camera?.id ?? ""), tab, layers: LAYERS.filter((layer) => layers[layer]).join(",") }, 150);
@@ -134,7 +136,7 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
             { value: "space", label: "3D view" },
           ]}
           value={shown}
-          onChange={(value) => setShown(value as "image" | "space")}
+          onChange={(value) => setShown(value)}
         />
       )}
       <div className={classes.middle} data-shown={shown}>

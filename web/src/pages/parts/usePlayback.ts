@@ -1,15 +1,16 @@
-import { useEffect, useRef, useState } from "react";
+import { useEffect, useRef } from "react";
 
 interface Steps {
   /** Whether what is shown now has been shown. */
   isReady: () => boolean;
   /** Goes on; says whether there is more to come. */
   step: () => boolean;
+  /** The last frame was reached. */
+  end: () => void;
 }
 
 /** Play at the recording's speed (at most 30 steps a second), in step with the screen. */
-export function usePlayback(fps: number, steps: Steps): [boolean, (isPlaying: boolean) => void] {
-  const [isPlaying, setPlaying] = useState(false);
+export function usePlayback(isPlaying: boolean, fps: number, steps: Steps): void {
   const current = useRef(steps);
   current.current = steps;
   useEffect(() => {
@@ -21,9 +22,8 @@ export function usePlayback(fps: number, steps: Steps): [boolean, (isPlaying: bo
       if (now < due - 2 || !current.current.isReady()) return;
       // After waiting for a picture go on at the same speed instead of hurrying.
       due = Math.max(due, now - period) + period;
-      if (!current.current.step()) setPlaying(false);
+      if (!current.current.step()) current.current.end();
     });
     return () => cancelAnimationFrame(request);
   }, [isPlaying, fps]);
-  return [isPlaying, setPlaying];
 }

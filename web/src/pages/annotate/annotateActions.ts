@@ -1,17 +1,15 @@
 import { acceptBetween } from "../../actions/annotate/acceptBetween";
 import { bringPose, annotatedFrames } from "../../actions/annotate/bring";
 import { clearHand, clearJoint } from "../../actions/annotate/clear";
-import { cancelDrag, nudgeJoint } from "../../actions/annotate/move";
+import { nudgeJoint } from "../../actions/annotate/move";
 import { placeBeside } from "../../actions/annotate/place";
 import { propagateOn } from "../../actions/annotate/propagate";
 import { goToFrame, selectCamera, selectFinger, stepJoint, switchHand } from "../../actions/annotate/select";
 import { swapHands } from "../../actions/annotate/swap";
 import { restOutside, toggleOccluded, toggleOutside } from "../../actions/annotate/visibility";
-import type { Recording } from "../../api/types";
 import { keyFramesOf, spanAt } from "../../model/interpolation";
 import { isEmpty, keyText } from "../../model/pose";
 import { activeKey, poseAt, type Action, type AnnotatorState } from "../../state/annotator";
-import type { Session } from "../../state/session";
 import type { Actions, Annotating } from "./annotating";
 
 const NUDGES = {
@@ -27,19 +25,16 @@ const NUDGES = {
 
 const FINGER_KEYS = ["wrist", "thumb", "index", "middle", "ring", "little"] as const;
 
-/** Holding a key goes faster after a while: 1, then 2, then 4 frames a step. */
-export const stepFor = (repeats: number): number => (repeats < 12 ? 1 : repeats < 40 ? 2 : 4);
-
 /** Everything of the key map that only changes the annotator's state, by its id. */
-export function annotateActions(session: Session, recording: Recording, act: Annotating["act"]): Actions {
+export function annotateActions({ session, recording, act }: Annotating): Actions {
   const { store } = session;
   const simple = (action: Action) => () => act(action, undefined);
   const toFrame = (pick: (state: AnnotatorState) => number | undefined) => () => {
     const frame = pick(store.get());
     if (frame !== undefined) act(goToFrame, frame);
   };
-  const cameras = recording.cameras.map((camera) => camera.id);
   const toCamera = (step: number) => () => {
+    const cameras = recording.get().cameras.map((camera) => camera.id);
     const at = cameras.indexOf(store.get().camera);
     const next = cameras[(at + step + cameras.length) % cameras.length];
     if (next !== undefined) act(selectCamera, next);
@@ -55,7 +50,7 @@ export function annotateActions(session: Session, recording: Recording, act: Ann
     "joint.next": () => act(stepJoint, 1),
     "joint.previous": () => act(stepJoint, -1),
     "joint.place": () => {
-      const camera = recording.cameras.find((one) => one.id === store.get().camera);
+      const camera = recording.get().cameras.find((one) => one.id === store.get().camera);
       if (camera) act(placeBeside, { x: camera.width / 2, y: camera.height / 2 });
     },
     ...Object.fromEntries(FINGER_KEYS.map((finger, index) => [`finger.${finger}`, () => act(selectFinger, index - 1)])),
@@ -78,7 +73,6 @@ export function annotateActions(session: Session, recording: Recording, act: Ann
       const span = spanAt(keyFramesOf(session.keyFrames.store.get(), state.poses, activeKey(state)), state.frame);
       if (span) act(acceptBetween, span);
     },
-    "drag.cancel": simple(cancelDrag),
     undo: () => session.undo.undo(),
     redo: () => session.undo.redo(),
     "save.now": () => session.flush(),

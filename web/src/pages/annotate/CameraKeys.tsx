@@ -1,33 +1,28 @@
-import { useLocalStorage } from "@mantine/hooks";
 import { notifications } from "@mantine/notifications";
-import { useCallback, useMemo, useRef, useState, type ReactNode } from "react";
+import { useRef } from "react";
 import { acceptAll } from "../../actions/annotate/accept";
 import { activateCamera } from "../../actions/annotate/cameras";
-import type { Size } from "../../canvas/view";
 import { jointLabel } from "../../model/joints";
 import { lookAt } from "../../model/look";
 import { keyText } from "../../model/pose";
 import { suggestViews, worstMarks } from "../../model/triangulated";
 import { suggest } from "../../state/suggestions";
-import { useShownCameras } from "../../state/shownCameras";
 import { useActions, useAnnotating } from "./annotating";
-import { CamerasContext } from "./cameras";
+import { shownCamerasOf, useShownCameras } from "./reading";
 import { useTriangulation } from "./useTriangulation";
 
-/** Several cameras of one moment: which are shown, what their marks say together, and the keys for it. */
-export function CamerasProvider({ children }: { children: ReactNode }) {
-  const { recording, session, state, act, setView } = useAnnotating();
-  const [shown, setShown] = useShownCameras(recording, state.camera);
-  const [large, setLarge] = useState<string | null>(null);
-  const [areLinesShown, setLinesShown] = useLocalStorage({ key: "handloom/epipolar", defaultValue: true, getInitialValueInEffect: false });
+/** The keys for several cameras of one moment: what their marks say together, and what is looked at. */
+export function CameraKeys() {
+  const annotating = useAnnotating();
+  const { recording, session, page, sizes, act, setView, show } = annotating;
   const { joints, fetchNow } = useTriangulation();
-  const sizes = useRef(new Map<string, Size>());
-  const tellSize = useCallback((camera: string, size: Size) => void sizes.current.set(camera, size), []);
+  const isAlone = useShownCameras().length === 1;
   const looked = useRef({ place: "", turn: 0 });
   const visited = useRef({ marks: "", next: 0 });
 
   const triangulate = async (): Promise<void> => {
-    if (recording.cameras.length < 2) return void notifications.show({ message: "This recording has one camera: there is nothing to triangulate." });
+    const state = session.store.get();
+    if (recording.get().cameras.length < 2) return void notifications.show({ message: "This recording has one camera: there is nothing to triangulate." });
     try {
       const answer = await fetchNow();
       if (!answer) {
@@ -45,20 +40,22 @@ export function CamerasProvider({ children }: { children: ReactNode }) {
   };
 
   const look = (): void => {
+    const state = session.store.get();
     const place = `${state.frame}|${state.hand}|${state.joint}`;
     const turn = looked.current.place === place ? (looked.current.turn + 1) % 3 : 0;
     looked.current = { place, turn };
-    for (const camera of shown) {
-      const size = sizes.current.get(camera.id);
+    for (const camera of shownCamerasOf(annotating)) {
+      const size = sizes.get(camera.id);
       const pose = state.poses[keyText({ camera: camera.id, frame: state.frame, hand: state.hand })];
       if (size) setView(camera.id, turn === 2 ? null : lookAt(camera, size, pose, joints, turn === 0 ? state.joint : null));
     }
   };
 
   const goToWorst = (): void => {
+    const { frame, hand } = session.store.get();
     const worst = worstMarks(joints ?? []);
     if (worst.length === 0) return void notifications.show({ message: "No mark can be compared yet: mark a joint in two cameras." });
-    const marks = JSON.stringify([state.frame, state.hand, worst]);
+    const marks = JSON.stringify([frame, hand, worst]);
     const at = visited.current.marks === marks ? visited.current.next % worst.length : 0;
     visited.current = { marks, next: at + 1 };
     const mark = worst[at];
@@ -67,24 +64,24 @@ export function CamerasProvider({ children }: { children: ReactNode }) {
 
   /** Among the pictures that are shown, with the joint kept; where one alone is shown, the annotator's own keys go through all cameras. */
   const step = (by: 1 | -1) => () => {
-    const at = shown.findIndex((camera) => camera.id === state.camera);
+    const shown = shownCamerasOf(annotating);
+    const at = shown.findIndex(({ id }) => id === session.store.get().camera);
     const next = shown[(at + by + shown.length) % shown.length];
     if (next) act(activateCamera, next.id);
   };
 
+  const enlarge = (): void => {
+    const { camera } = session.store.get();
+    show({ largeCamera: page.get().largeCamera === camera ? null : camera });
+  };
+
   useActions({
-    ...(shown.length > 1 ? { "camera.next": step(1), "camera.previous": step(-1) } : {}),
+    ...(isAlone ? {} : { "camera.next": step(1), "camera.previous": step(-1) }),
     "views.triangulate": () => void triangulate(),
-    "suggestion.frame": () => act(acceptAll, { suggestions: session.suggestions.get(), cameras: shown.map((camera) => camera.id) }),
-    "views.epipolar": () => setLinesShown(!areLinesShown),
+    "suggestion.frame": () => act(acceptAll, { suggestions: session.suggestions.get(), cameras: shownCamerasOf(annotating).map(({ id }) => id) }),
     "views.look": look,
-    "views.large": () => setLarge(large === state.camera ? null : state.camera),
+    "views.large": enlarge,
     "views.worst": goToWorst,
   });
-
-  const value = useMemo(
-    () => ({ shown, setShown, large: shown.some((camera) => camera.id === large) ? large : null, setLarge, areLinesShown, setLinesShown, joints, tellSize }),
-    [shown, setShown, large, areLinesShown, setLinesShown, joints, tellSize],
-  );
-  return <CamerasContext value={value}>{children}</CamerasContext>;
+  return null;
 }

@@ -1,8 +1,8 @@
 """How many joints an annotator moves after accepting suggestions: `python -m benchmarks.real_marks.corrections DATA`.
 
 In the marked frames of `d405_take001` the suggestions of all three infrared views are accepted at once, those of the
-track, of the track with depth, and of the hand detector. A joint needs a correction in a view where it lies farther
-from its mark than the marks are good for (`right_within_px`), or is missing. With `--write` the table goes into
+track or those of the hand detector. A joint needs a correction in a view where it lies farther
+from its mark than the marks are good for (`right_within_px`), or is missing. `--write` writes
 `benchmarks/results/corrections.md`.
 """
 
@@ -21,6 +21,7 @@ import numpy.typing as npt  # noqa: E402
 
 from benchmarks.real_marks.marked import FOLDER, MarkedRecording  # noqa: E402
 from benchmarks.real_marks.views import ROOT, follow, read_infrared  # noqa: E402
+from benchmarks.result_page import write_result  # noqa: E402
 from tracker.capture.sequence import Sequence  # noqa: E402
 from tracker.landmarks import DetectedHand, default_hand_detector  # noqa: E402
 from tracker.tracking.track import Track  # noqa: E402
@@ -29,7 +30,6 @@ Array = npt.NDArray[np.float64]
 Suggest = Callable[[int, str], Array]
 """(21, 2) px of a frame in a camera; NaN where nothing is suggested."""
 
-PAGE = ROOT / "benchmarks" / "results" / "corrections.md"
 JOINTS, BAR = 21, 6
 
 
@@ -88,7 +88,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("data", type=Path)
     parser.add_argument("--work", type=Path, default=ROOT / "out" / "real_views")
-    parser.add_argument("--write", action="store_true", help="write the table into benchmarks/results")
+    parser.add_argument("--write", action="store_true", help="write benchmarks/results/corrections.md")
     given = parser.parse_args()
     given.work.mkdir(parents=True, exist_ok=True)
     sequence = read_infrared(given.data, given.work)
@@ -96,7 +96,6 @@ def main() -> None:
     views = {camera: MarkedRecording.load(FOLDER / f"d405_take001_{camera}") for camera in ids}
     ways = {
         "track": suggest_from_track(follow(sequence, ids)),
-        "track with depth": suggest_from_track(follow(sequence, ids, use_depth=True)),
         "hand detector": suggest_detected(sequence),
         "the other pass": lambda frame, camera: views[camera].points(1, frame),
     }
@@ -111,8 +110,8 @@ def main() -> None:
             rows.append(write_row(way, whose, *count_corrections(views, suggest, only), len(ids)))
             print(rows[-1], flush=True)
     if given.write:
-        command = "    python -m benchmarks.real_marks.corrections DATA --write"
-        PAGE.write_text("\n".join(["# Corrections of suggestions", "", command, "", *rows, ""]))
+        command = "python -m benchmarks.real_marks.corrections DATA --write"
+        write_result("corrections", "Corrections after accepting suggestions", command, "\n".join(rows))
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.real_marks.agreement import compare
+from benchmarks.real_marks.corrections import count_corrections
 from benchmarks.real_marks.marked import FOLDER, MarkedRecording
 
 LIMIT = 8.0
@@ -50,3 +51,20 @@ def test_both_passes_mark_the_same_frames_and_agree_in_most_joints(folder):
 def test_frames_that_cut_the_hand_off_are_named_and_all_others_count():
     assert MarkedRecording.load(FOLDER / "d405_take001_cam0").list_whole(126) == {*range(2, 10), *range(30, 121)}
     assert MarkedRecording.load(FOLDER / "uvr_cube_white").list_whole(200) == set(range(200))
+
+
+def test_a_joint_off_its_mark_or_missing_needs_a_correction_and_one_that_the_passes_do_not_share_none():
+    recording = MarkedRecording.load(FOLDER / "d405_take001_cam0")
+    frames = sorted(recording.marks)
+
+    def suggest(frame: int, camera: str) -> np.ndarray:
+        joints = recording.points(0, frame)
+        return joints + np.array([2.0 * recording.limit, 0.0]) if frame == frames[0] else joints
+
+    marked, wrong = count_corrections({"cam0": recording}, suggest, 0)
+    assert marked.tolist() == [np.count_nonzero(np.isfinite(recording.points(0, frame)[:, 0])) for frame in frames]
+    assert wrong.tolist() == [marked[0], *[0.0] * (len(frames) - 1)]
+    shared, _ = count_corrections({"cam0": recording}, suggest, None)
+    assert np.all(shared <= marked) and shared.sum() < marked.sum()
+    _, missing = count_corrections({"cam0": recording}, lambda frame, camera: np.full((21, 2), np.nan), 0)
+    np.testing.assert_array_equal(missing, marked)

@@ -44,6 +44,8 @@ class PatchImage:
     ) -> PatchImage:
         """A colour image without depth of its own: hands as they are drawn where they are expected, and what is near.
 
+        Only blue is kept, in which nails are most unlike skin.
+
         Args:
             depth: (H, W) of the drawn hands, m; 0 elsewhere. Pixels beside them get that of the nearest.
             color: (H, W, 3) RGB.
@@ -53,4 +55,5 @@ class PatchImage:
         away, (rows, columns) = distance_transform_edt(depth <= 0.0, return_indices=True)  # type: ignore[misc]
         filled = depth[rows, columns]
         mask = (filled > 0.0) & (away * filled <= margin * focal)
-        return cls(np.where(mask, filled, np.float32(0.0)).astype(np.float32), mask, focal, color)
+        blue = np.repeat(color[:, :, 2:], 3, axis=2)
+        return cls(np.where(mask, filled, np.float32(0.0)).astype(np.float32), mask, focal, blue)

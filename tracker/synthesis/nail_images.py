@@ -25,11 +25,15 @@ EXPECTED_OFF = 0.006
 """Standard deviation, m, by which the hands of a tracked frame are elsewhere than they are expected."""
 
 
-def render_nail_images(count: int, seed: int, how: RandomHands | None = None) -> Iterator[AnnotatedImage]:
+NEAR_ENOUGH = RandomHands(nearest=0.30, farthest=0.60, small_camera=0.0)
+"""A nail is 9 px wide or more."""
+
+
+def render_nail_images(count: int, seed: int, how: RandomHands = NEAR_ENOUGH) -> Iterator[AnnotatedImage]:
     """Images of random hands; each depends on the seed and its number only."""
     for number in range(count):
         rng = np.random.default_rng([seed, 1, number])
-        performance = arrange_random_hands(how or RandomHands(), rng)
+        performance = arrange_random_hands(how, rng)
         moment = render_moment(performance, 0)
         found = _cut_out(performance, moment, number, rng)
         if found is not None:

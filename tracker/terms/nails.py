@@ -49,14 +49,14 @@ class Nails:
     Attributes:
         places: Of all nails of the scene.
         views: What was detected.
-        weight: Of a nail.
+        weight: Of a nail; chosen on one motion (benchmarks/rendered_views/nails.py).
         rejection: λ of Eq. 14, m.
         reach: mm; a nail that far from its ray has a quarter of its pull.
     """
 
     places: NailPlaces
     views: Sequence[SeenNails]
-    weight: float = 1.0
+    weight: float = 0.3
     rejection: float = 0.015
     reach: float = 15.0
 

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import KDTree
 
 from tracker.bodies.body_registration import BodyRegistration
 from tracker.bodies.body_state import SIDES
@@ -58,6 +59,10 @@ def compare(made: GeneratedBody, registration: BodyRegistration) -> dict[str, An
             "fingers_mm": fingers if made.shows_hand[side] else {},
         }
     surface, _ = made.true_surface(model.faces)
+    hidden = [body_hand(model, side).vertices for side in SIDES if not made.shows_hand[side]]
+    if hidden:  # what is guessed is no surface that was scanned
+        nearest = KDTree(made.true_vertices).query(surface)[1]
+        surface = surface[~np.isin(nearest, np.concatenate(hidden))]
     found = SurfaceSearch(model.template, model.faces).match(
         registration.vertices, surface, np.zeros_like(surface), reach=1.0
     )

@@ -1,6 +1,6 @@
 """How people hold their hands: the mixture that registration of bodies expects, and poses that generated people take.
 
-    python scripts/build_hand_poses.py [--components 10]
+    python scripts/build_hand_poses.py [--components 10] [--learnt 31] [--taken 6]
 
 Every generated hand of `tracker/synthesis/scans` (37 people, 51 poses) is fitted with the trained hand, vertex by
 vertex. Poses of the people for training give the mixture of Gaussians ([R17] Eq. 17), written to
@@ -52,17 +52,22 @@ def find_poses(subjects: tuple[int, ...]) -> Array:
 def main() -> None:
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--components", type=int, default=10)
+    parser.add_argument("--components", type=int, default=10, help="Gaussians of the mixture")
+    parser.add_argument(
+        "--learnt", type=int, default=len(TRAIN_SUBJECTS), help="people whom the mixture is learnt from"
+    )
+    parser.add_argument("--taken", type=int, default=len(TEST_SUBJECTS), help="people whose poses are taken")
     arguments = parser.parse_args()
     model = body_model()
     columns = slice(3 * (body_hand(model, "right").fingers[0] - 1), 3 * body_hand(model, "right").fingers[-1])
     own = model.pose_components[:, columns]
     components = own[np.any(own != 0.0, axis=1)]
-    tested = find_poses(TEST_SUBJECTS)
+    takers = TEST_SUBJECTS[: arguments.taken]
+    tested = find_poses(takers)
     Path(POSES).parent.mkdir(exist_ok=True)
-    names = np.array([name for _ in TEST_SUBJECTS for name in POSE_NAMES])
+    names = np.array([name for _ in takers for name in POSE_NAMES])
     write_plain_npz(POSES, {"poses": tested.astype(np.float32), "names": names})
-    learnt = find_poses(TRAIN_SUBJECTS).reshape(-1, 3 * tested.shape[1])
+    learnt = find_poses(TRAIN_SUBJECTS[: arguments.learnt]).reshape(-1, 3 * tested.shape[1])
     coefficients = (learnt - model.pose_mean[columns]) @ np.linalg.inv(components)
     mixture = fit_mixture(coefficients, arguments.components)
     Path(MIXTURE).parent.mkdir(exist_ok=True)

@@ -12,9 +12,9 @@ from uuid import UUID
 from dbos import DBOS, DBOSConfig
 from sqlalchemy import make_url, select
 
+from server.compute import ComputeContext
 from server.database import Database
 from server.database.migrate import upgrade
-from server.evaluations.judge import Judge
 from server.evaluations.service import evaluate
 from server.jobs import workers
 from server.jobs.dispatcher import Dispatcher
@@ -42,19 +42,19 @@ def run_worker(settings: Settings) -> None:
     upgrade(database)
     storage = open_storage(settings)
     _drop_leftovers(database, storage)
-    slot = WorkerName.acquire(storage.root / "workers", workers.find_own_host(settings.worker_host))
+    held = WorkerName.acquire(storage.root / "workers", workers.find_own_host(settings.worker_host))
     stopping = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stopping.set())
     with database.writing() as session:
-        worker_id = workers.register_worker(session, slot.name, slot.host).id
-    judge = Judge(database, storage)
-    context = WorkerContext(database, storage, worker_id, lambda track_id: _evaluate(database, judge, track_id))
+        worker_id = workers.register_worker(session, held.name, held.host).id
+    computing = ComputeContext(database, storage)
+    context = WorkerContext(database, storage, worker_id, lambda track_id: _evaluate(computing, track_id))
     workflows = register_workflows(context)
     config: DBOSConfig = {
         "name": APPLICATION,
         "system_database_url": find_system_database(settings),
-        "executor_id": slot.name,
+        "executor_id": held.name,
         "application_version": APPLICATION_VERSION,
         "log_level": "WARNING",
         "use_listen_notify": False,
@@ -64,24 +64,24 @@ def run_worker(settings: Settings) -> None:
     DBOS.register_queue(QUEUE, worker_concurrency=JOBS_AT_ONCE, polling_interval_sec=0.25, on_conflict="always_update")
     threading.Thread(target=_beat_forever, args=(database, worker_id), name="heartbeat", daemon=True).start()
     threading.Thread(target=_warm_up, name="warm-up", daemon=True).start()
-    log.info("worker %s ready, pid %d", slot.name, os.getpid())
+    log.info("worker %s ready, pid %d", held.name, os.getpid())
     _dispatch_until(stopping, Dispatcher(database, workflows))
     with database.writing() as session:
         workers.stop_worker(session, worker_id)
-    log.info("worker %s stops; unfinished jobs wait for the next one", slot.name)
+    log.info("worker %s stops; unfinished jobs wait for the next one", held.name)
     logging.shutdown()
     # A step in progress is dropped: ended in order it would be recorded as failed. It is done again, as after a crash.
     os._exit(0)
 
 
-def _evaluate(database: Database, judge: Judge, track_id: UUID) -> None:
+def _evaluate(context: ComputeContext, track_id: UUID) -> None:
     """Find the error of a new track against the labels, so that every list shows it."""
     from tracker.capture import JUDGING
 
     try:
-        with database.reading() as session:
+        with context.database.reading() as session:
             row = get_track(session, track_id)
-        evaluate(database, judge, row, JUDGING)
+        evaluate(context, row, JUDGING)
     except Exception:  # the track is stored; whoever opens it is told what is wrong with its evaluation
         log.exception("track %s could not be evaluated", track_id)
 

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from benchmarks.rendered_views.setting import TIPS, Setting
 from benchmarks.rendered_views.shown import Shown
 from tracker.capture.frame import CameraFrame, Frame
+from tracker.fitting.choose_views import PLENTY
 from tracker.fitting.frame_fit import FitOptions, fit_frame
 from tracker.fitting.objective import Objective
 from tracker.fitting.options import TrackOptions
@@ -85,7 +86,7 @@ def follow(shown: Shown, setting: Setting, moments: range | None = None) -> Foll
     for index in moments:
         frames, covers = _read(shown, cameras, index, noise, setting.seed)
         started = perf_counter()
-        predicted = state.predict(scene)
+        predicted = state.predict(scene, bends=len(cameras) >= PLENTY)
         objective = Objective(terms={"collision": Collision()} if setting.has("C") else {})
         if setting.has("O") and before is not None:
             flow = _find_flow(scene.pose_at(state.pose), cameras, before, (frames, covers), setting.flow_weight)
@@ -93,6 +94,8 @@ def follow(shown: Shown, setting: Setting, moments: range | None = None) -> Foll
                 objective = replace(objective, terms={**objective.terms, "flow": flow})
         if setting.has("S"):
             seen = _see(shown, setup, setting, cameras, frames, noise, scene.pose_at(predicted))
+            followed = {hand: setup.names[hand] for hand in setup.hands}
+            seen = seen.without_jumps(scene.pose_at(predicted), followed, sequence.fps)
             pose = fit_views(setup, objective, seen, _pair(cameras, frames), predicted, setting.iterations).pose
         else:
             pose = _fit_contours(setup, objective, cameras, frames, predicted, setting.iterations)

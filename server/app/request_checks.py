@@ -1,4 +1,4 @@
-"""Stands before everything: hosts and origins that may not, headers that every answer carries."""
+"""Checked before every request: the Host and Origin that it comes with. And the headers that every answer carries."""
 
 from __future__ import annotations
 

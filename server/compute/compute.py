@@ -50,6 +50,16 @@ class Compute:
         assert not named, "arguments go by their place"
         return await get_running_loop().run_in_executor(self._threads, self._compute, work, arguments)
 
+    def ask(
+        self,
+        work: Callable[Concatenate[ComputeContext, Arguments], Result],
+        *arguments: Arguments.args,
+        **named: Arguments.kwargs,
+    ) -> Result:
+        """As `run`, for a route that waits in a thread of its own."""
+        assert not named, "arguments go by their place"
+        return self._threads.submit(self._compute, work, arguments).result()
+
     def close(self) -> None:
         """End the process and the threads."""
         if self._process is not None:
@@ -58,7 +68,10 @@ class Compute:
 
     def _prepare(self, prepare: Callable[[ComputeContext], None]) -> None:
         try:
-            self._compute(prepare, ())
+            if self._process is None:
+                prepare(self._here)
+            else:  # to compile takes as long as it takes
+                self._process.ask(prepare, (), limit_seconds=None)
         except ComputeStoppedError as error:
             log.info("not prepared: %s", error)
         except Exception:

@@ -11,10 +11,12 @@ import logging
 import multiprocessing
 import os
 import shutil
+import signal
 import tempfile
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import Connection
 from multiprocessing.managers import BaseManager, BaseProxy
 from typing import TYPE_CHECKING, Any
@@ -33,8 +35,18 @@ NICENESS = 10
 """As the command `nice` has it: beside saves, it gets a tenth of a processor that both want."""
 
 
+LIMIT_SECONDS = 300.0
+"""Of one question. The longest known, a report on many tracks, takes half a minute beside other work."""
+
+
 class ComputeStoppedError(StudioError):
     """The process that computes has ended, twice in a row or because the studio stops."""
+
+    status_code = 503
+
+
+class ComputeTooLongError(StudioError):
+    """A computation took longer than it may, and was ended."""
 
     status_code = 503
 
@@ -46,6 +58,9 @@ class _Answerer:
         configure_logging(settings.log_level)
         self._context = ComputeContext(Database(settings.sqlalchemy_url), open_storage(settings))
 
+    def get_pid(self) -> int:
+        return os.getpid()
+
     def answer(self, work: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
         try:
             return work(self._context, *arguments)
@@ -54,7 +69,10 @@ class _Answerer:
 
 
 class _AnswererProxy(BaseProxy):
-    _exposed_ = ("answer",)
+    _exposed_ = ("answer", "get_pid")
+
+    def get_pid(self) -> int:
+        return self._callmethod("get_pid")  # pyright: ignore[reportReturnType]
 
     def answer(self, work: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
         return self._callmethod("answer", (work, arguments))
@@ -77,6 +95,7 @@ class _Running:
     lifeline: Connection
     folder: str
     answerer: _AnswererProxy
+    pid: int
 
     @classmethod
     def start(cls, settings: Settings) -> _Running:
@@ -87,13 +106,17 @@ class _Running:
         try:
             with theirs:
                 manager.start(_live_with, (theirs, folder))
-            return cls(manager, lifeline, folder, manager.make_answerer(settings))
+            answerer = manager.make_answerer(settings)
+            return cls(manager, lifeline, folder, answerer, answerer.get_pid())
         except BaseException:
             lifeline.close()
             shutil.rmtree(folder, ignore_errors=True)
             raise
 
-    def end(self) -> None:
+    def end(self, *, is_hung: bool = False) -> None:
+        if is_hung:  # it would not hear that it is to end
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self.pid, signal.SIGKILL)
         self.lifeline.close()
         self.manager.shutdown()
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -108,17 +131,32 @@ class ComputeProcess:
         self._is_closed = False
         self._lock = threading.Lock()
 
-    def ask(self, work: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-        """What `work` gives over there, or raises. It is asked once more when the process dies meanwhile."""
+    def ask(
+        self,
+        work: Callable[..., Any],
+        arguments: tuple[Any, ...],
+        limit_seconds: float | None = LIMIT_SECONDS,
+    ) -> Any:
+        """What `work` gives over there, or raises. It is asked once more when the process dies meanwhile.
+
+        After `limit_seconds` the process is ended; other questions that it was at are asked again in a new one.
+        """
         for _ in range(2):
             running = None
             try:
                 running = self._get()
-                answer = running.answerer.answer(work, arguments)
+                with _Limit(limit_seconds, partial(self._drop, running, is_hung=True)) as limit:
+                    answer = running.answerer.answer(work, arguments)
             except (EOFError, ConnectionError, FileNotFoundError) as error:  # of the connection: `work` raises below
                 if not self._is_closed:
                     log.warning("the process that computes has ended (%s: %s)", type(error).__name__, error)
                 self._drop(running)
+                if running is not None and limit.is_over:
+                    log.warning("%s took longer than %g s and was ended", work.__name__, limit_seconds)
+                    raise ComputeTooLongError(
+                        f"This took longer than {limit_seconds:g} s and was ended. Ask for less, or try again later; "
+                        "if it happens again, the log of the studio says what was computed."
+                    ) from None
                 continue
             if isinstance(answer, Failure):
                 answer.error.add_note(answer.note)
@@ -142,12 +180,39 @@ class ComputeProcess:
                 self._running = _Running.start(self._settings)
             return self._running
 
-    def _drop(self, running: _Running | None) -> None:
+    def _drop(self, running: _Running | None, *, is_hung: bool = False) -> None:
         with self._lock:
             if running is None or self._running is not running:
                 return
             self._running = None
-            running.end()
+            running.end(is_hung=is_hung)
+
+
+class _Limit:
+    """Does something when a time is over before what it stands around has ended.
+
+    Args:
+        seconds: None is no limit.
+    """
+
+    def __init__(self, seconds: float | None, act: Callable[[], None]) -> None:
+        self.is_over = False
+        self._act = act
+        self._timer = None if seconds is None else threading.Timer(seconds, self._end)
+
+    def __enter__(self) -> _Limit:
+        if self._timer is not None:
+            self._timer.daemon = True
+            self._timer.start()
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+
+    def _end(self) -> None:
+        self.is_over = True
+        self._act()
 
 
 def _live_with(lifeline: Connection, folder: str) -> None:

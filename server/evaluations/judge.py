@@ -7,10 +7,7 @@ import threading
 import uuid
 from collections import OrderedDict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
-
-from fastapi import Depends
-from starlette.requests import HTTPConnection
+from typing import TYPE_CHECKING, Any
 
 from server.database import Database
 from server.evaluations.labels import LabelsId, read_labels
@@ -43,14 +40,14 @@ class Verdict:
 class Judge:
     """Judges and remembers, the least recently asked for forgotten first. Who asks for the same at a time waits."""
 
-    def __init__(self, database: Database, storage: Storage) -> None:
-        self._database, self._storage = database, storage
+    def __init__(self, storage: Storage) -> None:
+        self._storage = storage
         self._verdicts: OrderedDict[tuple[uuid.UUID, str], Verdict] = OrderedDict()
         self._locks: dict[tuple[uuid.UUID, str], threading.Lock] = {}
         self._lock = threading.Lock()
 
-    def find(self, track_id: uuid.UUID, labels: LabelsId) -> Verdict:
-        """The verdict, worked out now if need be. Called from the thread pool: it may take seconds."""
+    def find(self, database: Database, track_id: uuid.UUID, labels: LabelsId) -> Verdict:
+        """The verdict, worked out now if need be, which may take seconds."""
         key = (track_id, labels.key)
         with self._lock:
             lock = self._locks.setdefault(key, threading.Lock())
@@ -60,7 +57,7 @@ class Judge:
                     self._verdicts.move_to_end(key)
                     return self._verdicts[key]
             try:
-                verdict = self._judge(track_id, labels)
+                verdict = self._judge(database, track_id, labels)
             finally:
                 with self._lock:
                     self._locks.pop(key, None)
@@ -70,11 +67,11 @@ class Judge:
                     self._verdicts.popitem(last=False)
             return verdict
 
-    def _judge(self, track_id: uuid.UUID, which: LabelsId) -> Verdict:
+    def _judge(self, database: Database, track_id: uuid.UUID, which: LabelsId) -> Verdict:
         from tracker import load_track
         from tracker.evaluation import evaluate_track
 
-        with self._database.reading() as session:
+        with database.reading() as session:
             labels = read_labels(session, self._storage, which)
         folder = self._storage.folder("tracks", track_id)
         track = load_track(folder)
@@ -84,14 +81,3 @@ class Judge:
             labels=labels.facts,
             track_sha256=hashlib.sha256((folder / "track.npz").read_bytes()).hexdigest(),
         )
-
-
-async def get_judge(connection: HTTPConnection) -> Judge:
-    """The app's."""
-    state = connection.app.state
-    if not hasattr(state, "judge"):
-        state.judge = Judge(state.database, state.storage)
-    return state.judge
-
-
-JudgeDep = Annotated[Judge, Depends(get_judge)]

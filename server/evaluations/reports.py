@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import uuid
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
+from server.access.models import Account
+from server.compute import ComputeContext
+from server.errors import InvalidError
 from server.evaluations.schemas import Comparison, EvaluationQuery
+from server.evaluations.service import compare
 from server.storage import Storage
 from tracker import say_count
 
@@ -14,6 +18,20 @@ if TYPE_CHECKING:
 
 MOST_PICTURES = 48
 """In one report; shared out among its tracks."""
+
+
+def write_report(
+    context: ComputeContext, kind: Literal["html", "csv", "json"], query: EvaluationQuery, account: Account
+) -> tuple[Comparison, str]:
+    """A comparison and its file: a page that needs nothing else, a table of every joint, or the numbers as JSON."""
+    from tracker.evaluation import write_csv
+
+    comparison, judged = compare(context, query, account)
+    if not judged:
+        raise InvalidError("A report needs at least one track: give `track`, `sequence` or `project`.")
+    if kind == "html":
+        return comparison, write_html_report(context.storage, comparison, judged, query)
+    return comparison, write_csv(judged) if kind == "csv" else comparison.model_dump_json(indent=1)
 
 
 def write_html_report(

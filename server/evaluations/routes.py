@@ -9,15 +9,13 @@ from fastapi import APIRouter, Path, Query, Request, Response
 
 from server.access.service import CurrentAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
-from server.database import DatabaseDep
+from server.compute import ComputeDep
 from server.database.frames import FramePath
 from server.download import name_download
-from server.errors import InvalidError, error_responses
+from server.errors import error_responses
 from server.evaluations import service
-from server.evaluations.judge import JudgeDep
-from server.evaluations.reports import write_html_report
+from server.evaluations.reports import write_report
 from server.evaluations.schemas import Comparison, EvaluationQuery, Hand
-from server.storage import StorageDep
 from server.tracks.seen_track import SeenTrack
 
 router = APIRouter(tags=["evaluations"], responses=error_responses(404))
@@ -25,22 +23,18 @@ router = APIRouter(tags=["evaluations"], responses=error_responses(404))
 QueryDep = Annotated[EvaluationQuery, Query()]
 SourceQuery = Annotated[list[SourceChoice], Query(min_length=1, max_length=10, description=SOURCES_HELP)]
 JUDGING: list[SourceChoice] = ["independent"]
-
-
 IMMUTABLE = "private, max-age=31536000, immutable"
 MEDIA_TYPES = {"html": "text/html; charset=utf-8", "csv": "text/csv; charset=utf-8", "json": "application/json"}
 REPORT_POLICY = "sandbox; default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 
 
 @router.get("/tracks/{track_id}/evaluation")
-def get_track_evaluation(
-    track: SeenTrack, database: DatabaseDep, judge: JudgeDep, source: SourceQuery = JUDGING
-) -> dict[str, Any]:
+def get_track_evaluation(track: SeenTrack, compute: ComputeDep, source: SourceQuery = JUDGING) -> dict[str, Any]:
     """Errors of a track against the annotations as they are now, px, for each joint and frame.
 
     Joints that a track had a part in do not count unless `source` asks for them; `sources` says how many that are.
     """
-    return service.evaluate(database, judge, track, source)
+    return compute.ask(service.evaluate, track, source)
 
 
 @router.get(
@@ -58,9 +52,7 @@ def get_evaluation_picture(
     frame: FramePath,
     hand: Hand,
     request: Request,
-    database: DatabaseDep,
-    storage: StorageDep,
-    judge: JudgeDep,
+    compute: ComputeDep,
     source: SourceQuery = JUDGING,
 ) -> Response:
     """An annotated hand cut out of its image: what was marked, and where the track has it."""
@@ -68,14 +60,14 @@ def get_evaluation_picture(
     headers = {"Cache-Control": IMMUTABLE, "ETag": tag}
     if tag in request.headers.get("if-none-match", ""):
         return Response(status_code=304, headers=headers)
-    data = service.draw_picture(database, storage, judge, track, labels, (camera, frame, hand), source)
+    data = compute.ask(service.draw_picture, track, labels, (camera, frame, hand), source)
     return Response(data, media_type="image/jpeg", headers=headers)
 
 
 @router.get("/evaluations")
-def compare_tracks(query: QueryDep, database: DatabaseDep, judge: JudgeDep, account: CurrentAccount) -> Comparison:
+def compare_tracks(query: QueryDep, compute: ComputeDep, account: CurrentAccount) -> Comparison:
     """Tracks judged by annotations, side by side: tables, curves, worst frames, differences against one of them."""
-    return service.compare(database, judge, query, account)[0]
+    return compute.ask(service.describe_comparison, query, account)
 
 
 @router.get(
@@ -86,23 +78,11 @@ def compare_tracks(query: QueryDep, database: DatabaseDep, judge: JudgeDep, acco
 def get_report(
     kind: Literal["html", "csv", "json"],
     query: QueryDep,
-    database: DatabaseDep,
-    storage: StorageDep,
-    judge: JudgeDep,
+    compute: ComputeDep,
     account: CurrentAccount,
 ) -> Response:
     """The same as a file: a page that needs nothing else, a table of every joint, or the numbers as JSON."""
-    from tracker.evaluation import write_csv
-
-    comparison, judged = service.compare(database, judge, query, account)
-    if not judged:
-        raise InvalidError("A report needs at least one track: give `track`, `sequence` or `project`.")
-    if kind == "html":
-        text = write_html_report(storage, comparison, judged, query)
-    elif kind == "csv":
-        text = write_csv(judged)
-    else:
-        text = comparison.model_dump_json(indent=1)
+    comparison, text = compute.ask(write_report, kind, query, account)
     recordings = list(dict.fromkeys(track.recording for track in comparison.tracks))
     others = [f"and {len(recordings) - 1} more"] if len(recordings) > 1 else []
     what = f"evaluation-{comparison.made_at:%Y%m%d-%H%M}"

@@ -9,13 +9,13 @@ from urllib.parse import quote, urlencode
 
 from server.access.models import Account
 from server.access.policy import check_sees_tracks
-from server.database import Database, utc_now
+from server.compute import ComputeContext
+from server.database import utc_now
 from server.errors import NotFoundError
 from server.evaluations.choice import Chosen, choose_tracks
 from server.evaluations.judge import Judge
 from server.evaluations.labels import LabelsId, find_current_labels, find_snapshots
 from server.evaluations.schemas import Comparison, EvaluationQuery
-from server.storage import Storage
 from server.tracks.models import TrackRow
 
 if TYPE_CHECKING:
@@ -24,36 +24,34 @@ if TYPE_CHECKING:
 VISIBILITIES = {"occluded": 1, "visible": 2}
 
 
-def evaluate(database: Database, judge: Judge, row: TrackRow, source: Sequence[str]) -> dict[str, Any]:
+def evaluate(context: ComputeContext, row: TrackRow, source: Sequence[str]) -> dict[str, Any]:
     """Evaluate a track against the annotations of its recording.
 
     Its mean error by joints that no track had a part in is kept with its row.
     """
     from tracker.capture import JUDGING
 
-    with database.reading() as session:
+    with context.database.reading() as session:
         labels = find_current_labels(session, row.sequence_id)
-    evaluation = judge.find(row.id, labels).evaluation
+    evaluation = context.keep(Judge).find(context.database, row.id, labels).evaluation
     error_px = evaluation.select(sources=JUDGING).statistics.mean
     if error_px != row.error_px:
-        with database.writing() as session:
+        with context.database.writing() as session:
             track = session.get(TrackRow, row.id)
             assert track is not None
             track.error_px = error_px
     return evaluation.select(sources=source).to_json()
 
 
-def compare(
-    database: Database, judge: Judge, query: EvaluationQuery, account: Account
-) -> tuple[Comparison, list[JudgedTrack]]:
+def compare(context: ComputeContext, query: EvaluationQuery, account: Account) -> tuple[Comparison, list[JudgedTrack]]:
     """The comparison that was asked for, and the tracks in it; raises at a recording that the account must not see."""
     from tracker.evaluation import compare_tracks
 
-    with database.reading() as session:
+    with context.database.reading() as session:
         chosen = choose_tracks(session, query)
         for sequence_id in dict.fromkeys(one.sequence.id for one in chosen):
             check_sees_tracks(session, account, sequence_id)
-    judged = [_judge(judge, one, query) for one in chosen]
+    judged = [_judge(context, one, query) for one in chosen]
     reference = query.reference or next((one.track.id for one in chosen), None)
     document = compare_tracks(judged, reference=None if reference is None else str(reference), within_px=query.within)
     for one, described in zip(chosen, document["tracks"], strict=True):
@@ -64,10 +62,15 @@ def compare(
     return Comparison.model_validate(document | more), judged
 
 
-def _judge(judge: Judge, one: Chosen, query: EvaluationQuery) -> JudgedTrack:
+def describe_comparison(context: ComputeContext, query: EvaluationQuery, account: Account) -> Comparison:
+    """The comparison alone, as the page shows it."""
+    return compare(context, query, account)[0]
+
+
+def _judge(context: ComputeContext, one: Chosen, query: EvaluationQuery) -> JudgedTrack:
     from tracker.evaluation import JudgedTrack
 
-    verdict = judge.find(one.track.id, one.labels)
+    verdict = context.keep(Judge).find(context.database, one.track.id, one.labels)
     return JudgedTrack(
         key=str(one.track.id),
         name=one.track.name,
@@ -101,9 +104,7 @@ def write_picture_address(one: Chosen, camera: str, frame: int, hand: str, sourc
 
 
 def draw_picture(
-    database: Database,
-    storage: Storage,
-    judge: Judge,
+    context: ComputeContext,
     track: TrackRow,
     labels_key: str,
     place: tuple[str, int, str],
@@ -113,15 +114,18 @@ def draw_picture(
     from tracker import load_sequence
     from tracker.evaluation import draw_item, encode_jpeg
 
-    with database.reading() as session:
+    with context.database.reading() as session:
         labels = _find_labels(session, track.sequence_id, labels_key)
-    evaluation = judge.find(track.id, labels).evaluation.select(sources=source)
+    found = context.keep(Judge).find(context.database, track.id, labels)
+    evaluation = found.evaluation.select(sources=source)
     camera, frame, hand = place
     keys = zip(evaluation.camera, evaluation.frame.tolist(), evaluation.hand, strict=True)
     item = next((number for number, key in enumerate(keys) if key == place), None)
     if item is None:
         raise NotFoundError(f"The {hand} hand in frame {frame} of {camera} is not both annotated and tracked.")
-    return encode_jpeg(draw_item(load_sequence(storage.folder("sequences", track.sequence_id)), evaluation, item))
+    return encode_jpeg(
+        draw_item(load_sequence(context.storage.folder("sequences", track.sequence_id)), evaluation, item)
+    )
 
 
 def _find_labels(session: Any, sequence_id: uuid.UUID, key: str) -> LabelsId:

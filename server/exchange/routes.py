@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,13 +11,13 @@ from fastapi import APIRouter, Query, Request, Response
 
 from server.access.service import CurrentAccount, LeadAccount
 from server.annotations.schemas import SOURCES_HELP, SourceChoice
-from server.annotations.snapshots import get_snapshot
+from server.compute import ComputeDep
 from server.database import Database, DatabaseDep
 from server.download import make_file_name, name_download
 from server.errors import InvalidError, error_responses
 from server.exchange import importing
 from server.exchange.describe import describe_imported, describe_report
-from server.exchange.label_sets import check_track, keep_visible, open_label_set, read_labels
+from server.exchange.exporting import ExportChoice, LabelFile, export
 from server.exchange.schemas import (
     ExportNotes,
     LabelFormatOut,
@@ -32,7 +31,7 @@ from server.storage import Storage, StorageDep
 from server.storage.sent_json import read_options, reading_json
 from server.storage.upload import Upload, UploadLimits, work_on_upload
 from server.storage.upload_body import describe_upload_body
-from tracker.label_formats import JOINT_ORDERS, LABEL_FORMATS, ExportedLabels, ImportHints, export_labels, pack_files
+from tracker.label_formats import JOINT_ORDERS, LABEL_FORMATS, ImportHints
 
 router = APIRouter(tags=["labels"], responses=error_responses(404))
 
@@ -93,7 +92,7 @@ _FILE: dict[int | str, dict[str, Any]] = {
 def export_recording_labels(
     sequence_id: uuid.UUID,
     database: DatabaseDep,
-    storage: StorageDep,
+    compute: ComputeDep,
     account: CurrentAccount,
     format_: FormatQuery,
     snapshot_id: SnapshotQuery = None,
@@ -101,7 +100,7 @@ def export_recording_labels(
     source: SourceQuery = ALL,
 ) -> Response:
     """The labels of a recording in a format, as one file: a zip where the format has several."""
-    made = _export(database, storage, account, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id))
+    made = compute.ask(export, account, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id))
     return _answer(database, made, format_, [sequence_id])
 
 
@@ -109,7 +108,7 @@ def export_recording_labels(
 def preview_export(
     sequence_id: uuid.UUID,
     database: DatabaseDep,
-    storage: StorageDep,
+    compute: ComputeDep,
     account: CurrentAccount,
     format_: FormatQuery,
     snapshot_id: SnapshotQuery = None,
@@ -117,13 +116,13 @@ def preview_export(
     source: SourceQuery = ALL,
 ) -> ExportNotes:
     """What the export would hold and what would be lost in it."""
-    made = _export(database, storage, account, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id))
+    made = compute.ask(export, account, [sequence_id], ExportChoice(format_, source, snapshot_id, track_id))
     return ExportNotes(
         format=format_,
         file=make_file_name(_name_export(database, format_, [sequence_id]), Path(LABEL_FORMATS[format_].file).suffix),
         items=made.items,
         joints=made.joints,
-        bytes=len(_pack(made, format_)),
+        bytes=len(made.data),
         notes=list(made.notes),
     )
 
@@ -131,7 +130,7 @@ def preview_export(
 @router.get("/labels/export", response_class=Response, responses=_FILE | error_responses(403, 409))
 def export_several(
     database: DatabaseDep,
-    storage: StorageDep,
+    compute: ComputeDep,
     account: CurrentAccount,
     format_: FormatQuery,
     sequence_ids: SequencesQuery,
@@ -140,45 +139,14 @@ def export_several(
     """The labels of several recordings in one file, in a format that can hold several."""
     if len(set(sequence_ids)) != len(sequence_ids):
         raise InvalidError("A recording is named twice.")
-    made = _export(database, storage, account, sequence_ids, ExportChoice(format_, source))
+    made = compute.ask(export, account, sequence_ids, ExportChoice(format_, source))
     return _answer(database, made, format_, sequence_ids)
 
 
-@dataclass(frozen=True)
-class ExportChoice:
-    """What is exported: a format, joints of some sources, labels of now or of a snapshot, joints in 3D of a track."""
-
-    format: str
-    source: Sequence[str]
-    snapshot_id: uuid.UUID | None = None
-    track_id: uuid.UUID | None = None
-
-
-def _export(
-    database: Database, storage: Storage, account: Any, ids: Sequence[uuid.UUID], choice: ExportChoice
-) -> ExportedLabels:
-    labels = []
-    with database.reading() as session:
-        snapshot = None if choice.snapshot_id is None else get_snapshot(session, choice.snapshot_id)
-        for sequence_id in ids:
-            row = get_sequence(session, sequence_id)
-            if choice.track_id is not None:
-                check_track(session, sequence_id, choice.track_id)
-            annotations = read_labels(session, storage, sequence_id, snapshot)
-            labels.append((row, keep_visible(session, account, sequence_id, annotations)))
-    sets = [open_label_set(storage, row, found, choice.track_id) for row, found in labels]
-    return export_labels(choice.format, sets, choice.source)
-
-
-def _pack(made: ExportedLabels, format_: str) -> bytes:
-    is_packed = LABEL_FORMATS[format_].file.endswith(".zip")
-    return pack_files(made.files) if is_packed else next(iter(made.files.values()))
-
-
-def _answer(database: Database, made: ExportedLabels, format_: str, ids: Sequence[uuid.UUID]) -> Response:
+def _answer(database: Database, made: LabelFile, format_: str, ids: Sequence[uuid.UUID]) -> Response:
     suffix = Path(LABEL_FORMATS[format_].file).suffix
     headers = name_download(*_name_export(database, format_, ids), suffix=suffix)
-    return Response(_pack(made, format_), media_type=MEDIA_TYPES[suffix], headers=headers)
+    return Response(made.data, media_type=MEDIA_TYPES[suffix], headers=headers)
 
 
 def _name_export(database: Database, format_: str, ids: Sequence[uuid.UUID]) -> list[str]:

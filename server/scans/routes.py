@@ -8,17 +8,17 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 from sqlalchemy.orm import Session
-from starlette.requests import HTTPConnection
 
 from server.access.audit import record_act
 from server.access.service import AccountIdDep, CurrentAccount, LeadAccount, find_names, require_lead
+from server.compute import ComputeDep
 from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.database.revision import IfMatch, read_if_match, write_etag
 from server.deprecation import deprecated
 from server.download import name_download
 from server.errors import ConflictError, error_responses
-from server.scans import measuring, service
+from server.scans import computing, service
 from server.scans.adding import add_scans, parse_options
 from server.scans.geometry import MEDIA_TYPE
 from server.scans.models import ScanCropRow, ScanRow
@@ -59,17 +59,6 @@ _BODY = describe_upload_body(
         "`pose`, `side`, `metres_per_unit`; `units`, metres per unit by the path of a file.",
     },
 )
-
-
-async def get_cache(connection: HTTPConnection) -> service.ScanCache:
-    """The app's scans that were asked for lately."""
-    state = connection.app.state
-    if not hasattr(state, "scan_shelf"):
-        state.scan_shelf = service.ScanCache(state.storage)
-    return state.scan_shelf
-
-
-CacheDep = Annotated[service.ScanCache, Depends(get_cache)]
 
 
 @router.get("")
@@ -120,7 +109,7 @@ async def create_scans(
 
 
 @router.post("/measure", responses=error_responses(413, 507), openapi_extra=_BODY, dependencies=[Depends(require_lead)])
-async def measure_scans(request: Request, storage: StorageDep) -> ScansMeasured:
+async def measure_scans(request: Request, storage: StorageDep, compute: ComputeDep) -> ScansMeasured:
     """How large scans would be, in which units: the files of an upload are looked at, and nothing is stored."""
     limits = _read_limits(request)
     return await work_on_upload(
@@ -128,7 +117,7 @@ async def measure_scans(request: Request, storage: StorageDep) -> ScansMeasured:
         storage,
         UPLOADS,
         limits,
-        lambda folder, upload: measuring.measure_scans(_unpack(folder, upload, limits)),
+        lambda folder, upload: compute.ask(computing.measure_folder, _unpack(folder, upload, limits)),
     )
 
 
@@ -207,14 +196,16 @@ def get_scan_geometry(
     scan_id: uuid.UUID,
     key: str,
     session: SessionDep,
-    cache: CacheDep,
+    compute: ComputeDep,
     size: Annotated[int, Query(ge=1, le=200_000, description="Most points.")] = 20_000,
 ) -> Response:
     """Points for the browser: positions, normals, colours, flags (1 cropped, 2 object or loose). It never changes."""
     row = service.get_scan(session, scan_id, deleted_too=True)
     revision = service.find_geometry_revision(row, key)
     crop = service.get_crop(session, scan_id, revision)
-    return Response(cache.pack(row, crop, size), media_type=MEDIA_TYPE, headers={"Cache-Control": IMMUTABLE})
+    return Response(
+        compute.ask(computing.pack_scan, row, crop, size), media_type=MEDIA_TYPE, headers={"Cache-Control": IMMUTABLE}
+    )
 
 
 @router.get(
@@ -223,11 +214,13 @@ def get_scan_geometry(
     responses={200: {"content": {"image/png": {"schema": {"type": "string", "format": "binary"}}}}}
     | error_responses(404),
 )
-def get_scan_thumbnail(scan_id: uuid.UUID, key: str, session: SessionDep, cache: CacheDep) -> Response:
+def get_scan_thumbnail(scan_id: uuid.UUID, key: str, session: SessionDep, compute: ComputeDep) -> Response:
     """A small picture for lists, of what is not left out; `key` is the `geometry_key`. It never changes."""
     row = service.get_scan(session, scan_id, deleted_too=True)
     crop = service.get_crop(session, scan_id, service.find_geometry_revision(row, key))
-    return Response(cache.draw(row, crop), media_type="image/png", headers={"Cache-Control": IMMUTABLE})
+    return Response(
+        compute.ask(computing.draw_scan, row, crop), media_type="image/png", headers={"Cache-Control": IMMUTABLE}
+    )
 
 
 @router.get("/{scan_id}/crop", responses=error_responses(404))
@@ -243,7 +236,7 @@ def put_scan_crop(
     scan_id: uuid.UUID,
     crop: ScanCrop,
     session: SessionDep,
-    cache: CacheDep,
+    compute: ComputeDep,
     summaries: SummariesDep,
     account: CurrentAccount,
     response: Response,
@@ -253,7 +246,8 @@ def put_scan_crop(
     row = service.get_scan(session, scan_id)
     revision = read_if_match(if_match)
     try:
-        row = service.put_crop(session, row, crop, service.judge_crop(cache.get(row), crop), revision, account.id)
+        kept = compute.ask(computing.crop_scan, row, crop)
+        row = service.put_crop(session, row, crop, kept, revision, account.id)
     except service.StaleScanError as stale:
         raise _write_conflict(session, scan_id, summaries, stale) from None
     record_act(session, account.id, "scan.crop", "scan", row.id, revision=row.revision)
@@ -266,7 +260,8 @@ def put_scan_unit(
     scan_id: uuid.UUID,
     unit: ScanUnit,
     session: SessionDep,
-    cache: CacheDep,
+    storage: StorageDep,
+    compute: ComputeDep,
     summaries: SummariesDep,
     resized: ResizedDep,
     lead: LeadAccount,
@@ -277,10 +272,12 @@ def put_scan_unit(
     the scan as it is now in `theirs`."""
     row = service.get_scan(session, scan_id)
     revision = read_if_match(if_match)
-    service.settle_old_unit(session, cache.storage, row)
+    service.settle_old_unit(session, storage, row)
     before = row.metres_per_unit
     try:
-        row = service.put_unit(session, row, cache.get(row), unit.metres_per_unit, revision, lead.id)
+        crop = service.get_crop(session, row.id, row.revision)
+        scaled = compute.ask(computing.give_unit, row, crop, unit.metres_per_unit)
+        row = service.put_unit(session, row, scaled, revision, lead.id)
     except service.StaleScanError as stale:
         raise _write_conflict(session, scan_id, summaries, stale) from None
     for settle in resized:

@@ -178,30 +178,44 @@ def settle_old_unit(session: Session, storage: Storage, row: ScanRow) -> None:
         session.flush()
 
 
-def put_unit(
-    session: Session, row: ScanRow, scan: Scan, metres_per_unit: float, revision: int, account_id: uuid.UUID
-) -> ScanRow:
-    """Correct the unit of a scan's file, if that is still the revision given. What is cropped stays cropped.
+@dataclass(frozen=True)
+class Scaled:
+    """A scan in another unit.
 
-    Args:
-        scan: The whole scan in the unit that it has now, which `settle_old_unit` has noted.
+    Attributes:
+        factor: How many times as large it is now.
+        crop: What is left out, which is the same as before.
+        size_m: Sides of what is kept, m, the longest first.
     """
-    assert row.metres_per_unit is not None
+
+    metres_per_unit: float
+    factor: float
+    crop: ScanCrop
+    size_m: list[float]
+
+
+def scale_scan(scan: Scan, row: ScanRow, crop_row: ScanCropRow | None, metres_per_unit: float) -> Scaled:
+    """A whole scan, given in the unit that it has now, in another one; raises when its size is impossible then."""
+    assert row.metres_per_unit is not None, "settle_old_unit has noted it"
     factor = metres_per_unit / row.metres_per_unit
-    scaled = scan.scaled(factor)
-    crop = read_crop(get_crop(session, row.id, row.revision))
+    scaled, crop = scan.scaled(factor), read_crop(crop_row)
     crop = crop.model_copy(update={"strokes": scale_strokes(crop.strokes, factor)})
     size = measure_kept(scaled, find_flags(scaled, crop))
     check_size(size[0], metres_per_unit)
+    return Scaled(metres_per_unit, factor, crop, size)
+
+
+def put_unit(session: Session, row: ScanRow, scaled: Scaled, revision: int, account_id: uuid.UUID) -> ScanRow:
+    """Correct the unit of a scan's file, if that is still the revision given. What is cropped stays cropped."""
     columns = {
-        "metres_per_unit": metres_per_unit,
+        "metres_per_unit": scaled.metres_per_unit,
         "is_unit_guessed": False,
-        "extent_m": [factor * side for side in row.extent_m],
-        "size_m": size,
+        "extent_m": [scaled.factor * side for side in row.extent_m],
+        "size_m": scaled.size_m,
         "state": "new",
         "problem": None,
     }
-    return _add_revision(session, row, crop, columns, revision, account_id)
+    return _add_revision(session, row, scaled.crop, columns, revision, account_id)
 
 
 def _add_revision(

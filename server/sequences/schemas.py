@@ -61,7 +61,9 @@ class SequenceOut(BaseModel):
     report: dict[str, Any] | None = Field(description="What the import found.")
     content_key: str = Field(description="Part of the address of every image; another key means other files.")
     annotated_frames: int = Field(default=0, description="Frames with at least one joint.")
-    done_frames: int = Field(default=0, description="Frames in which every joint of every hand of it is decided.")
+    done_frames: int = Field(
+        default=0, description="Frames in which every joint of every hand is marked, or marked as outside the image."
+    )
     best_track: BestTrack | None = None
 
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from server.compute import ComputeContext
 from server.errors import InvalidError
-from server.sequences.models import SequenceRow
 from server.suggestions.triangulation_schemas import (
     TriangulatedJoint,
     TriangulatedView,
@@ -19,12 +19,14 @@ from tracker import Camera
 from tracker.capture import triangulate
 
 
-def triangulate_hand(sequence: SequenceRow, views: Sequence[TriangulationView]) -> TriangulationOut:
+def triangulate_hand(
+    _context: ComputeContext, name: str, items: Sequence[dict[str, Any]], views: Sequence[TriangulationView]
+) -> TriangulationOut:
     """The joints that two views or more have, and where every camera of the recording sees them."""
-    cameras = {item["id"]: _open_camera(item) for item in sequence.cameras}
+    cameras = {item["id"]: _open_camera(item) for item in items}
     named = [view.camera for view in views]
     if unknown := sorted(set(named) - set(cameras)):
-        raise InvalidError(f"{sequence.name} has no camera {unknown[0]!r}; it has {', '.join(cameras)}.")
+        raise InvalidError(f"{name} has no camera {unknown[0]!r}; it has {', '.join(cameras)}.")
     if len(set(named)) != len(named):
         raise InvalidError("A camera is named twice. Send one view for each camera: all its 21 joints together.")
     points = np.array([view.points for view in views], dtype=np.float64)  # (C, 21, 3)

@@ -6,6 +6,7 @@ import uuid
 
 from fastapi import APIRouter
 
+from server.compute import ComputeDep
 from server.database import DatabaseDep
 from server.errors import error_responses
 from server.sequences.service import get_sequence
@@ -16,11 +17,13 @@ router = APIRouter(prefix="/sequences/{sequence_id}", tags=["suggestions"], resp
 
 
 @router.post("/triangulation")
-def triangulate(sequence_id: uuid.UUID, body: TriangulationIn, database: DatabaseDep) -> TriangulationOut:
+def triangulate(
+    sequence_id: uuid.UUID, body: TriangulationIn, database: DatabaseDep, compute: ComputeDep
+) -> TriangulationOut:
     """Joints in space from marks in several cameras, where every camera sees them, and how well the marks agree.
 
     Nothing is stored.
     """
     with database.reading() as session:
         sequence = get_sequence(session, sequence_id)
-    return triangulate_hand(sequence, body.views)
+    return compute.ask(triangulate_hand, sequence.name, sequence.cameras, body.views)

@@ -97,8 +97,8 @@ class AssignmentOut(BaseModel):
     frame_last: int
     frames: int = Field(description="How many frames are to be marked.")
     frames_done: int = Field(
-        description="Frames in which every joint asked for is decided: of a range each hand of the recording, of a "
-        "replica set every hand in every camera."
+        description="Frames in which every joint asked for is marked, or marked as outside: of a range each hand of "
+        "the recording, of a replica set every hand in every camera."
     )
     frames_partial: int = Field(description="Frames that were begun and are not done.")
     next_frame: int | None = Field(description="The first one that is not done.")

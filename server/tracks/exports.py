@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from server.compute import ComputeContext
+
 STYLE = 1
 """Part of the folder's name; raise it when something is exported differently."""
 
@@ -16,7 +18,7 @@ MEDIA_TYPES = {
 """For each kind of export."""
 
 
-def find_export(track_folder: Path, recording: Path, kind: str) -> Path:
+def find_export(_context: ComputeContext, track_folder: Path, recording: Path, kind: str) -> Path:
     """The file of one kind, written now if need be below `tracks/<id>/exports/`."""
     from tracker import EXPORT_KINDS, export_track, load_sequence, load_track
 

@@ -30,5 +30,7 @@ class TrackRow(Base):
     summary: Mapped[dict[str, Any]]
     error_px: Mapped[float | None]
     """Mean distance to the annotations that no track had a part in, when last evaluated, px."""
+    cameras_digest: Mapped[str | None] = mapped_column(String(64))
+    """Of the cameras that it was made with (`cameras.py`)."""
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     deleted_at: Mapped[datetime | None]

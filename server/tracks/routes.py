@@ -14,6 +14,7 @@ from starlette.requests import HTTPConnection
 
 from server.access.audit import record_act
 from server.access.service import LeadAccount
+from server.compute import ComputeDep
 from server.database import Base, SessionDep
 from server.database.frames import FramePath
 from server.database.paging import Cursor, Limit, Page
@@ -22,6 +23,7 @@ from server.download import name_download
 from server.errors import NotFoundError, error_responses
 from server.storage import StorageDep
 from server.tracks import service
+from server.tracks.cameras import describe_tracks
 from server.tracks.exports import MEDIA_TYPES, find_export
 from server.tracks.models import TrackRow
 from server.tracks.overlay import Overlays
@@ -53,20 +55,20 @@ def list_tracks(
 ) -> Page[TrackOut]:
     """Tracks, the newest first."""
     rows, next_cursor = service.list_tracks(session, sequence_id, cursor, limit)
-    return Page(items=[TrackOut.model_validate(row) for row in rows], next_cursor=next_cursor)
+    return Page(items=describe_tracks(session, rows), next_cursor=next_cursor)
 
 
 @router.get("/tracks/{track_id}", responses=error_responses(404))
 def get_track(track_id: uuid.UUID, session: SessionDep) -> TrackOut:
     """One track."""
-    return TrackOut.model_validate(service.get_track(session, track_id))
+    return describe_tracks(session, [service.get_track(session, track_id)])[0]
 
 
 @router.delete("/tracks/{track_id}", responses=error_responses(404))
 def delete_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> TrackOut:
     """Delete a track; it can be restored."""
     record_act(session, lead.id, "track.delete", "track", track_id)
-    return TrackOut.model_validate(service.delete_track(session, track_id))
+    return describe_tracks(session, [service.delete_track(session, track_id)])[0]
 
 
 @router.post(
@@ -75,7 +77,7 @@ def delete_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) ->
 def restore_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> TrackOut:
     """Bring a deleted track back."""
     record_act(session, lead.id, "track.restore", "track", track_id)
-    return TrackOut.model_validate(service.restore_track(session, track_id))
+    return describe_tracks(session, [service.restore_track(session, track_id)])[0]
 
 
 @router.get("/tracks/{track_id}/frames", responses=error_responses(404))
@@ -156,11 +158,15 @@ def download_track_file(
     responses={200: {"content": {kind: {} for kind in sorted(set(MEDIA_TYPES.values()))}}} | error_responses(404),
 )
 def export_track(
-    track: SeenTrack, kind: Literal["npz", "csv", "glb", "mano"], session: SessionDep, storage: StorageDep
+    track: SeenTrack,
+    kind: Literal["npz", "csv", "glb", "mano"],
+    session: SessionDep,
+    storage: StorageDep,
+    compute: ComputeDep,
 ) -> FileResponse:
     """The track for other programs: npz, CSV of its joints, glTF animation (GLB) or MANO-style parameters (npz)."""
     folder = storage.folder("tracks", track.id)
-    path = find_export(folder, storage.folder("sequences", track.sequence_id), kind)
+    path = compute.ask(find_export, folder, storage.folder("sequences", track.sequence_id), kind)
     headers = _name_file(session, track, path.name.partition("-")[2])
     return FileResponse(path, media_type=MEDIA_TYPES[kind], headers=headers)
 

@@ -25,6 +25,9 @@ class TrackOut(BaseModel):
     error_px: float | None = Field(
         description="Mean distance to the annotations that no track had a part in, when last evaluated, px."
     )
+    is_of_earlier_cameras: bool = Field(
+        description="Made before the cameras changed: its joints stay where the cameras of that time saw them."
+    )
     created_at: datetime
     deleted_at: datetime | None
 

@@ -15,6 +15,7 @@ from sqlalchemy.orm import Session
 from server.database import utc_now
 from server.database.paging import fetch_page
 from server.errors import ConflictError, NotFoundError
+from server.tracks.cameras import find_digests
 from server.tracks.models import TrackRow
 
 AREA = "tracks"
@@ -67,6 +68,7 @@ def add_track(
         frame_count=len(frames),
         hands=hands,
         summary=summary,
+        cameras_digest=find_digests(session, [sequence_id]).get(sequence_id),
     )
     session.add(row)
     session.flush()

@@ -367,7 +367,7 @@ def test_a_deleted_recording_comes_back(studio, recording, open_page):
     page.goto(f"/recordings/{recording['id']}")
     page.get_by_role("button", name="More").click()
     page.get_by_role("menuitem", name="Delete").click()
-    expect(page.get_by_text("was moved to the bin")).to_be_visible()
+    expect(page.get_by_text("moved to the bin")).to_be_visible()
     assert studio.send("GET", f"/sequences/{recording['id']}").status_code == 404
     page.get_by_role("button", name="Undo").click()
     expect(page.get_by_role("main").locator(f'a[href="/recordings/{recording["id"]}"]')).to_be_visible()

@@ -282,7 +282,7 @@ def test_a_stray_click_moves_no_joint_of_a_finished_hand_and_an_outside_joint_ca
 
     before = stored()
     expect(next_click).to_have_text(
-        "Next click changes nothing: every joint of the right hand is decided. Drag a joint, or choose it first"
+        "Next click changes nothing: all joints of the right hand are marked. Drag a joint, or select it first"
     )
     picture.click(300, 350)
     page.keyboard.press("Tab")

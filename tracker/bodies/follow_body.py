@@ -20,7 +20,7 @@ from tracker.registration.model_fit import FitSettings
 
 Array = npt.NDArray[np.float64]
 
-LOST_MM, MOST_LOST = 6.0, 0.12
+LOST_MM, MOST_LOST = 4.0, 0.10
 """A hand is searched anew when so much of its points (share) is so far from it."""
 
 

@@ -37,7 +37,7 @@ START_POINTS = 20_000
 """So many are enough to find the body."""
 NEAR_HAND = 0.03
 """Points this close to a hand are the hand's, m."""
-HOLD = 100.0
+HOLD = 1000.0
 """Weight of the pose of a hand that the scan does not show, 1/rad²."""
 
 
@@ -128,7 +128,7 @@ class Registrar:
             with clock.measure("hands"):
                 tell("hands", 0.35)
                 hands = self.hands.find(found, points_near_hands(scan, found, self.model, self.options.max_points))
-            state, shown = hands.state, hands.are_shown
+            state, shown = self._relax(hands.state, hands.are_shown), hands.are_shown
         else:
             state, shown = start, self.find_shown(start, scan)
         with clock.measure("model"):
@@ -141,6 +141,15 @@ class Registrar:
         with clock.measure("judge"):
             tell("judge", 0.95)
             return self.judge(scan, surface, shown, clock)
+
+    def _relax(self, state: BodyState, shown: tuple[bool, bool]) -> BodyState:
+        """The state with hands that the scan does not show at their mean pose, straight behind the forearm."""
+        pose, hands = state.pose.copy(), state.hands.copy()
+        for k, side in enumerate(SIDES):
+            if not shown[k]:
+                pose[body_hand(self.model, side).wrist] = 0.0
+                hands[k] = 0.0
+        return with_hands(replace(state, pose=pose), self.coarse.space, hands)
 
     def find_shown(self, state: BodyState, scan: Scan) -> tuple[bool, bool]:
         """Whether the scan has hands where a state has them."""
@@ -173,9 +182,14 @@ class Registrar:
     ) -> Evaluation:
         """Pose and shape, stage by stage; hands of few components in all but the last."""
         evaluation: Evaluation | None = None
+        known = state.hands
         for number, (count, settings) in enumerate(self.options.model_stages):
             fit = self.fine if number == len(self.options.model_stages) - 1 else self.coarse
-            state = with_hands(state, fit.space, state.hands)
+            hands = with_hands(state, fit.space, state.hands).hands.copy()
+            for k in range(2):
+                if not shown[k]:
+                    hands[k] = with_hands(state, fit.space, known).hands[k]
+            state = with_hands(state, fit.space, hands)
             evaluation = self.holding(fit, state, shown, anchor).fit(state, points.first(count), settings)
             assert isinstance(evaluation.state, BodyState)
             state = evaluation.state

@@ -14,6 +14,7 @@ from scipy.linalg import cho_factor, cho_solve
 from tracker.model.blend_model import BlendModel, PosedBlend
 from tracker.registration.equations import add_model_rows, weigh_robustly
 from tracker.registration.surface_search import SurfaceSearch
+from tracker.solver.minimize import minimize_damped
 from tracker.training.motion import sparsen_skinning
 from tracker.training.pose_fit import Hands, Rig, fit_poses, start_poses
 from tracker.training.spaces import compute_rotation_vectors
@@ -62,21 +63,19 @@ def fit_pose_to_vertices(model: BlendModel, vertices: Array, iterations: int = 2
 
 def fit_to_vertices(model: BlendModel, vertices: Array, iterations: int = 15) -> HandFit:
     """The pose and shape that lie nearest to vertices (V, 3), m, with the usual small weight on the shape."""
-    here = fit_pose_to_vertices(model, vertices)
-    cost, damping = _cost_to_vertices(here, vertices), 1e-4
-    for _ in range(iterations):
-        J = here.posed.vertex_jacobian().reshape(-1, model.num_parameters) * 1e3
-        r = (here.posed.vertices - vertices).ravel() * 1e3
-        H, g = J.T @ J, J.T @ r
-        there, new = _try(here, H, g, damping, np.eye(len(g)), lambda fit: _cost_to_vertices(fit, vertices))
-        if new >= cost:
-            damping *= 10.0
-            continue
-        is_done = cost - new < 1e-5 * cost
-        here, cost, damping = there, new, max(1e-8, 0.1 * damping)
-        if is_done:
-            break
-    return here
+
+    def price(fit: HandFit) -> _Priced:
+        return _Priced(fit, _cost_to_vertices(fit, vertices))
+
+    def linearize(here: _Priced) -> tuple[Array, Array]:
+        J = here.fit.posed.vertex_jacobian().reshape(-1, model.num_parameters) * 1e3
+        r = (here.fit.posed.vertices - vertices).ravel() * 1e3
+        return J.T @ J, J.T @ r
+
+    def step(here: _Priced, equations: tuple[Array, Array], damping: float) -> _Priced:
+        return price(_step(here.fit, *equations, damping))
+
+    return minimize_damped(price(fit_pose_to_vertices(model, vertices)), linearize, step, iterations, 1e-5).fit
 
 
 def fit_to_scan(
@@ -97,39 +96,32 @@ def fit_to_scan(
         num_components: Poses are confined to so many components of the model's pose space; None: they are free.
     """
     model = start.posed.model
-    here = start if num_components is None else _confine(start, num_components)
-    cost, damping = np.inf, 1e-4
-    matched = _match(here, search, points, normals)
-    cost = matched.cost
-    for _ in range(iterations):
+
+    def price(fit: HandFit) -> _Priced:
+        matched = _match(fit, search, points, normals)
+        return _Priced(fit, matched.cost, matched)
+
+    def linearize(here: _Priced) -> tuple[Array, Array]:
+        matched = here.matched
+        assert matched is not None
         H, g = np.zeros((model.num_parameters,) * 2), np.zeros(model.num_parameters)
         add_model_rows(
             H,
             g,
-            here.posed.vertex_jacobian(),
+            here.fit.posed.vertex_jacobian(),
             search.faces[matched.faces],
             matched.shares,
             matched.directions,
             -matched.offsets,
             1e6 * matched.weights,
         )
-        H = H + np.tril(H, -1).T
-        basis = _basis(here, num_components)
-        there, new = _try(
-            here, H, g, damping, basis, lambda fit: _match(fit, search, points, normals).cost, num_components
-        )
-        if new >= cost:
-            damping = 10.0 * damping
-            if damping > 1e4:
-                break
-            continue
-        is_done = cost - new < 1e-4 * cost
-        here, damping = there, max(1e-8, 0.1 * damping)
-        matched = _match(here, search, points, normals)
-        cost = matched.cost
-        if is_done:
-            break
-    return here
+        return H + np.tril(H, -1).T, g
+
+    def step(here: _Priced, equations: tuple[Array, Array], damping: float) -> _Priced:
+        return price(_step(here.fit, *equations, damping, num_components))
+
+    begin = start if num_components is None else _confine(start, num_components)
+    return minimize_damped(price(begin), linearize, step, iterations, 1e-4).fit
 
 
 def measure_scan(fit: HandFit, search: SurfaceSearch, points: Array) -> Array:
@@ -158,32 +150,38 @@ def _match(fit: HandFit, search: SurfaceSearch, points: Array, normals: Array) -
     return _Matched(found.faces, found.weights, found.directions, found.offsets, scale * weights * is_used, float(cost))
 
 
+@dataclass(frozen=True)
+class _Priced:
+    """A fit, what it costs, and where the points lie on it."""
+
+    fit: HandFit
+    cost: float
+    matched: _Matched | None = None
+
+
 def _cost_to_vertices(fit: HandFit, vertices: Array) -> float:
     return 1e6 * float(np.sum((fit.posed.vertices - vertices) ** 2)) + SHAPE_WEIGHT * float(fit.shape @ fit.shape)
 
 
-def _try(here: HandFit, H, g, damping, basis, price, num_components=None) -> tuple[HandFit, float]:
-    """A damped step within a basis (P, D), and its cost."""
+def _step(here: HandFit, H: Array, g: Array, damping: float, num_components: int | None = None) -> HandFit:
+    """Where a damped step leads; with `num_components`, within so many components of the pose space."""
     model = here.posed.model
     first = 3 + 3 * model.num_bones
     H, g = H.copy(), g.copy()
     H[np.arange(first, len(g)), np.arange(first, len(g))] += SHAPE_WEIGHT
     g[first:] += SHAPE_WEIGHT * here.shape
+    basis = _basis(here, num_components)
     reduced = basis.T @ H @ basis
     reduced[np.diag_indices_from(reduced)] *= 1.0 + damping
     reduced[np.diag_indices_from(reduced)] += 1e-9 * np.trace(reduced)
     inner = -cho_solve(cho_factor(reduced, lower=True), basis.T @ g)
     if num_components is None:
-        there = _at(model, *model.retract(here.pose, here.shape, here.translation, basis @ inner))
-    else:
-        step = np.zeros(model.num_parameters)
-        step[:6], step[first:] = inner[:6], inner[6 + num_components :]
-        pose, shape, translation = model.retract(here.pose, here.shape, here.translation, step)
-        pose[1:] = here.pose[1:] + (inner[6 : 6 + num_components] @ model.pose_components[:num_components]).reshape(
-            -1, 3
-        )
-        there = _at(model, pose, shape, translation)
-    return there, price(there)
+        return _at(model, *model.retract(here.pose, here.shape, here.translation, basis @ inner))
+    step = np.zeros(model.num_parameters)
+    step[:6], step[first:] = inner[:6], inner[6 + num_components :]
+    pose, shape, translation = model.retract(here.pose, here.shape, here.translation, step)
+    pose[1:] = here.pose[1:] + (inner[6 : 6 + num_components] @ model.pose_components[:num_components]).reshape(-1, 3)
+    return _at(model, pose, shape, translation)
 
 
 def _basis(here: HandFit, num_components: int | None) -> Array:

@@ -82,12 +82,18 @@ class ViewHands:
         ]
         return replace(self, hands=tuple(kept))
 
-    def without_jumps(self, posed: PosedScene, names: tuple[str, ...]) -> ViewHands:
-        """The same without the joints that are told far from where a scene has them, and by one view alone."""
+    def without_jumps(self, posed: PosedScene, followed: Mapping[int, str], fps: float) -> ViewHands:
+        """The same without joints that are told too far from where they are expected (`find_jumps`).
+
+        Args:
+            posed: Where they are expected.
+            followed: Index among the scene's models and name of each hand that was there a frame ago.
+            fps: Frames a second.
+        """
         views = [dict(hands) for hands in self.hands]
-        for model, name in enumerate(names):
+        for model, name in followed.items():
             if self.count(name):
-                jumps = find_jumps(posed.landmarks(model), self.cameras, [hands.get(name) for hands in views])
+                jumps = find_jumps(posed.landmarks(model), self.cameras, [hands.get(name) for hands in views], fps)
                 for hands, own in zip(views, jumps, strict=True):
                     if own.any():
                         points = np.where(own[:, None], np.nan, hands[name].points)

@@ -12,7 +12,7 @@ from tracker.terms.joint_prior import Regularization
 MANY = 4
 """So many views or more hold a hand by its contours better than single joints do."""
 
-TOLD = 0.8
+TOLD = 0.7
 """Share of the joints of hands in view that a detector for photographs tells, and more: all. One that tells only what
 it sees tells less; its few joints are held by contours, too."""
 
@@ -36,8 +36,9 @@ BY_JOINTS = ViewHold(REACH, 4, Regularization.weight)
 """Contours are drawn anew in each iteration, and the joints have brought them near."""
 
 BY_CONTOURS = ViewHold(5.0, 8, 0.1)
-"""Chosen on rendered views (benchmarks/results/rendered_views.md): a hidden finger that few joints tell of must not run away.
-Where all joints are told in two views it does harm: `two_camera_rgb` is then followed in 370 frames in place of 374."""
+"""Chosen on rendered views (benchmarks/results/rendered_views.md): a hidden finger that few joints tell of must not
+run away. Where all joints are told in two views it does harm: `two_camera_rgb` is then followed in 370 frames in place
+of 374."""
 
 BY_FEW_CONTOURS = ViewHold(5.0, 8, 0.3)
 """Fewer views hide more fingers. With 0.1 in two rendered views 3.5 mm, with 0.3 2.7 mm."""

@@ -99,19 +99,26 @@ def rotation_into(R: Array, rotation_vector: Array) -> None:
 
 
 @njit(cache=True, nogil=True)
-def move_bones_into(posed: PosedArrays, arrays: BlendArrays, pose: Array, translation: Array) -> None:
-    """Write Rs, Ts and joints from joints_rest."""
-    Rs, Ts, rest, joints = posed.Rs, posed.Ts, posed.joints_rest, posed.joints
-    for b in range(len(arrays.parents)):
-        rotation_into(Rs[b], pose[b])
-        parent = arrays.parents[b]
+def move_bones_into(Ts: Array, joints: Array, Rs: Array, rest: Array, parents: Ints, translation: Array) -> None:
+    """Write how each bone moves, from its own rotation.
+
+    Args:
+        Ts: (B, 3, 4) out, from rest to posed.
+        joints: (B, 3) out, posed, m.
+        Rs: (B, 3, 3) of each bone against its parent.
+        rest: (B, 3) joints at rest, m.
+        parents: (B,) -1 for the root.
+        translation: (3,) m.
+    """
+    for b in range(len(parents)):
+        parent, R = parents[b], Rs[b]
         if parent < 0:
             for r in range(3):
                 joints[b, r] = rest[b, r] + translation[r]
                 for c in range(3):
-                    Ts[b, r, c] = Rs[b, r, c]
+                    Ts[b, r, c] = R[r, c]
         else:
-            P, R = Ts[parent], Rs[b]
+            P = Ts[parent]
             for r in range(3):
                 joints[b, r] = P[r, 0] * rest[b, 0] + P[r, 1] * rest[b, 1] + P[r, 2] * rest[b, 2] + P[r, 3]
                 for c in range(3):
@@ -121,14 +128,20 @@ def move_bones_into(posed: PosedArrays, arrays: BlendArrays, pose: Array, transl
             Ts[b, r, 3] = joints[b, r] - turned
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
-def blend_into(rest: Array, shaped: Array, arrays: BlendArrays, Rs: Array) -> None:
-    """Write the shaped vertices with their pose blend shapes, [R17] Eq. 2-3."""
-    blocks, features = arrays.blocks, np.zeros((len(Rs), 9))
+@njit(cache=True, nogil=True)
+def features_into(features: Array, Rs: Array) -> None:
+    """Write vec(R_b - I) of each bone (B, 9), row by row, [R17] Eq. 4."""
     for b in range(len(Rs)):
         for r in range(3):
             for c in range(3):
                 features[b, 3 * r + c] = Rs[b, r, c] - (1.0 if r == c else 0.0)
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def blend_into(rest: Array, shaped: Array, arrays: BlendArrays, Rs: Array) -> None:
+    """Write the shaped vertices with their pose blend shapes, [R17] Eq. 2-3."""
+    blocks, features = arrays.blocks, np.empty((len(Rs), 9))
+    features_into(features, Rs)
     for v in range(len(shaped)):
         x, y, z = shaped[v, 0], shaped[v, 1], shaped[v, 2]
         for m in range(arrays.block_starts[v], arrays.block_starts[v + 1]):
@@ -169,7 +182,9 @@ def pose_into(posed: PosedArrays, arrays: BlendArrays, pose: Array, translation:
         translation: (3,) m.
     """
     regress_into(posed.joints_rest, arrays, posed.shaped)
-    move_bones_into(posed, arrays, pose, translation)
+    for b in range(len(arrays.parents)):
+        rotation_into(posed.Rs[b], pose[b])
+    move_bones_into(posed.Ts, posed.joints, posed.Rs, posed.joints_rest, arrays.parents, translation)
     blend_into(posed.rest, posed.shaped, arrays, posed.Rs)
     skin_into(posed.vertices, posed.rest, arrays, posed.Ts)
 

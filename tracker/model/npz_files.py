@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import threading
 import zipfile
 from pathlib import Path
 
@@ -108,7 +109,7 @@ def write_npz_arrays(path: Path, arrays: dict[str, np.ndarray]) -> None:
 
 def write_plain_npz(path: Path, arrays: dict[str, np.ndarray]) -> None:
     """Write arrays as they are; the file appears whole or not at all. Equal arrays give equal bytes."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}.tmp")
     try:
         _write(temporary, arrays)
         os.replace(temporary, path)

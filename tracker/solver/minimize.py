@@ -1,4 +1,4 @@
-"""The one loop of dogleg steps that registration's fits share ([R17] section 3.2; Nocedal and Wright ch. 4)."""
+"""Loops of steps: dogleg ([R17] section 3.2) and Levenberg-Marquardt; Nocedal and Wright ch. 4 and 10."""
 
 from __future__ import annotations
 
@@ -82,6 +82,10 @@ class DenseSystem:
 
 
 P = TypeVar("P", bound=Point)
+E = TypeVar("E")
+
+FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-4, 1e-8, 1e4
+"""Share of the diagonal that Levenberg-Marquardt adds at first, at least, and before it gives up."""
 
 
 def minimize(start: P, linearize: Callable[[P], System], move: Callable[[P, Array], P], region: TrustRegion) -> P:
@@ -116,5 +120,35 @@ def minimize(start: P, linearize: Callable[[P], System], move: Callable[[P, Arra
             if is_done:
                 break
         elif radius < region.least:
+            break
+    return here
+
+
+def minimize_damped(
+    start: P, linearize: Callable[[P], E], step: Callable[[P, E, float], P], iterations: int, tolerance: float
+) -> P:
+    """The best point that Levenberg-Marquardt steps find.
+
+    Args:
+        start: Where to begin.
+        linearize: Equations at a point, whatever `step` takes.
+        step: The point that the equations of a point lead to with a damping, evaluated.
+        iterations: Steps tried at most.
+        tolerance: It ends when a step brings less than this share of the cost.
+    """
+    here, damping = start, FIRST_DAMPING
+    equations: E | None = None
+    for _ in range(iterations):
+        if equations is None:
+            equations = linearize(here)
+        there = step(here, equations, damping)
+        if there.cost >= here.cost:
+            damping *= 10.0
+            if damping > MOST_DAMPING:
+                break
+            continue
+        is_done = here.cost - there.cost < tolerance * here.cost
+        here, equations, damping = there, None, max(LEAST_DAMPING, 0.1 * damping)
+        if is_done:
             break
     return here

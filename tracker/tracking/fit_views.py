@@ -107,7 +107,6 @@ def fit_views(
     """
     scene, names = setup.scene, setup.names
     hold = choose_hold(seen)
-    seen = seen.without_jumps(scene.pose_at(pose), names)
     objective = replace(objective, regularization=Regularization(weight=hold.regularization))
     far = seen.add_to(replace(objective, terms={}), scene, names, FAR_REACH)
     first = fit_frame(scene, None, pose, pose, far, FitOptions(iterations=max(1, iterations // 2), fine=0))

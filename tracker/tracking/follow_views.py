@@ -5,6 +5,7 @@ from __future__ import annotations
 from time import perf_counter
 
 from tracker.capture.sequence import Sequence
+from tracker.fitting.choose_views import PLENTY
 from tracker.fitting.frame_fit import Fit
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.view_hands import ViewHands
@@ -40,7 +41,7 @@ def follow_views(
         started = perf_counter()
     looked_at, views = perf_counter(), read.views
     scene, hands, gone = setup.scene, setup.hands, set(state.gone_hands(setup))
-    pose = state.predict(scene)
+    pose = state.predict(scene, bends=len(views) >= PLENTY)
     seen = see_hands(setup, views, scene.pose_at(pose), gone)
     stages = {"reading": read.seconds, "detecting hands": perf_counter() - looked_at}
     if ahead:
@@ -58,7 +59,9 @@ def follow_views(
         started_nails = perf_counter()
         objective = tools.with_nails(part.setup.scene.pose_at(fit.pose), views, setup.options.threads)
         stages |= {"finding nails": perf_counter() - started_nails} if tools.nail_detector else {}
-        fit = fit_views(part.setup, objective, seen, views, fit.pose, iterations)
+        followed = {hand: setup.names[hand] for hand in hands if hand not in gone}
+        believed = seen.without_jumps(scene.pose_at(pose), followed, sequence.fps)
+        fit = fit_views(part.setup, objective, believed, views, fit.pose, iterations)
     pose = part.put(fit.pose, pose)
     posed = scene.pose_at(pose)
     verdicts = {hand: judge_hand(setup, seen, posed, hand) for hand in hands}

@@ -53,10 +53,11 @@ class TrackState:
             return ()
         return self.lost_hands or setup.hands
 
-    def predict(self, scene: Scene) -> Array:
-        """(D,) the pose if roots go on as they moved last; joint angles are kept.
+    def predict(self, scene: Scene, bends: bool = False) -> Array:
+        """(D,) the pose if roots go on as they moved last; joint angles are kept, or go on within their limits.
 
-        Hidden fingers run away when their angles are extrapolated, roots do not. The root of a chain is its end: it
+        Hidden fingers run away when their angles are extrapolated, roots do not: only where many views leave hardly a
+        finger hidden do angles go on (`bends`). The root of a chain is its end: it
         turns as the chain bends, and its turn would swing the other end aside. Chains start where they are.
         """
         predicted = self.pose.copy()
@@ -67,6 +68,10 @@ class TrackState:
             root = slice(where.start, where.start + 6)
             T_now, T_before = se3.exp(self.pose[root]), se3.exp(self.earlier_pose[root])
             predicted[root] = se3.log(T_now @ se3.inverse(T_before) @ T_now)
+            if bends:
+                own = slice(where.start + 6, where.stop)
+                further = 2.0 * self.pose[own] - self.earlier_pose[own]
+                predicted[own] = np.clip(further, scene.lower[own], scene.upper[own])
         return predicted
 
     @property

@@ -6,11 +6,11 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from tracker.model.blend_kernels import move_bones_into
 from tracker.training.motion import (
     MOST_BONES,
     SparseSkinning,
     compute_features,
-    compute_motions,
     correct_rest,
     fill_skinning,
     sparsen_skinning,
@@ -130,18 +130,17 @@ def solve_nonnegative(G, c):
 @njit(cache=True, nogil=True)
 def _add_gram(template, joints, parents, directions, target, rotations, translation, grams):
     B, V = len(parents), len(target)
-    R, p, q = np.empty((B, 3, 3)), np.empty((B, 3)), np.empty((B, 3))
-    compute_motions(rotations, translation, joints, parents, R, p, q)
-    features = np.empty(9 * (B - 1))
-    compute_features(rotations, features)
+    Ts, posed = np.empty((B, 3, 4)), np.empty((B, 3))
+    move_bones_into(Ts, posed, rotations, joints, parents, translation)
+    features = compute_features(rotations)
     rest, away = np.empty((V, 3)), np.empty((B, 3))
     correct_rest(template, directions, features, rest)
     for v in range(V):
         for b in range(B):
+            T = Ts[b]
             for i in range(3):
-                away[b, i] = (
-                    R[b, i, 0] * rest[v, 0] + R[b, i, 1] * rest[v, 1] + R[b, i, 2] * rest[v, 2] + p[b, i] - target[v, i]
-                )
+                moved = T[i, 0] * rest[v, 0] + T[i, 1] * rest[v, 1] + T[i, 2] * rest[v, 2] + T[i, 3]
+                away[b, i] = moved - target[v, i]
         for a in range(B):
             for b in range(B):
                 grams[v, a, b] += away[a, 0] * away[b, 0] + away[a, 1] * away[b, 1] + away[a, 2] * away[b, 2]

@@ -147,10 +147,7 @@ def improve_surface(
 
 def find_features(poses: Poses) -> Array:
     """(N, 9(B-1)) features of Eq. 4."""
-    features = np.empty((len(poses.rotations), 9 * (poses.rotations.shape[1] - 1)))
-    for rotations, row in zip(poses.rotations, features, strict=True):
-        compute_features(rotations, row)
-    return features
+    return np.stack([compute_features(rotations) for rotations in poses.rotations])
 
 
 def _turn_poses(poses: Poses, owners: Integers, turned: Array, before: Array, after: Array) -> Poses:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from tracker.training.motion import compute_features, compute_motions
+from tracker.model.blend_kernels import move_bones_into
+from tracker.training.motion import compute_features
 
 BLOCK = 16
 """Vertices whose Jacobian is held at a time; 48 rows of 99 unknowns stay in the first-level cache."""
@@ -32,17 +33,16 @@ def linearize(
         The sum of squared residuals.
     """
     B, V, D = len(parents), len(template), len(g)
-    R, p, q = np.empty((B, 3, 3)), np.empty((B, 3)), np.empty((B, 3))
-    compute_motions(rotations, translation, joints, parents, R, p, q)
+    T, q = np.empty((B, 3, 4)), np.empty((B, 3))
+    move_bones_into(T, q, rotations, joints, parents, translation)
     num_features = directions.shape[2]
-    features = np.empty(9 * (B - 1))
-    compute_features(rotations, features)
+    features = compute_features(rotations)
     differences = np.empty((B, 3, 3))  # of a joint's parent's rotation and its own
     for b in range(B):
         for i in range(3):
             for j in range(3):
-                above = R[parents[b], i, j] if parents[b] >= 0 else (1.0 if i == j else 0.0)
-                differences[b, i, j] = above - R[b, i, j]
+                above = T[parents[b], i, j] if parents[b] >= 0 else (1.0 if i == j else 0.0)
+                differences[b, i, j] = above - T[b, i, j]
     J, r = np.zeros((D, 3 * BLOCK)), np.zeros(3 * BLOCK)
     mass, moment = np.empty(B), np.empty((B, 3))
     A, rest, local = np.empty((3, 3)), np.empty(3), np.empty((3, 3))
@@ -66,15 +66,15 @@ def linearize(
                 bone, w = bones[v, place], weights[v, place]
                 if w == 0.0:
                     continue
-                x0 = R[bone, 0, 0] * rest[0] + R[bone, 0, 1] * rest[1] + R[bone, 0, 2] * rest[2] + p[bone, 0]
-                x1 = R[bone, 1, 0] * rest[0] + R[bone, 1, 1] * rest[1] + R[bone, 1, 2] * rest[2] + p[bone, 1]
-                x2 = R[bone, 2, 0] * rest[0] + R[bone, 2, 1] * rest[1] + R[bone, 2, 2] * rest[2] + p[bone, 2]
+                x0 = T[bone, 0, 0] * rest[0] + T[bone, 0, 1] * rest[1] + T[bone, 0, 2] * rest[2] + T[bone, 0, 3]
+                x1 = T[bone, 1, 0] * rest[0] + T[bone, 1, 1] * rest[1] + T[bone, 1, 2] * rest[2] + T[bone, 1, 3]
+                x2 = T[bone, 2, 0] * rest[0] + T[bone, 2, 1] * rest[1] + T[bone, 2, 2] * rest[2] + T[bone, 2, 3]
                 r[row] += w * x0
                 r[row + 1] += w * x1
                 r[row + 2] += w * x2
                 for i in range(3):
                     for j in range(3):
-                        A[i, j] += w * R[bone, i, j]
+                        A[i, j] += w * T[bone, i, j]
                 up = bone
                 while up >= 0:
                     mass[up] += w
@@ -91,7 +91,7 @@ def linearize(
                     y0, y1 = moment[b, 0] - mass[b] * q[b, 0], moment[b, 1] - mass[b] * q[b, 1]
                     y2 = moment[b, 2] - mass[b] * q[b, 2]
                     for j in range(3):
-                        e0, e1, e2 = R[b, 0, j], R[b, 1, j], R[b, 2, j]
+                        e0, e1, e2 = T[b, 0, j], T[b, 1, j], T[b, 2, j]
                         J[3 * b + j, row] = e1 * y2 - e2 * y1
                         J[3 * b + j, row + 1] = e2 * y0 - e0 * y2
                         J[3 * b + j, row + 2] = e0 * y1 - e1 * y0

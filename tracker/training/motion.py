@@ -1,7 +1,8 @@
-"""Kernels of [R17] Eq. 1: motions of the bones, and linear blend skinning with at most four bones per vertex.
+"""Kernels of [R17] Eq. 1 for training: linear blend skinning with at most four bones per vertex.
 
 Bones are numbered so that a parent comes before its children; bone 0 is the root. A pose is held as local rotation
-matrices (B, 3, 3), turning a bone against its parent about its joint, and a translation (3,).
+matrices (B, 3, 3), turning a bone against its parent about its joint, and a translation (3,); bones move as those of
+any blend model do (`blend_kernels.move_bones_into`).
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 from numba import njit
+
+from tracker.model.blend_kernels import features_into, rotation_into
 
 Array = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -42,44 +45,11 @@ def fill_skinning(skinning: SparseSkinning, num_bones: int) -> Array:
 
 
 @njit(cache=True, nogil=True)
-def compute_motions(rotations, translation, joints, parents, R, p, posed):
-    """Rest to posed: x -> R_b x + p_b, and where each joint is, q_b.
-
-    Args:
-        rotations: (B, 3, 3) local; translation (3,); joints (B, 3) rest; parents (B,), -1 for the root.
-        R: (B, 3, 3), p: (B, 3), posed: (B, 3) are written.
-    """
-    for b in range(len(parents)):
-        parent = parents[b]
-        for i in range(3):
-            if parent < 0:
-                for j in range(3):
-                    R[b, i, j] = rotations[b, i, j]
-                posed[b, i] = joints[b, i] + translation[i]
-            else:
-                for j in range(3):
-                    R[b, i, j] = (
-                        R[parent, i, 0] * rotations[b, 0, j]
-                        + R[parent, i, 1] * rotations[b, 1, j]
-                        + R[parent, i, 2] * rotations[b, 2, j]
-                    )
-                posed[b, i] = (
-                    p[parent, i]
-                    + R[parent, i, 0] * joints[b, 0]
-                    + R[parent, i, 1] * joints[b, 1]
-                    + R[parent, i, 2] * joints[b, 2]
-                )
-        for i in range(3):
-            p[b, i] = posed[b, i] - R[b, i, 0] * joints[b, 0] - R[b, i, 1] * joints[b, 1] - R[b, i, 2] * joints[b, 2]
-
-
-@njit(cache=True, nogil=True)
-def compute_features(rotations, features):
-    """vec(R_k - I) of the bones but the root, row by row, [R17] Eq. 4: features (9(B-1),) are written."""
-    for b in range(1, len(rotations)):
-        for i in range(3):
-            for j in range(3):
-                features[9 * (b - 1) + 3 * i + j] = rotations[b, i, j] - (1.0 if i == j else 0.0)
+def compute_features(rotations):
+    """(9(B-1),) vec(R_b - I) of the bones but the root, row by row, of rotations (B, 3, 3), [R17] Eq. 4."""
+    features = np.empty((len(rotations), 9))
+    features_into(features, rotations)
+    return features[1:].copy().reshape(-1)
 
 
 @njit(cache=True, nogil=True)
@@ -94,7 +64,7 @@ def correct_rest(template, directions, features, rest):
 
 
 @njit(cache=True, nogil=True)
-def blend(bones, weights, R, p, A, b):
+def blend(bones, weights, Ts, A, b):
     """The affine map of each vertex, x -> A_v x + b_v: A (V, 3, 3) and b (V, 3) are written."""
     for v in range(len(bones)):
         for i in range(3):
@@ -105,25 +75,18 @@ def blend(bones, weights, R, p, A, b):
             bone, weight = bones[v, place], weights[v, place]
             if weight != 0.0:
                 for i in range(3):
-                    b[v, i] += weight * p[bone, i]
+                    b[v, i] += weight * Ts[bone, i, 3]
                     for j in range(3):
-                        A[v, i, j] += weight * R[bone, i, j]
+                        A[v, i, j] += weight * Ts[bone, i, j]
 
 
 @njit(cache=True, nogil=True)
 def turn(R, x, y, z):
     """R <- R exp([x, y, z]), in place."""
-    theta2 = x * x + y * y + z * z
-    if theta2 < 1e-12:
-        a, b = 1.0 - theta2 / 6.0, 0.5 - theta2 / 24.0
-    else:
-        theta = np.sqrt(theta2)
-        a, b = np.sin(theta) / theta, (1.0 - np.cos(theta)) / theta2
-    e00, e01, e02 = 1.0 - b * (y * y + z * z), b * x * y - a * z, b * x * z + a * y
-    e10, e11, e12 = b * x * y + a * z, 1.0 - b * (x * x + z * z), b * y * z - a * x
-    e20, e21, e22 = b * x * z - a * y, b * y * z + a * x, 1.0 - b * (x * x + y * y)
+    E = np.empty((3, 3))
+    rotation_into(E, np.array([x, y, z]))
     for i in range(3):
         r0, r1, r2 = R[i, 0], R[i, 1], R[i, 2]
-        R[i, 0] = r0 * e00 + r1 * e10 + r2 * e20
-        R[i, 1] = r0 * e01 + r1 * e11 + r2 * e21
-        R[i, 2] = r0 * e02 + r1 * e12 + r2 * e22
+        R[i, 0] = r0 * E[0, 0] + r1 * E[1, 0] + r2 * E[2, 0]
+        R[i, 1] = r0 * E[0, 1] + r1 * E[1, 1] + r2 * E[2, 1]
+        R[i, 2] = r0 * E[0, 2] + r1 * E[1, 2] + r2 * E[2, 2]

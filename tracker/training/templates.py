@@ -6,7 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from tracker.training.motion import blend, compute_features, compute_motions, correct_rest
+from tracker.model.blend_kernels import move_bones_into
+from tracker.training.motion import blend, compute_features, correct_rest
 from tracker.training.pose_fit import Poses, Rig
 
 Array = npt.NDArray[np.float64]
@@ -65,12 +66,11 @@ def unpose(poses: Poses, targets: Array, owners: Integers, joints: Array, rig: R
 @njit(cache=True, nogil=True)
 def _add(joints, parents, bones, weights, directions, target, rotations, translation, weight, squares, sides):
     B, V = len(parents), len(target)
-    R, p, q = np.empty((B, 3, 3)), np.empty((B, 3)), np.empty((B, 3))
-    compute_motions(rotations, translation, joints, parents, R, p, q)
-    features = np.empty(9 * (B - 1))
-    compute_features(rotations, features)
+    Ts, posed = np.empty((B, 3, 4)), np.empty((B, 3))
+    move_bones_into(Ts, posed, rotations, joints, parents, translation)
+    features = compute_features(rotations)
     A, b, correction = np.empty((V, 3, 3)), np.empty((V, 3)), np.empty((V, 3))
-    blend(bones, weights, R, p, A, b)
+    blend(bones, weights, Ts, A, b)
     correct_rest(np.zeros((V, 3)), directions, features, correction)
     for v in range(V):
         for i in range(3):
@@ -86,9 +86,9 @@ def _add(joints, parents, bones, weights, directions, target, rotations, transla
 @njit(cache=True, nogil=True)
 def _unpose(joints, parents, bones, weights, target, rotations, translation, rest):
     B, V = len(parents), len(target)
-    R, p, q = np.empty((B, 3, 3)), np.empty((B, 3)), np.empty((B, 3))
-    compute_motions(rotations, translation, joints, parents, R, p, q)
+    Ts, posed = np.empty((B, 3, 4)), np.empty((B, 3))
+    move_bones_into(Ts, posed, rotations, joints, parents, translation)
     A, b = np.empty((V, 3, 3)), np.empty((V, 3))
-    blend(bones, weights, R, p, A, b)
+    blend(bones, weights, Ts, A, b)
     for v in range(V):
         rest[v] = np.linalg.solve(A[v], target[v] - b[v])

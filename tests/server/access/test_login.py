@@ -11,11 +11,10 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import func, select, update
 
-from server.access import login_throttle, passwords
+from server.access import passwords
 from server.access.authentication import name_cookie
 from server.access.models import Account, LoginRow
 from server.database import utc_now
-from server.errors import TooManyTriesError
 from server.settings import Settings
 from tests.server.access.conftest import PASSWORD, Lab
 
@@ -154,25 +153,6 @@ def test_who_guesses_waits_and_others_do_not(lab: Lab) -> None:
     assert log_in(lab.nobody, "anna").status_code == 429, "another spelling is the same name"
     assert log_in(lab.nobody).status_code == 429, "the right password helps no more"
     assert log_in(lab.nobody, "Ben").status_code == 200
-
-
-def test_tries_are_forgotten_after_a_while_and_never_fill_the_memory() -> None:
-    now = [0.0]
-    failed = login_throttle.LoginThrottle(lambda: now[0])
-    for _ in range(login_throttle.MAX_BY_NAME_AND_ADDRESS):
-        failed.begin("anna", "10.0.0.1")
-    with pytest.raises(TooManyTriesError):
-        failed.begin("anna", "10.0.0.1")
-    failed.begin("anna", "10.0.0.2")
-    now[0] = login_throttle.WINDOW + 1
-    failed.begin("anna", "10.0.0.1")
-    for n in range(login_throttle.MAX_BY_ADDRESS - 1):
-        failed.begin(f"made up {n}", "10.0.0.1")
-    with pytest.raises(TooManyTriesError):
-        failed.begin("somebody", "10.0.0.1")
-    for n in range(2 * login_throttle.MAX_KEYS):
-        failed.begin(f"name {n}", f"10.1.{n // 250}.{n % 250}")
-    assert len(failed._times) <= login_throttle.MAX_KEYS + 3
 
 
 def test_failed_logins_leave_one_line_in_the_log_whatever_the_name(lab: Lab, caplog: pytest.LogCaptureFixture) -> None:

@@ -5,17 +5,19 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import signal
 import subprocess
 import sys
 import tempfile
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
 from server.compute import Compute
-from server.compute.process import NICENESS, ComputeStoppedError
+from server.compute.process import NICENESS, ComputeProcess, ComputeStoppedError, ComputeTooLongError
 from server.storage import Storage
 from tests.server.compute import work
 
@@ -152,6 +154,41 @@ def test_a_question_that_kills_it_twice_is_refused_and_others_are_answered(start
     with pytest.raises(ComputeStoppedError, match="twice"):
         ask(started, work.die)
     assert ask(started, work.tell_process)[0] != os.getpid()
+
+
+def test_a_question_that_takes_too_long_is_ended_with_the_time_that_it_had(settings, tmp_path):
+    with contextlib.closing(ComputeProcess(settings)) as process:
+        first, _ = process.ask(work.tell_process, ())
+        began = time.monotonic()
+        with pytest.raises(ComputeTooLongError, match=r"took longer than 1 s and was ended") as told:
+            process.ask(work.sleep, (60.0, tmp_path / "mark"), limit_seconds=1.0)
+        assert time.monotonic() - began < 30.0 and told.value.status_code == 503
+        wait_until(lambda: not is_alive(first))
+        assert process.ask(work.tell_process, ())[0] != first
+
+
+def test_a_process_that_stands_still_is_ended_too(settings):
+    with contextlib.closing(ComputeProcess(settings)) as process:
+        first, _ = process.ask(work.tell_process, ())
+        os.kill(first, signal.SIGSTOP)
+        with pytest.raises(ComputeTooLongError):
+            process.ask(work.tell_process, (), limit_seconds=1.0)
+        wait_until(lambda: not is_alive(first))
+        assert process.ask(work.tell_process, ())[0] != first
+
+
+def test_what_else_it_was_at_is_computed_in_the_next_one(settings, tmp_path):
+    with contextlib.closing(ComputeProcess(settings)) as process, ThreadPoolExecutor(1) as other:
+        process.ask(work.tell_process, ())
+        waiting = other.submit(process.ask, work.sleep, (4.0, tmp_path / "other"))
+        wait_until((tmp_path / "other").exists)
+        with pytest.raises(ComputeTooLongError):
+            process.ask(work.sleep, (60.0, tmp_path / "mark"), limit_seconds=1.0)
+        assert waiting.result(timeout=60) == "slept"
+
+
+def test_a_route_in_a_thread_gets_the_same_answers(started):
+    assert started.ask(work.tell_process) == ask(started, work.tell_process)
 
 
 def test_closed_it_leaves_no_process_and_no_folder(started):

@@ -14,6 +14,8 @@ from sqlalchemy.exc import OperationalError
 from server.compute import ComputeContext
 from server.database.paging import UnknownCursorError
 from server.errors import ConflictError
+from server.evaluations.judge import Judge
+from server.scans.service import ScanCache
 from server.sequences.models import SequenceRow
 from tracker.errors import FileError
 
@@ -82,3 +84,13 @@ def count_recordings(context: ComputeContext) -> int:
     """In the studio's database."""
     with context.database.reading() as session:
         return session.scalar(select(func.count()).select_from(SequenceRow)) or 0
+
+
+def count_verdicts(context: ComputeContext) -> int:
+    """Tracks that were judged in the process that answers this."""
+    return len(context.keep(Judge)._verdicts)
+
+
+def count_scans(context: ComputeContext) -> int:
+    """Scans that were opened in the process that answers this."""
+    return len(context.keep(ScanCache)._scans)

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import uuid
 from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
 from importlib import import_module
 from pathlib import Path
 
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
-from sqlalchemy import inspect, select
+from sqlalchemy import bindparam, insert, inspect, select, text
 
 from server.access.models import LOCAL_ACCOUNT_ID, Account
 from server.annotations.models import AnnotationRow
-from server.database import Base, Database
+from server.database import Base, Database, utc_now
 from server.database.migrate import SCRIPTS, downgrade, find_current, find_head, upgrade
 from server.settings import Settings
+from server.tracks.cameras import digest_cameras
 
-for path in sorted((Path(SCRIPTS).parent / "server").glob("*/models.py")):
-    import_module(f"server.{path.parent.name}.models")  # they declare the tables
+for path in sorted((Path(SCRIPTS).parent / "server").glob("*/*models.py")):
+    import_module(f"server.{path.parent.name}.{path.stem}")  # they declare the tables
 
 
 def own_tables(database: Database) -> set[str]:
@@ -96,3 +98,33 @@ def test_what_was_stored_before_survives_the_newest_migrations(empty_database: D
         assert (kept.frame, kept.replica, kept.author_id) == (3, "", LOCAL_ACCOUNT_ID)
         account = session.get(Account, LOCAL_ACCOUNT_ID)
         assert account is not None and account.role == "admin" and account.preferences == {}
+
+
+def test_tracks_from_before_are_told_with_which_cameras_they_were_made(empty_database: Database) -> None:
+    upgrade(empty_database, "0015")
+    before, after = ([{"K": [[f]], "distortion": [], "T_world_camera": [[1]]}] for f in (500, 501))
+    recording = uuid.UUID(int=1)
+    sequences, tracks, refinements = (Base.metadata.tables[name] for name in ("sequences", "tracks", "refinements"))
+    shared = {"name": "ball", "hands": [], "created_at": datetime(2026, 1, 1, tzinfo=UTC)}
+    of_recording = {"fps": 30, "frame_count": 9, "objects": [], "content_key": "key", "revision": 2}
+    moments = {"early": datetime(2026, 1, 2, tzinfo=UTC), "late": datetime(2026, 1, 4, tzinfo=UTC)}
+    with empty_database.writing() as session:
+        values = shared | of_recording | {"id": recording, "cameras": after, "updated_at": utc_now()}
+        session.execute(insert(sequences).values(**values))
+        for name, moment in moments.items():
+            own = {"frame_first": 0, "frame_count": 9, "summary": {}, "sequence_id": recording}
+            columns = shared | own | {"id": uuid.uuid4(), "name": name, "created_at": moment}
+            names, marks = ", ".join(columns), ", ".join(f":{column}" for column in columns)
+            types = [bindparam(column, type_=tracks.c[column].type) for column in columns]
+            session.execute(text(f"INSERT INTO tracks ({names}) VALUES ({marks})").bindparams(*types), columns)
+        session.execute(
+            insert(refinements).values(
+                **{"id": uuid.uuid4(), "sequence_id": recording, "state": "taken", "report": {}},
+                **{"cameras_before": before, "cameras_after": after, "created_at": moments["early"]},
+                changed_at=datetime(2026, 1, 3, tzinfo=UTC),
+            )
+        )
+    upgrade(empty_database)
+    with empty_database.reading() as session:
+        rows = session.execute(select(tracks.c.name, tracks.c.cameras_digest)).all()
+    assert dict(map(tuple, rows)) == {"early": digest_cameras(before), "late": digest_cameras(after)}

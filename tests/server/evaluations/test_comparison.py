@@ -16,6 +16,7 @@ from fastapi.testclient import TestClient
 
 from server.access.project_models import ProjectRow, ProjectSequenceRow
 from server.annotations.snapshot_models import SnapshotRow
+from server.database import Database
 from tests.server.conftest import Studio, Tracked
 from tests.server.evaluations.conftest import AddShifted
 
@@ -203,9 +204,9 @@ def test_a_verdict_is_worked_out_once(studio, client, tracked, monkeypatch) -> N
     judged = []
     work = Judge._judge
 
-    def count(self: Judge, track_id: uuid.UUID, labels: Any) -> Any:
+    def count(self: Judge, database: Database, track_id: uuid.UUID, labels: Any) -> Any:
         judged.append(labels.key)
-        return work(self, track_id, labels)
+        return work(self, database, track_id, labels)
 
     monkeypatch.setattr(Judge, "_judge", count)
     for _ in range(3):

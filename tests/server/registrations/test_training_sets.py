@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import json
 import uuid
+import zipfile
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +15,9 @@ import pytest
 from server.database.database import Database
 from server.errors import InvalidError, NotFoundError
 from server.registrations import training_sets as service
+from server.registrations.models import RegistrationRow
 from server.registrations.training_set_schemas import TrainingRule
+from server.scans.models import ScanRow
 from server.storage import Storage
 from tests.server.curation import Curation, curation, join
 
@@ -137,3 +142,43 @@ def test_two_people_must_agree_where_the_rule_says_so(curation: Curation) -> Non
     with database(curation).reading() as session:
         chosen = service.choose_registrations(session, TrainingRule(needs_two=True))
         assert [entry.registration.id for entry in chosen] == [one]
+
+
+def test_deleted_scans_and_registrations_of_an_older_crop_are_not_chosen(curation: Curation) -> None:
+    kept, deleted, outdated = accept(curation, "a", "b", "c")
+    with database(curation).writing() as session:
+        row = session.get_one(RegistrationRow, deleted)
+        session.get_one(ScanRow, row.scan_id).deleted_at = datetime.now(UTC)
+        session.get_one(RegistrationRow, outdated).is_outdated = True
+    with database(curation).reading() as session:
+        chosen = service.choose_registrations(session, TrainingRule())
+        assert [one.registration.id for one in chosen] == [kept]
+        assert service.choose_registrations(session, TrainingRule(by="verdict"))[0].registration.id == kept
+
+
+def test_the_preview_counts_people_left_hands_and_what_nobody_has_decided_on(curation: Curation) -> None:
+    accept(curation, "a", subject="Ada")
+    accept(curation, "b", subject="Ada", side="left")
+    accept(curation, "c", subject="Bob", collection="other")
+    curation.register("d")
+    with database(curation).reading() as session:
+        seen = service.preview(session, TrainingRule())
+        assert (seen.registrations, seen.subjects, seen.mirrored, seen.undecided) == (3, 2, 1, 1)
+        elsewhere = service.preview(session, TrainingRule(collections=["other"]))
+        assert (elsewhere.registrations, elsewhere.undecided) == (1, 0)
+
+
+def test_the_archive_is_not_written_when_a_file_was_changed(curation: Curation) -> None:
+    (id_,) = accept(curation, "a")
+    set_id = make(curation)
+    with database(curation).reading() as session:
+        row = service.get_training_set(session, set_id)
+        whole = io.BytesIO()
+        service.write_archive(storage(curation), row, whole)
+        with zipfile.ZipFile(whole) as archive:
+            assert set(archive.namelist()) == {"training_set.json", f"{id_}/registration.npz", "accepted.json"}
+            assert archive.testzip() is None
+        path = storage(curation).folder("registrations", id_) / "registration.npz"
+        path.write_bytes(path.read_bytes() + b"\0")
+        with pytest.raises(service.DamagedSetError, match="nothing was trained from it"):
+            service.write_archive(storage(curation), row, io.BytesIO())

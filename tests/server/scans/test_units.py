@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from server.scans.models import ScanRow
-from server.scans.service import ScanCache
 from tests.server.conftest import Studio
 from tests.server.curation import API, Curation, add_registered, curation, make_ball, send_scans
 from tests.server.scans.test_routes import crop, fetch, write
@@ -155,7 +154,6 @@ def test_a_scan_of_before_that_never_said_its_unit_keeps_its_size_until_it_is_co
         row.extent_m = [side * 0.01 / REAL_UNIT for side in row.extent_m]
         row.metres_per_unit = row.first_metres_per_unit = row.size_m = None
         row.is_unit_guessed = True
-    studio.app.state.scan_shelf = ScanCache(studio.app.state.storage)  # the one before has the scan in its memory
     old = studio.client.get(f"{API}/scans/{scan['id']}").json()
     assert old["size_m"][0] == pytest.approx(0.056, rel=0.02) and old["metres_per_unit"] is None
     small, _ = read_points(studio, old)

@@ -55,6 +55,7 @@ def test_a_hand_that_is_not_in_the_scan_is_said_to_be_guessed_and_stays_at_the_a
     found = registrar.register(other.scan, registered.state)
     assert found.are_shown == (True, False) and any("right hand is guessed" in reason for reason in found.reasons)
     wrist = body_hand(body_model(), "right").wrist
+    assert np.abs(found.state.hands[1] - registered.state.hands[1]).max() < 0.1, "rad; held to what it was"
     assert np.linalg.norm(found.state.posed(body_model()).joints[wrist] - other.joints[wrist]) < 0.02
 
 

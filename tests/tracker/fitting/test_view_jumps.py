@@ -20,8 +20,10 @@ def told(joints, rng) -> list:
     return [hands["right"] for hands in see(joints, CAMERAS, rng).hands]
 
 
-def list_jumps(joints, told) -> list[tuple[int, int]]:
-    return [(int(view), int(joint)) for view, joint in zip(*np.nonzero(find_jumps(joints, CAMERAS, told)), strict=True)]
+def list_jumps(joints, told, fps: float = 25.0) -> list[tuple[int, int]]:
+    return [
+        (int(view), int(joint)) for view, joint in zip(*np.nonzero(find_jumps(joints, CAMERAS, told, fps)), strict=True)
+    ]
 
 
 def test_a_hand_that_is_where_it_is_expected_has_no_jumps(joints, told):
@@ -32,6 +34,11 @@ def test_a_joint_told_far_off_by_one_view_is_a_jump_and_a_near_one_is_none(joint
     told[1].points[TIP] += [70.0, 70.0]
     told[0].points[4] += [3.0, 3.0]
     assert list_jumps(joints, told) == [(1, TIP)]
+
+
+def test_between_frames_that_are_far_apart_a_joint_may_go_far(joints, told):
+    told[1].points[TIP] += [70.0, 70.0]
+    assert list_jumps(joints, told, 4.5) == []
 
 
 def test_a_wrong_ray_that_meets_one_that_is_as_expected_is_still_a_jump(joints, told):
@@ -59,4 +66,4 @@ def test_a_hand_that_moved_as_a_whole_has_no_jumps(joints, told):
 
 def test_views_that_tell_nothing_have_no_jumps(joints, told):
     told[0].points[:] = np.nan
-    assert not find_jumps(joints, CAMERAS, [told[0], None]).any()
+    assert not find_jumps(joints, CAMERAS, [told[0], None], 25.0).any()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tracker.errors import SolveError
-from tracker.solver.minimize import DenseSystem, TrustRegion, minimize
+from tracker.solver.minimize import MOST_DAMPING, DenseSystem, TrustRegion, minimize, minimize_damped
 
 
 @dataclass(frozen=True)
@@ -86,3 +86,29 @@ def test_where_every_step_is_worse_the_region_shrinks_until_it_gives_up():
     assert minimize(START, linearize, move, TrustRegion(1.0, 1e-3, 100, 1e-9)) is START
     lengths = [np.linalg.norm(place.at - START.at) for place in walk.tried]
     assert lengths == sorted(lengths, reverse=True) and 3 < len(lengths) < 20
+
+
+def damp(place: Place, system: DenseSystem, damping: float) -> Place:
+    H = system.hessian + damping * np.diag(np.diag(system.hessian))
+    return Place(place.at - np.linalg.solve(H, system.gradient))
+
+
+def test_damped_steps_find_the_same_floor_and_never_climb():
+    costs = [minimize_damped(START, linearize, damp, n, 1e-15).cost for n in range(30)]
+    assert costs[0] == START.cost and costs == sorted(costs, reverse=True)
+    assert minimize_damped(START, linearize, damp, 200, 1e-15).at == pytest.approx([1.0, 1.0], abs=1e-6)
+
+
+def test_damping_grows_while_steps_are_worse_and_the_equations_are_not_made_anew():
+    dampings, made = [], []
+
+    def climb(place: Place, equations: tuple[float, float], damping: float) -> Place:
+        dampings.append(damping)
+        return Place(place.at + 1.0 + damping)
+
+    def equations_of(place: Place) -> tuple[float, float]:
+        made.append(place)
+        return (0.0, 0.0)
+
+    assert minimize_damped(START, equations_of, climb, 100, 1e-6) is START
+    assert len(made) == 1 and dampings == sorted(dampings) and max(dampings) <= MOST_DAMPING

@@ -125,8 +125,8 @@ def test_several_views_with_two_threads_give_the_bits_of_one_and_are_read_ahead(
 
 def test_a_moment_of_several_views_that_cannot_be_read_stops_the_run_at_its_turn(views):
     options = TrackOptions(calibrate=False, cameras="cam0,cam1", use_depth=False, threads=2)
+    setup, state = start_tracking(views, options)
     watched: Any = WatchedViews(views, broken=2)
-    setup, state = start_tracking(watched, options)
     tracked: list[int] = []
     with pytest.raises(FrameError, match="frame 2 is broken"):
         track_frames(watched, setup, state, range(5), lambda index, _: tracked.append(index))

@@ -9,7 +9,8 @@ import numpy.typing as npt
 from scipy.sparse import csr_array
 from scipy.spatial.transform import Rotation
 
-from tracker.training.motion import blend, compute_features, compute_motions, correct_rest, sparsen_skinning
+from tracker.model.blend_kernels import move_bones_into
+from tracker.training.motion import blend, compute_features, correct_rest, sparsen_skinning
 
 PARENTS = np.array([-1, 0, 1, 2])
 RINGS, AROUND, LENGTH, RADIUS = 25, 10, 0.10, 0.009
@@ -96,13 +97,12 @@ def make_fingers(people: int = 4, poses: int = 20, with_bulges: bool = True, see
 def pose(template, joints, parents, skinning, directions, rotations, translation):
     """Posed vertices (V, 3) and joints (B, 3) by the kernels that training uses."""
     B, V = len(joints), len(template)
-    R, p, q = np.empty((B, 3, 3)), np.empty((B, 3)), np.empty((B, 3))
-    compute_motions(rotations, translation, joints, parents, R, p, q)
-    features = np.empty(9 * (B - 1))
-    compute_features(rotations, features)
+    Ts, q = np.empty((B, 3, 4)), np.empty((B, 3))
+    move_bones_into(Ts, q, rotations, joints, parents, translation)
+    features = compute_features(rotations)
     rest, A, b = np.empty((V, 3)), np.empty((V, 3, 3)), np.empty((V, 3))
     correct_rest(template, directions, features, rest)
-    blend(*skinning, R, p, A, b)
+    blend(*skinning, Ts, A, b)
     return np.einsum("vij,vj->vi", A, rest) + b, q
 
 

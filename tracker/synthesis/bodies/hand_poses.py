@@ -1,4 +1,4 @@
-"""Poses of hands that generated people take: those of the six people whom nothing was learnt from."""
+"""Poses of hands that generated people take: those of people whom nothing was learnt from."""
 
 from __future__ import annotations
 

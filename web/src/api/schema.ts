@@ -4351,7 +4351,7 @@ export interface components {
             frames: number;
             /**
              * Frames Done
-             * @description Frames in which every joint asked for is decided: of a range each hand of the recording, of a replica set every hand in every camera.
+             * @description Frames in which every joint asked for is marked, or marked as outside: of a range each hand of the recording, of a replica set every hand in every camera.
              */
             frames_done: number;
             /**
@@ -8837,7 +8837,7 @@ export interface components {
             created_at: string;
             /**
              * Done Frames
-             * @description Frames in which every joint of every hand of it is decided.
+             * @description Frames in which every joint of every hand is marked, or marked as outside the image.
              * @default 0
              */
             done_frames: number;
@@ -9266,6 +9266,11 @@ export interface components {
              * Format: uuid
              */
             id: string;
+            /**
+             * Is Of Earlier Cameras
+             * @description Made before the cameras changed: its joints stay where the cameras of that time saw them.
+             */
+            is_of_earlier_cameras: boolean;
             /** Job Id */
             job_id: string | null;
             /** Name */

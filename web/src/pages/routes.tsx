@@ -1,21 +1,21 @@
 import { lazy } from "react";
 import { createBrowserRouter, Navigate } from "react-router";
-import { BrokenPage } from "./BrokenPage";
-import { JobPage } from "./JobPage";
-import { JobsPage } from "./JobsPage";
-import { MissingPage } from "./MissingPage";
-import { NewImportPage } from "./NewImportPage";
-import { RecordingPage } from "./RecordingPage";
-import { RecordingsPage } from "./RecordingsPage";
-import { Shell } from "./Shell";
-import { TracksPage } from "./TracksPage";
-import { WholeAddress } from "./WholeAddress";
+import { BrokenPage } from "./shell/BrokenPage";
+import { JobPage } from "./jobs/JobPage";
+import { JobsPage } from "./jobs/JobsPage";
+import { MissingPage } from "./shell/MissingPage";
+import { NewImportPage } from "./imports/NewImportPage";
+import { RecordingPage } from "./recordings/RecordingPage";
+import { RecordingsPage } from "./recordings/RecordingsPage";
+import { Shell } from "./shell/Shell";
+import { TracksPage } from "./tracks/TracksPage";
+import { WholeAddress } from "./shell/WholeAddress";
 
-const AnnotatePage = lazy(() => import("./AnnotatePage"));
-const AnnotateChooser = lazy(() => import("./AnnotateChooser"));
+const AnnotatePage = lazy(() => import("./annotate/AnnotatePage"));
+const AnnotateChooser = lazy(() => import("./annotate/AnnotateChooser"));
 const ComparePage = lazy(() => import("./jobs/ComparePage"));
 const LabelsPage = lazy(() => import("./labels/LabelsPage"));
-const ImportPage = lazy(() => import("./ImportPage"));
+const ImportPage = lazy(() => import("./imports/ImportPage"));
 const CuratePage = lazy(() => import("./curate/CuratePage"));
 const ReviewAgreementPage = lazy(() => import("./curate/ReviewAgreementPage"));
 const ScansPage = lazy(() => import("./scans/ScansPage"));
@@ -36,7 +36,7 @@ const CalibrationsPage = lazy(() => import("./calibrations/CalibrationsPage"));
 const CalibrationPage = lazy(() => import("./calibrations/CalibrationPage"));
 const NewCalibrationPage = lazy(() => import("./calibrations/NewCalibrationPage"));
 const LabelCheckPage = lazy(() => import("./quality/LabelCheckPage"));
-const TrackPage = lazy(() => import("./TrackPage"));
+const TrackPage = lazy(() => import("./tracks/TrackPage"));
 
 /** Addresses hold the state of a page, so that a link shows a colleague the same thing. */
 export const router = createBrowserRouter([

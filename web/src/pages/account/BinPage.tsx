@@ -8,7 +8,7 @@ import { formatAgo, formatBytes } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { useTitle } from "../parts/useTitle";
-import { tellFailure } from "../projects/offerUndo";
+import { tellFailure } from "../parts/undo";
 import classes from "./account.module.css";
 import { EraseDialog } from "./EraseDialog";
 

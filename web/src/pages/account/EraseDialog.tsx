@@ -1,4 +1,5 @@
-import { Button, Group, List, Modal, Skeleton, Stack, Text, Title } from "@mantine/core";
+import { List, Skeleton, Text } from "@mantine/core";
+import { FormDialog } from "../parts/Dialog";
 import { notifications } from "@mantine/notifications";
 import { useErase, useErasure, type BinItem } from "../../api/bin";
 import { formatBytes, formatCount } from "../../model/format";
@@ -20,57 +21,50 @@ export function EraseDialog({ item, onClose }: EraseDialogProps) {
     onClose();
   };
   return (
-    <Modal opened={item !== null} onClose={close} title={<Title order={2}>Delete for good?</Title>} size={480}>
-      <Stack gap="md">
-        <Text size="sm" style={{ overflowWrap: "anywhere" }}>
-          The {item?.word} <strong>{item?.name}</strong> goes, and nothing can bring it back.
+    <FormDialog
+      title="Delete for good?"
+      size={480}
+      isOpen={item !== null}
+      onClose={close}
+      onSubmit={() =>
+        item &&
+        erase.mutate(item, {
+          onSuccess: () => {
+            notifications.show({ message: `${item.name} is deleted for good.` });
+            close();
+          },
+        })
+      }
+      verb="Delete for good"
+      stay="Keep it"
+      isGrave
+      isBusy={erase.isPending}
+      isReady={told !== undefined && told.obstacle === null}
+      failure={error}
+      failed="Nothing was deleted."
+    >
+      <Text size="sm" style={{ overflowWrap: "anywhere" }}>
+        The {item?.word} <strong>{item?.name}</strong> goes, and nothing can bring it back.
+      </Text>
+      {!told && !error && <Skeleton height={72} role="status" aria-label="What goes with it is counted" />}
+      {told && told.obstacle === null && (
+        <div>
+          <Text size="sm" mb={4}>
+            With it:
+          </Text>
+          <List size="sm" spacing={4} aria-label="What goes">
+            {told.going.map(({ word, count }) => (
+              <List.Item key={word}>{formatCount(count, word)}</List.Item>
+            ))}
+            <List.Item>{told.byte_count > 0 ? `${formatBytes(told.byte_count)} of files` : "no files on this machine"}</List.Item>
+          </List>
+        </div>
+      )}
+      {told && told.obstacle !== null && (
+        <Text size="sm" c="var(--warn-text)" role="status">
+          It cannot go: {told.obstacle}.
         </Text>
-        {!told && !error && <Skeleton height={72} role="status" aria-label="What goes with it is counted" />}
-        {told && told.obstacle === null && (
-          <div>
-            <Text size="sm" mb={4}>
-              With it:
-            </Text>
-            <List size="sm" spacing={4} aria-label="What goes">
-              {told.going.map(({ word, count }) => (
-                <List.Item key={word}>{formatCount(count, word)}</List.Item>
-              ))}
-              <List.Item>{told.byte_count > 0 ? `${formatBytes(told.byte_count)} of files` : "no files on this machine"}</List.Item>
-            </List>
-          </div>
-        )}
-        {told && told.obstacle !== null && (
-          <Text size="sm" c="var(--warn-text)" role="status">
-            It cannot go: {told.obstacle}.
-          </Text>
-        )}
-        {error && (
-          <Text size="sm" c="var(--bad-text)" role="alert">
-            {error.message}
-          </Text>
-        )}
-        <Group justify="flex-end" gap="sm">
-          <Button variant="default" onClick={close} data-autofocus>
-            Keep it
-          </Button>
-          <Button
-            color="red"
-            disabled={!told || told.obstacle !== null}
-            loading={erase.isPending}
-            onClick={() =>
-              item &&
-              erase.mutate(item, {
-                onSuccess: () => {
-                  notifications.show({ message: `${item.name} is deleted for good.` });
-                  close();
-                },
-              })
-            }
-          >
-            Delete for good
-          </Button>
-        </Group>
-      </Stack>
-    </Modal>
+      )}
+    </FormDialog>
   );
 }

@@ -1,4 +1,5 @@
-import { Button, Group, Modal, Text, Title } from "@mantine/core";
+import { Text } from "@mantine/core";
+import { FormDialog } from "../parts/Dialog";
 import { useDisclosure } from "@mantine/hooks";
 import { notifications } from "@mantine/notifications";
 import { useState, type ReactNode } from "react";
@@ -22,28 +23,20 @@ function LeaveDialog({ isOpen, isLeaving, onStay, onLeave }: LeaveProps) {
   const { mine, crops } = useElsewhere(NOTHING);
   const isSaved = mine === 0 && crops === 0;
   return (
-    <Modal opened={isOpen} onClose={onStay} title={<Title order={2}>Log out</Title>} size={440}>
+    <FormDialog title="Log out" size={440} isOpen={isOpen} onClose={onStay} onSubmit={onLeave} verb={isSaved ? "Log out" : "Log out all the same"} stay="Stay" isGrave={!isSaved} isBusy={isLeaving}>
       {mine > 0 && (
-        <Text size="sm" mb="sm">
+        <Text size="sm">
           {formatCount(mine, "change")} of yours {mine === 1 ? "is" : "are"} not on the server yet. {mine === 1 ? "It stays" : "They stay"} in this browser and {mine === 1 ? "is" : "are"} sent when you log in here again; nobody else sees{" "}
           {mine === 1 ? "it" : "them"} before.
         </Text>
       )}
       {crops > 0 && (
-        <Text size="sm" mb="sm">
+        <Text size="sm">
           {formatCount(crops, "crop")} {crops === 1 ? "is" : "are"} not saved; {crops === 1 ? "it is" : "they are"} kept in this tab until it is closed.
         </Text>
       )}
       {isSaved && <Text size="sm">Everything is on the server now.</Text>}
-      <Group justify="flex-end" mt="lg">
-        <Button variant="default" onClick={onStay} data-autofocus>
-          Stay
-        </Button>
-        <Button color={isSaved ? undefined : "red"} loading={isLeaving} onClick={onLeave}>
-          {isSaved ? "Log out" : "Log out all the same"}
-        </Button>
-      </Group>
-    </Modal>
+    </FormDialog>
   );
 }
 

@@ -33,7 +33,7 @@ export function SuggestLine() {
         ) : (
           <span className="quiet">
             {isDone
-              ? "Every joint of this hand is decided"
+              ? "All joints of this hand are marked"
               : areAllHidden
                 ? `Suggestions are hidden (${keyOf("suggestion.toggle")} shows them)`
                 : "Nothing suggested for this hand yet"}

@@ -13,7 +13,7 @@ export function describeClick(state: AnnotatorState, pose: Pose, placeMode: Plac
     return `chooses the ${state.hand} ${jointLabel(over)}${ground}`;
   }
   const joint = clickedJoint(state);
-  if (joint === null) return `changes nothing: every joint of the ${state.hand} hand is decided. Drag a joint, or choose it first`;
+  if (joint === null) return `changes nothing: all joints of the ${state.hand} hand are marked. Drag a joint, or select it first`;
   const name = `${state.hand} ${jointLabel(joint)}`;
   const status = statusOf(pose[joint]);
   const after = placeMode === "frame" ? ", then the next frame" : "";

@@ -8,7 +8,7 @@ import { Failure } from "../parts/Failure";
 import { For } from "../parts/For";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { useTitle } from "../parts/useTitle";
-import { tellFailure } from "../projects/offerUndo";
+import { tellFailure } from "../parts/undo";
 import { CalibrationResult, Downloads } from "./CalibrationResult";
 import { FilmsChecked } from "./FilmsChecked";
 import { Working } from "./Working";

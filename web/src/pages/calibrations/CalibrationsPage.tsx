@@ -7,7 +7,7 @@ import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { For } from "../parts/For";
 import { useTitle } from "../parts/useTitle";
-import { offerUndo, tellFailure } from "../projects/offerUndo";
+import { intoBin } from "../parts/undo";
 import classes from "./calibrations.module.css";
 
 const Begin = () => (
@@ -37,7 +37,7 @@ export default function CalibrationsPage() {
       </EmptyState>
     );
   const remove = ({ id, name }: Calibration): void =>
-    removing.mutate({ id, isBack: false }, { onSuccess: () => offerUndo(`“${name}” was moved to the bin.`, () => removing.mutateAsync({ id, isBack: true })), onError: tellFailure });
+    removing.mutate({ id, isBack: false }, intoBin(`“${name}”`, () => removing.mutateAsync({ id, isBack: true })));
   return (
     <div className="page">
       <Group mb="lg" justify="space-between">

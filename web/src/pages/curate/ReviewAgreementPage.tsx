@@ -1,4 +1,5 @@
-import { Button, Checkbox, Group, Modal, NumberInput, Select, SimpleGrid, Skeleton, Stack, Table, Text, Title } from "@mantine/core";
+import { Button, Checkbox, Group, NumberInput, Select, SimpleGrid, Skeleton, Stack, Table, Text, Title } from "@mantine/core";
+import { FormDialog } from "../parts/Dialog";
 import { useDisclosure } from "@mantine/hooks";
 import { notifications } from "@mantine/notifications";
 import { IconChecks, IconUsers } from "@tabler/icons-react";
@@ -75,38 +76,16 @@ function AskDialog({ isOpen, onClose }: { isOpen: boolean; onClose: () => void }
       },
     );
   return (
-    <Modal opened={isOpen} onClose={onClose} size={520} title={<Title order={2}>Ask for second reviews</Title>}>
-      <form
-        onSubmit={(event) => {
-          event.preventDefault();
-          submit();
-        }}
-      >
-        <Stack gap="md">
-          <Text size="sm" className="quiet">
-            Somebody else decides about the same registrations without seeing what the first person said.
-          </Text>
-          <Group grow gap="md" align="flex-start">
-            <Select label="Collection" allowDeselect={false} value={collection} data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]} onChange={(value) => setCollection(value ?? EVERY)} />
-            <NumberInput label="Share of them" suffix=" %" min={1} max={100} value={percent} onChange={(value) => setPercent(Number(value) || 10)} />
-          </Group>
-          <Checkbox label="Only of those that somebody has decided about" checked={onlyDecided} onChange={(event) => setOnlyDecided(event.currentTarget.checked)} />
-          {ask.error && (
-            <Text size="sm" c="var(--bad-text)" role="alert">
-              {ask.error.message} Nothing was asked for.
-            </Text>
-          )}
-          <Group justify="flex-end" gap="sm">
-            <Button variant="default" onClick={onClose}>
-              Cancel
-            </Button>
-            <Button type="submit" loading={ask.isPending}>
-              Ask
-            </Button>
-          </Group>
-        </Stack>
-      </form>
-    </Modal>
+    <FormDialog title="Ask for second reviews" size={520} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Ask" isBusy={ask.isPending} failure={ask.error} failed="Nothing was asked for.">
+      <Text size="sm" className="quiet">
+        Somebody else decides about the same registrations without seeing what the first person said.
+      </Text>
+      <Group grow gap="md" align="flex-start">
+        <Select label="Collection" allowDeselect={false} value={collection} data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]} onChange={(value) => setCollection(value ?? EVERY)} />
+        <NumberInput label="Share of them" suffix=" %" min={1} max={100} value={percent} onChange={(value) => setPercent(Number(value) || 10)} />
+      </Group>
+      <Checkbox label="Only of those that somebody has decided about" checked={onlyDecided} onChange={(event) => setOnlyDecided(event.currentTarget.checked)} />
+    </FormDialog>
   );
 }
 

@@ -1,4 +1,5 @@
-import { Button, Group, Menu, Modal, Skeleton, Stack, Text, Title } from "@mantine/core";
+import { Button, Group, Menu, Skeleton, Stack, Text, Title } from "@mantine/core";
+import { Dialog } from "../parts/Dialog";
 import { useDisclosure } from "@mantine/hooks";
 import { IconDownload, IconListCheck } from "@tabler/icons-react";
 import { useSearchParams } from "react-router";
@@ -154,9 +155,9 @@ export default function EvaluationsPage() {
           <Tables comparison={data} choice={choice} onChange={change} />
         </div>
       )}
-      <Modal opened={isChoosing} onClose={chooser.close} title="Tracks to compare" size="xl">
+      <Dialog title="Tracks to compare" size={780} isOpen={isChoosing} onClose={chooser.close}>
         <TrackChooser initial={data?.tracks.map((track) => track.key) ?? choice.tracks} onChoose={choose} onProject={chooseProject} />
-      </Modal>
+      </Dialog>
     </div>
   );
 }

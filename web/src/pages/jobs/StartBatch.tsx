@@ -1,4 +1,5 @@
-import { Button, Checkbox, Group, Modal, ScrollArea, Select, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Checkbox, Group, ScrollArea, Select, Stack, Text, TextInput } from "@mantine/core";
+import { FormDialog } from "../parts/Dialog";
 import { IconSearch } from "@tabler/icons-react";
 import { useQuery } from "@tanstack/react-query";
 import { useState } from "react";
@@ -10,7 +11,6 @@ import type { components } from "../../api/schema";
 import type { Recording } from "../../api/types";
 import { formatCount } from "../../model/format";
 import { Awaited } from "../parts/Awaited";
-import { FormFooter } from "../parts/Obstacles";
 import { TrackingForm, useTrackingOptions } from "../parts/TrackingForm";
 import classes from "./StartBatch.module.css";
 
@@ -74,85 +74,65 @@ export function StartBatch({ isOpen, onClose, onStarted }: StartBatchProps) {
     );
 
   return (
-    <Modal opened={isOpen} onClose={onClose} size={920} title={<Title order={2}>Track several recordings</Title>}>
-      <form
-        onSubmit={(event) => {
-          event.preventDefault();
-          submit();
-        }}
-      >
-        <Stack gap="md">
-          <section aria-label="Recordings to track">
-            <Group justify="space-between" mb="sm">
-              <Checkbox
-                label={search ? "All that are shown" : "All recordings"}
-                checked={areAllChosen}
-                indeterminate={!areAllChosen && selectable.some((recording) => chosen.has(recording.id))}
-                onChange={(event) => choose(selectable.map((recording) => recording.id), event.currentTarget.checked)}
+    <FormDialog title="Track several recordings" size={920} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb={`Track ${formatCount(chosen.size, "recording")}`} isBusy={start.isPending} isReady={chosen.size > 0} note={<Text size="sm" className="quiet" role="status">{chosen.size === 0 ? "Choose recordings above" : "All start together, or none"}</Text>}>
+      <section aria-label="Recordings to track">
+        <Group justify="space-between" mb="sm">
+          <Checkbox
+            label={search ? "All that are shown" : "All recordings"}
+            checked={areAllChosen}
+            indeterminate={!areAllChosen && selectable.some((recording) => chosen.has(recording.id))}
+            onChange={(event) => choose(selectable.map((recording) => recording.id), event.currentTarget.checked)}
+          />
+          <Group gap="sm">
+            {projects.length > 0 && (
+              <Select
+                w={208}
+                aria-label="Choose a whole project"
+                placeholder="A whole project …"
+                data={projects.map((project) => ({ value: project.id, label: project.name }))}
+                value={null}
+                onChange={chooseProject}
               />
-              <Group gap="sm">
-                {projects.length > 0 && (
-                  <Select
-                    w={208}
-                    aria-label="Choose a whole project"
-                    placeholder="A whole project …"
-                    data={projects.map((project) => ({ value: project.id, label: project.name }))}
-                    value={null}
-                    onChange={chooseProject}
-                  />
-                )}
-                <TextInput
-                  value={search}
-                  onChange={(event) => setSearch(event.currentTarget.value)}
-                  placeholder="Filter by name"
-                  aria-label="Filter recordings by name"
-                  leftSection={<IconSearch size={16} aria-hidden />}
-                  w={240}
-                />
-              </Group>
-            </Group>
-            <ScrollArea.Autosize mah={152} className={classes.list} tabIndex={0} aria-label="Recordings">
-              {!recordings && <Awaited what="The recordings" query={query} />}
-              {recordings && shown.length === 0 && <Text className="quiet">Nothing is called “{search}”.</Text>}
-              {shown.map((recording) => (
-                <Checkbox
-                  key={recording.id}
-                  py={4}
-                  label={recording.name}
-                  description={obstacles?.get(recording.id) ?? formatCount(recording.frame_count, "frame")}
-                  disabled={!isTrackable(recording)}
-                  checked={chosen.has(recording.id)}
-                  onChange={(event) => choose([recording.id], event.currentTarget.checked)}
-                />
-              ))}
-            </ScrollArea.Autosize>
-          </section>
-          {recordings?.[0] && <TrackingForm options={options} recording={recordings[0]} isForSeveral />}
-          {start.error && (
-            <Stack gap={4} role="alert">
-              <Text size="sm" c="var(--bad-text)">
-                {start.error.message}
-              </Text>
-              {refusals.map((refusal) => (
-                <Text key={refusal.id} size="sm">
-                  {nameOf(refusal.id)}: {refusal.detail}
-                </Text>
-              ))}
-            </Stack>
-          )}
-          <FormFooter>
-            <Text size="sm" className="quiet" role="status">
-              {chosen.size === 0 ? "Choose recordings above" : "All start together, or none"}
+            )}
+            <TextInput
+              value={search}
+              onChange={(event) => setSearch(event.currentTarget.value)}
+              placeholder="Filter by name"
+              aria-label="Filter recordings by name"
+              leftSection={<IconSearch size={16} aria-hidden />}
+              w={240}
+            />
+          </Group>
+        </Group>
+        <ScrollArea.Autosize mah={152} className={classes.list} tabIndex={0} aria-label="Recordings">
+          {!recordings && <Awaited what="The recordings" query={query} />}
+          {recordings && shown.length === 0 && <Text className="quiet">Nothing is called “{search}”.</Text>}
+          {shown.map((recording) => (
+            <Checkbox
+              key={recording.id}
+              py={4}
+              label={recording.name}
+              description={obstacles?.get(recording.id) ?? formatCount(recording.frame_count, "frame")}
+              disabled={!isTrackable(recording)}
+              checked={chosen.has(recording.id)}
+              onChange={(event) => choose([recording.id], event.currentTarget.checked)}
+            />
+          ))}
+        </ScrollArea.Autosize>
+      </section>
+      {recordings?.[0] && <TrackingForm options={options} recording={recordings[0]} isForSeveral />}
+      {start.error && (
+        <Stack gap={4} role="alert">
+          <Text size="sm" c="var(--bad-text)">
+            {start.error.message}
+          </Text>
+          {refusals.map((refusal) => (
+            <Text key={refusal.id} size="sm">
+              {nameOf(refusal.id)}: {refusal.detail}
             </Text>
-            <Button variant="default" onClick={onClose}>
-              Cancel
-            </Button>
-            <Button type="submit" loading={start.isPending} disabled={chosen.size === 0}>
-              Track {formatCount(chosen.size, "recording")}
-            </Button>
-          </FormFooter>
+          ))}
         </Stack>
-      </form>
-    </Modal>
+      )}
+    </FormDialog>
   );
 }

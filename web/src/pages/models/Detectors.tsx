@@ -4,7 +4,7 @@ import { IconDownload, IconTrash, IconUpload } from "@tabler/icons-react";
 import { detectorFileUrl, useDetectors, useRemoveDetector, useUploadDetector, type Detector } from "../../api/detectors";
 import { formatBytes } from "../../model/format";
 import { For } from "../parts/For";
-import { offerUndo, tellFailure } from "../projects/offerUndo";
+import { intoBin } from "../parts/undo";
 import { KeptTable, type Column } from "./KeptTable";
 
 const COLUMNS: readonly Column<Detector>[] = [
@@ -28,7 +28,7 @@ export function Detectors() {
   const remove = ({ id, name }: Detector): void =>
     removing.mutate(
       { id, isBack: false },
-      { onSuccess: () => offerUndo(`“${name}” was moved to the bin.`, () => removing.mutateAsync({ id, isBack: true })), onError: tellFailure },
+      intoBin(`“${name}”`, () => removing.mutateAsync({ id, isBack: true })),
     );
   return (
     <section aria-label="Fingertip detectors">

@@ -1,10 +1,10 @@
-import { Button, Group, Modal, NumberInput, Radio, Select, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Group, NumberInput, Radio, Select, Stack, Text, TextInput } from "@mantine/core";
+import { FormDialog } from "../parts/Dialog";
 import { useState } from "react";
 import { useNavigate } from "react-router";
 import { useStartLoop, type Evaluate, type HandModel, type LoopWish } from "../../api/handModels";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
 import { useScanCollections } from "../../api/scans";
-import { FormFooter } from "../parts/Obstacles";
 import { EvaluateChoice } from "./EvaluateChoice";
 import { LeaveOut } from "./LeaveOut";
 import { LOCAL_SHAPES, LocalShapesChoice } from "./LocalShapesChoice";
@@ -37,41 +37,24 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
   const check = useJobCheck("/jobs/loop", wish, isOpen);
   const submit = (): void => start.mutate(wish, { onSuccess: (job) => void navigate(`/jobs/${job.id}`) });
   return (
-    <Modal opened={isOpen} onClose={onClose} size={600} title={<Title order={2}>Register, train, register again</Title>}>
-      <form
-        onSubmit={(event) => {
-          event.preventDefault();
-          submit();
-        }}
-      >
-        <Stack gap="md">
-          <Text size="sm" className="quiet">
-            {model ? `Scans are registered with ${model.name}` : "Scans are registered with the first model"}, a better one is trained from what is chosen, and all scans are registered again with that. It goes on when the browser is closed.
-          </Text>
-          <TextInput label="Name of the models" description="The round is added" placeholder="Hand model" maxLength={200} value={name} onChange={(event) => setName(event.currentTarget.value)} data-autofocus />
-          <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value)}>
-            <Stack gap="sm" mt="sm">
-              <Radio value="verdict" label="What the program calls good, and nobody has rejected" />
-              <Radio value="decisions" label="What people have accepted by now: one round, then its registrations wait for people" />
-            </Stack>
-          </Radio.Group>
-          <Group grow gap="md" align="flex-start">
-            <NumberInput label="Rounds" min={1} max={10} allowDecimal={false} value={by === "decisions" ? 1 : rounds} disabled={by === "decisions"} onChange={(value) => setRounds(Number(value) || 1)} />
-            <Select label="Collection" allowDeselect={false} value={collection} data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]} onChange={(value) => setCollection(value ?? EVERY)} />
-          </Group>
-          <LeaveOut collections={collections} collection={collection} value={leaveOut} onChange={setLeaveOut} />
-          <LocalShapesChoice value={hasLocalShapes} onChange={setHasLocalShapes} />
-          <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
-          <FormFooter check={check.data} failure={start.error} help={by === "decisions" ? <ToCurate collection={collection} /> : undefined}>
-            <Button variant="default" onClick={onClose}>
-              Cancel
-            </Button>
-            <Button type="submit" loading={start.isPending} disabled={!mayStart(check)}>
-              Start
-            </Button>
-          </FormFooter>
+    <FormDialog title="Register, train, register again" size={600} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Start" isBusy={start.isPending} isReady={mayStart(check)} check={check.data} failure={start.error} help={by === "decisions" ? <ToCurate collection={collection} /> : undefined}>
+      <Text size="sm" className="quiet">
+        {model ? `Scans are registered with ${model.name}` : "Scans are registered with the first model"}, a better one is trained from what is chosen, and all scans are registered again with that. It goes on when the browser is closed.
+      </Text>
+      <TextInput label="Name of the models" description="The round is added" placeholder="Hand model" maxLength={200} value={name} onChange={(event) => setName(event.currentTarget.value)} data-autofocus />
+      <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value)}>
+        <Stack gap="sm" mt="sm">
+          <Radio value="verdict" label="What the program calls good, and nobody has rejected" />
+          <Radio value="decisions" label="What people have accepted by now: one round, then its registrations wait for people" />
         </Stack>
-      </form>
-    </Modal>
+      </Radio.Group>
+      <Group grow gap="md" align="flex-start">
+        <NumberInput label="Rounds" min={1} max={10} allowDecimal={false} value={by === "decisions" ? 1 : rounds} disabled={by === "decisions"} onChange={(value) => setRounds(Number(value) || 1)} />
+        <Select label="Collection" allowDeselect={false} value={collection} data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]} onChange={(value) => setCollection(value ?? EVERY)} />
+      </Group>
+      <LeaveOut collections={collections} collection={collection} value={leaveOut} onChange={setLeaveOut} />
+      <LocalShapesChoice value={hasLocalShapes} onChange={setHasLocalShapes} />
+      <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
+    </FormDialog>
   );
 }

@@ -12,7 +12,7 @@ import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { useTitle } from "../parts/useTitle";
-import { offerUndo, tellFailure } from "../projects/offerUndo";
+import { intoBin } from "../parts/undo";
 import { RegisterDialog } from "../scans/RegisterDialog";
 import { LineageList } from "./LineageList";
 import { LiveModel } from "./LiveModel";
@@ -50,13 +50,7 @@ export default function ModelPage() {
   const remove = (): void =>
     hide.mutate(
       { id: model.id, isBack: false },
-      {
-        onSuccess: () => {
-          void navigate("/models");
-          offerUndo(`${model.name} was moved to the bin.`, () => hide.mutateAsync({ id: model.id, isBack: true }));
-        },
-        onError: tellFailure,
-      },
+      intoBin(model.name, () => hide.mutateAsync({ id: model.id, isBack: true }), () => void navigate("/models")),
     );
   return (
     <div className="page">

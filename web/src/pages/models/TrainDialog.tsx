@@ -1,4 +1,5 @@
-import { Button, Checkbox, Group, Modal, Radio, Select, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Checkbox, Group, Radio, Select, Stack, Text, TextInput } from "@mantine/core";
+import { FormDialog } from "../parts/Dialog";
 import { useDebouncedValue } from "@mantine/hooks";
 import { useState } from "react";
 import { useNavigate } from "react-router";
@@ -6,7 +7,6 @@ import { useHandModels, useStartTraining, useTrainingPreview, type Evaluate, typ
 import { mayStart, useJobCheck } from "../../api/jobChecks";
 import { useScanCollections } from "../../api/scans";
 import { formatCount } from "../../model/format";
-import { FormFooter } from "../parts/Obstacles";
 import { EvaluateChoice } from "./EvaluateChoice";
 import { LeaveOut } from "./LeaveOut";
 import { LOCAL_SHAPES, LocalShapesChoice } from "./LocalShapesChoice";
@@ -55,56 +55,39 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
   const check = useJobCheck("/jobs/train", wish, isOpen);
   const submit = (): void => train.mutate(wish, { onSuccess: (job) => void navigate(`/jobs/${job.id}`) });
   return (
-    <Modal opened={isOpen} onClose={onClose} size={600} title={<Title order={2}>Train a hand model</Title>}>
-      <form
-        onSubmit={(event) => {
-          event.preventDefault();
-          submit();
-        }}
-      >
-        <Stack gap="md">
-          <TextInput label="Name of the model" placeholder="Hand model" maxLength={200} value={name} onChange={(event) => setName(event.currentTarget.value)} data-autofocus />
-          <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value)}>
-            <Stack gap="sm" mt="sm">
-              <Radio value="decisions" label="What people have accepted" />
-              <Radio value="verdict" label="What the program itself calls good, and nobody has rejected" />
-            </Stack>
-          </Radio.Group>
-          {by === "decisions" && <Checkbox label="Only what two people have accepted" checked={needsTwo} onChange={(event) => setNeedsTwo(event.currentTarget.checked)} />}
-          <Group grow gap="md" align="flex-start">
-            <Select
-              label="Collection"
-              allowDeselect={false}
-              value={collection}
-              data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]}
-              onChange={(value) => setCollection(value ?? EVERY)}
-            />
-            <LeaveOut collections={collections} collection={collection} value={leaveOut} onChange={setLeaveOut} />
-          </Group>
-          <LocalShapesChoice value={hasLocalShapes} onChange={setHasLocalShapes} />
-          <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
-          {model && (
-            <Text size="sm" className="quiet">
-              Only registrations by {model.name}.
-            </Text>
-          )}
-          <Text size="sm" role="status" fw={600}>
-            {preview.data
-              ? `${formatCount(preview.data.registrations, "registration")} of ${formatCount(preview.data.subjects, "subject")}, ${preview.data.mirrored} of left hands; ${preview.data.undecided} are still undecided.`
-              : preview.error
-                ? preview.error.message
-                : "Counting …"}
-          </Text>
-          <FormFooter check={check.data} failure={train.error} help={by === "decisions" ? <ToCurate collection={collection} /> : undefined}>
-            <Button variant="default" onClick={onClose}>
-              Cancel
-            </Button>
-            <Button type="submit" loading={train.isPending} disabled={!mayStart(check)}>
-              Train
-            </Button>
-          </FormFooter>
+    <FormDialog title="Train a hand model" size={600} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Train" isBusy={train.isPending} isReady={mayStart(check)} check={check.data} failure={train.error} help={by === "decisions" ? <ToCurate collection={collection} /> : undefined}>
+      <TextInput label="Name of the model" placeholder="Hand model" maxLength={200} value={name} onChange={(event) => setName(event.currentTarget.value)} data-autofocus />
+      <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value)}>
+        <Stack gap="sm" mt="sm">
+          <Radio value="decisions" label="What people have accepted" />
+          <Radio value="verdict" label="What the program itself calls good, and nobody has rejected" />
         </Stack>
-      </form>
-    </Modal>
+      </Radio.Group>
+      {by === "decisions" && <Checkbox label="Only what two people have accepted" checked={needsTwo} onChange={(event) => setNeedsTwo(event.currentTarget.checked)} />}
+      <Group grow gap="md" align="flex-start">
+        <Select
+          label="Collection"
+          allowDeselect={false}
+          value={collection}
+          data={[{ value: EVERY, label: "Every collection" }, ...collections.map((one) => one.name)]}
+          onChange={(value) => setCollection(value ?? EVERY)}
+        />
+        <LeaveOut collections={collections} collection={collection} value={leaveOut} onChange={setLeaveOut} />
+      </Group>
+      <LocalShapesChoice value={hasLocalShapes} onChange={setHasLocalShapes} />
+      <EvaluateChoice value={evaluate} onChange={setEvaluate} hasPeople={leaveOut.length > 0} />
+      {model && (
+        <Text size="sm" className="quiet">
+          Only registrations by {model.name}.
+        </Text>
+      )}
+      <Text size="sm" role="status" fw={600}>
+        {preview.data
+          ? `${formatCount(preview.data.registrations, "registration")} of ${formatCount(preview.data.subjects, "subject")}, ${preview.data.mirrored} of left hands; ${preview.data.undecided} are still undecided.`
+          : preview.error
+            ? preview.error.message
+            : "Counting …"}
+      </Text>
+    </FormDialog>
   );
 }

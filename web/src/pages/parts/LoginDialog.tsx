@@ -1,4 +1,5 @@
-import { Anchor, Modal, Text } from "@mantine/core";
+import { Anchor, Text } from "@mantine/core";
+import { Dialog } from "./Dialog";
 import type { Me } from "../../api/types";
 import { welcome } from "../../state/me";
 import { LoginForm } from "./LoginForm";
@@ -6,7 +7,7 @@ import { LoginForm } from "./LoginForm";
 /** Over the page, which stays as it is: what was done in it is kept and saved as soon as the same person is back. */
 export function LoginDialog({ me, isOther }: { me: Me; isOther: boolean }) {
   return (
-    <Modal opened onClose={() => undefined} withCloseButton={false} closeOnClickOutside={false} closeOnEscape={false} title={isOther ? "Somebody else is logged in" : "Your login has ended"} zIndex={500}>
+    <Dialog title={isOther ? "Somebody else is logged in" : "Your login has ended"} size={440}>
       <Text size="sm" mb="md">
         {isOther ? (
           <>
@@ -22,6 +23,6 @@ export function LoginDialog({ me, isOther }: { me: Me; isOther: boolean }) {
         What you did is kept in this browser for {me.name}, and is saved only under that name.
       </Text>
       <LoginForm name={me.name} onIn={welcome} />
-    </Modal>
+    </Dialog>
   );
 }

@@ -4,16 +4,18 @@ import type { ReactNode } from "react";
 import type { JobCheck } from "../../api/jobChecks";
 import classes from "./Obstacles.module.css";
 
-interface ObstaclesProps {
+export interface ObstaclesProps {
   check?: JobCheck | undefined;
   /** What the request answered, when it was refused all the same. */
-  failure?: Error | null;
+  failure?: Error | null | undefined;
+  /** What that means, behind the failure's own words. */
+  failed?: string | undefined;
   /** What helps: a link or a button, shown while something is in the way. */
   help?: ReactNode;
 }
 
 /** Why a job cannot be started, beside the button that would start it; and what one should know when it can be. */
-export function Obstacles({ check, failure, help }: ObstaclesProps) {
+export function Obstacles({ check, failure, failed = "No job was started.", help }: ObstaclesProps) {
   const obstacles = check?.obstacles ?? [];
   const isRefused = failure && !obstacles.some((obstacle) => failure.message.includes(obstacle));
   return (
@@ -35,7 +37,7 @@ export function Obstacles({ check, failure, help }: ObstaclesProps) {
       </Stack>
       {isRefused && (
         <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
-          {failure.message} No job was started.
+          {failure.message} {failed}
         </Text>
       )}
     </>

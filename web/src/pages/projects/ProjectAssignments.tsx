@@ -4,7 +4,7 @@ import { useState } from "react";
 import { Link } from "react-router";
 import { assignmentAddress, useAssignments, usePeople, useProjectRecordings, useTeamChange, type Assignment, type Project } from "../../api/teams";
 import { Awaited } from "../parts/Awaited";
-import { offerUndo, tellFailure } from "./offerUndo";
+import { offerUndo, tellFailure } from "../parts/undo";
 import classes from "./projects.module.css";
 import { EditAssignment } from "./EditAssignment";
 import { StateBadge } from "./StateBadge";

@@ -7,7 +7,7 @@ import { hasRole } from "../../model/assignment";
 import { Failure } from "../parts/Failure";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { useTitle } from "../parts/useTitle";
-import { offerUndo, tellFailure } from "./offerUndo";
+import { offerUndo, tellFailure } from "../parts/undo";
 import { ProjectAssignments } from "./ProjectAssignments";
 import { ProjectRecordings } from "./ProjectRecordings";
 import { ProjectReplicas } from "./ProjectReplicas";

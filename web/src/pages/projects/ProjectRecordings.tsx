@@ -4,7 +4,7 @@ import { Link } from "react-router";
 import { useRecordings } from "../../api/recordings";
 import { useProjectRecordings, useTeamChange, type Project, type ProjectRecording } from "../../api/teams";
 import { Awaited } from "../parts/Awaited";
-import { offerUndo, tellFailure } from "./offerUndo";
+import { offerUndo, tellFailure } from "../parts/undo";
 import classes from "./projects.module.css";
 
 /** The recordings of a project and how much of them is finished. */

@@ -6,7 +6,7 @@ import { useMe, usePeople, useProjectRecordings, useReplicaSets, useTeamChange, 
 import { hasRole } from "../../model/assignment";
 import { formatCount } from "../../model/format";
 import { Awaited } from "../parts/Awaited";
-import { offerUndo, tellFailure } from "./offerUndo";
+import { offerUndo, tellFailure } from "../parts/undo";
 import classes from "./projects.module.css";
 
 /** Frames that several people mark without seeing each other, and how well they agree. */

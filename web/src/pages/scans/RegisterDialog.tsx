@@ -1,10 +1,10 @@
-import { Button, Modal, Radio, Select, Stack, Text, Title } from "@mantine/core";
+import { Radio, Select, Stack, Text } from "@mantine/core";
+import { FormDialog } from "../parts/Dialog";
 import { useState } from "react";
 import { useNavigate } from "react-router";
 import { useHandModels, useStartRegistering } from "../../api/handModels";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
 import { formatCount } from "../../model/format";
-import { FormFooter } from "../parts/Obstacles";
 
 interface RegisterDialogProps {
   isOpen: boolean;
@@ -39,45 +39,28 @@ export function RegisterDialog({ isOpen, onClose, scanIds, collection, modelId }
   const check = useJobCheck("/jobs/register", wish, isOpen && chosen !== "");
   const submit = (): void => start.mutate(wish, { onSuccess: (job) => void navigate(`/jobs/${job.id}`) });
   return (
-    <Modal opened={isOpen} onClose={onClose} size={560} title={<Title order={2}>Register scans</Title>}>
-      <form
-        onSubmit={(event) => {
-          event.preventDefault();
-          submit();
-        }}
-      >
-        <Stack gap="md">
-          <Text size="sm" className="quiet">
-            The template of a hand model is brought onto every scan, without a start by hand. The program judges each result; then people accept or reject it.
-          </Text>
-          <Select
-            label="Hand model"
-            value={chosen}
-            allowDeselect={false}
-            data={models.map((one) => ({ value: one.id, label: one.round > 0 ? `${one.name} (round ${one.round})` : one.name }))}
-            onChange={setModel}
-          />
-          {scanIds.length > 0 ? (
-            <Text size="sm">{formatCount(scanIds.length, "chosen scan")}.</Text>
-          ) : (
-            <Radio.Group label={collection ? `Scans of “${collection}”` : "Scans of every collection"} value={only} onChange={setOnly}>
-              <Stack gap="sm" mt="sm">
-                {ONLY.map(({ value, label }) => (
-                  <Radio key={value} value={value} label={label} />
-                ))}
-              </Stack>
-            </Radio.Group>
-          )}
-          <FormFooter check={check.data} failure={start.error}>
-            <Button variant="default" onClick={onClose}>
-              Cancel
-            </Button>
-            <Button type="submit" loading={start.isPending} disabled={!mayStart(check)}>
-              Register
-            </Button>
-          </FormFooter>
-        </Stack>
-      </form>
-    </Modal>
+    <FormDialog title="Register scans" size={560} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Register" isBusy={start.isPending} isReady={mayStart(check)} check={check.data} failure={start.error}>
+      <Text size="sm" className="quiet">
+        The template of a hand model is brought onto every scan, without a start by hand. The program judges each result; then people accept or reject it.
+      </Text>
+      <Select
+        label="Hand model"
+        value={chosen}
+        allowDeselect={false}
+        data={models.map((one) => ({ value: one.id, label: one.round > 0 ? `${one.name} (round ${one.round})` : one.name }))}
+        onChange={setModel}
+      />
+      {scanIds.length > 0 ? (
+        <Text size="sm">{formatCount(scanIds.length, "chosen scan")}.</Text>
+      ) : (
+        <Radio.Group label={collection ? `Scans of “${collection}”` : "Scans of every collection"} value={only} onChange={setOnly}>
+          <Stack gap="sm" mt="sm">
+            {ONLY.map(({ value, label }) => (
+              <Radio key={value} value={value} label={label} />
+            ))}
+          </Stack>
+        </Radio.Group>
+      )}
+    </FormDialog>
   );
 }

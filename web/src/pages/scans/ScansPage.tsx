@@ -13,7 +13,7 @@ import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
 import { Thumbnail } from "../parts/Thumbnail";
 import { useTitle } from "../parts/useTitle";
-import { offerUndo, tellFailure } from "../projects/offerUndo";
+import { intoBin } from "../parts/undo";
 import { AddScansButton, ScanDrops } from "./AddScans";
 import { RegisterDialog } from "./RegisterDialog";
 import classes from "./ScansPage.module.css";
@@ -95,13 +95,7 @@ export default function ScansPage() {
     const ids = selected.map((scan) => scan.id);
     remove.mutate(
       { ids, isBack: false },
-      {
-        onSuccess: () => {
-          setChosen(new Set());
-          offerUndo(`${formatCount(ids.length, "scan")} moved to the bin.`, () => remove.mutateAsync({ ids, isBack: true }));
-        },
-        onError: tellFailure,
-      },
+      intoBin(formatCount(ids.length, "scan"), () => remove.mutateAsync({ ids, isBack: true }), () => setChosen(new Set())),
     );
   };
 

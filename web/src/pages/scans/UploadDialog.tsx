@@ -1,4 +1,5 @@
-import { Autocomplete, Button, Group, Loader, Modal, Progress, ScrollArea, Select, Skeleton, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Autocomplete, Button, Group, Loader, Progress, ScrollArea, Select, Skeleton, Stack, Text, TextInput } from "@mantine/core";
+import { Dialog } from "../parts/Dialog";
 import { useQueryClient } from "@tanstack/react-query";
 import { useEffect, useState } from "react";
 import { scanKeys, useScanCollections, type ScansAdded, type ScansMeasured } from "../../api/scans";
@@ -105,7 +106,7 @@ export function UploadDialog() {
     });
   const fault = findFault(measured, answers, isConfirmed);
   return (
-    <Modal opened onClose={endScanUpload} closeOnClickOutside={false} size={720} title={<Title order={2}>Add scans</Title>}>
+    <Dialog title="Add scans" size={720} onClose={endScanUpload} isKept>
       {upload.result ? (
         <Result result={upload.result} onDone={endScanUpload} />
       ) : isSending ? (
@@ -179,6 +180,6 @@ export function UploadDialog() {
           </Stack>
         </form>
       )}
-    </Modal>
+    </Dialog>
   );
 }

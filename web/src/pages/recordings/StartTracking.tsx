@@ -1,0 +1,45 @@
+import { Text } from "@mantine/core";
+import { FormDialog } from "../parts/Dialog";
+import { useNavigate } from "react-router";
+import { useStartTracking } from "../../api/jobs";
+import { mayStart, useJobCheck } from "../../api/jobChecks";
+import type { Recording } from "../../api/types";
+import { TrackingForm, useTrackingOptions } from "../parts/TrackingForm";
+
+interface StartTrackingProps {
+  recording: Recording;
+  isOpen: boolean;
+  onClose: () => void;
+}
+
+/** What the tracker begins with, to follow "It starts". */
+export const whereItStarts = (recording: Recording): string =>
+  `from the annotation of the first frame when there is one, otherwise from ${recording.cameras.some((camera) => camera.has_depth) ? "the depth alone" : "the hand that is found in the pictures"}.`;
+
+/** Start a tracking job: the fields, defaults and help come from the server. */
+export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps) {
+  const options = useTrackingOptions(isOpen);
+  const start = useStartTracking();
+  const navigate = useNavigate();
+  const check = useJobCheck("/jobs", { sequence_id: recording.id, params: options.changed }, isOpen);
+
+  const submit = (): void =>
+    start.mutate(
+      { sequenceId: recording.id, params: options.changed },
+      {
+        onSuccess: (job) => {
+          onClose();
+          options.setTouched(null);
+          void navigate(`/jobs/${job.id}`);
+        },
+      },
+    );
+  return (
+    <FormDialog title={`Track ${recording.name}`} size={760} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Start tracking" isFocused isBusy={start.isPending} isReady={mayStart(check)} check={check.data} failure={start.error}>
+      <Text size="sm" className="quiet">
+        A hand is fitted to every frame. It starts {whereItStarts(recording)} You can go on working meanwhile, and close the browser.
+      </Text>
+      <TrackingForm options={options} recording={recording} />
+    </FormDialog>
+  );
+}

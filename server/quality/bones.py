@@ -55,13 +55,17 @@ MIDDLE = 4
 """The row of `_possible_lengths` with the median depth at both ends."""
 
 
-def limit_bones(table: Array) -> tuple[Array, Array]:
-    """How long bones are in this recording, and how far from that a length may be: (20,) m each, of (N, 20) m."""
+def limit_bones(table: Array, least: float = 0.015, share: float = 0.15) -> tuple[Array, Array]:
+    """How long bones are in this recording, and how far from that a length may be: (20,) m each, of (N, 20) m.
+
+    A length may be off by `least`, m, and that share of the bone, or by what is usual. With depth at both ends that
+    much is nothing, as pixels at a finger's edge may show what is behind.
+    """
     lengths = find_bone_lengths()
     enough = np.isfinite(table).sum(axis=0) >= 5
     usual = np.where(enough, np.clip(find_median(table, axis=0), SMALLEST * lengths, LARGEST * lengths), lengths)
     spread = np.where(enough, 1.4826 * find_median(np.abs(table - usual), axis=0), 0.006)
-    return usual, np.maximum(0.015 + 0.15 * usual, SPREADS * spread)
+    return usual, np.maximum(least + share * usual, SPREADS * spread)
 
 
 def _possible_lengths(label: Label, K: Array) -> Array:

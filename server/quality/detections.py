@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[np.float64]
 
+LEAST_M, LEAST_SHARE = 0.006, 0.05
+"""A bone between triangulated joints that is off by less than this, m, and this share is as long as usual: marks that
+are 1.5 px off ([T16] §4.2) move a joint by 2 to 3 mm."""
+
 
 def check_detections(detected: Marks, cameras: Mapping[str, Camera]) -> Iterator[Doubt]:
     """Cameras whose detection the others do not agree with, and bones of a length that they usually do not have."""
@@ -47,7 +51,7 @@ def check_bones_in_space(views: Sequence[Views], of_what: str) -> Iterator[Doubt
     for hand in sorted({view.hand for view in views}):
         own = [view for view in views if view.hand == hand]
         found = np.stack([np.linalg.norm(view.points[EDGES[:, 0]] - view.points[EDGES[:, 1]], axis=1) for view in own])
-        usual, limit = limit_bones(found)
+        usual, limit = limit_bones(found, LEAST_M, LEAST_SHARE)
         off = np.abs(found - usual) / limit
         for row, view in enumerate(own):
             if not np.isfinite(off[row]).any():

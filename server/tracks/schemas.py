@@ -50,9 +50,7 @@ class TermLook(BaseModel):
 
     name: str = Field(description="As in the costs.")
     label: str = Field(description="For people.")
-    color: str = Field(
-        description="As in CSS, on dark ground; no two terms look alike to anybody."
-    )
+    color: str = Field(description="As in CSS, on dark ground; no two terms look alike to anybody.")
     color_on_white: str = Field(description="As in CSS, on white ground.")
     dash: list[int] = Field(description="Strokes and gaps of its curve, px; empty for an unbroken one.")
 

@@ -43,6 +43,18 @@ class TrackView(BaseModel):
     weight: list[float | None] = Field(description="0 to 1, mean of the camera's joints in the fit.")
 
 
+class TermLook(BaseModel):
+    """How a term of the objective is shown."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    name: str = Field(description="As in the costs.")
+    label: str = Field(description="For people.")
+    color: str = Field(description="As in CSS, on dark ground; no two terms look alike to anybody.")
+    color_on_white: str = Field(description="As in CSS, on white ground.")
+    dash: list[int] = Field(description="Strokes and gaps of its curve, px; empty for an unbroken one.")
+
+
 class TrackFrames(BaseModel):
     """Columns with one value per frame; null where nothing was measured."""
 
@@ -55,6 +67,7 @@ class TrackFrames(BaseModel):
     costs: dict[str, list[float | None]] = Field(
         description="Of each term at the last iteration, mm²; null where it had no part."
     )
+    terms: list[TermLook] = Field(description="Of every name in the costs of any frame, in their order.")
     stages: dict[str, list[float | None]] = Field(description="Of each stage of the work, s.")
     views: list[TrackView] = Field(description="Of a track in several colour cameras; none in others.")
 

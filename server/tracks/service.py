@@ -96,6 +96,7 @@ def restore_track(session: Session, track_id: uuid.UUID) -> TrackRow:
 def read_columns(folder: Path) -> dict[str, Any]:
     """What is known of every frame, as columns of equal length. What was not measured is None."""
     from tracker import TrackChunk
+    from tracker.inspection import find_term_look
 
     chunk = TrackChunk.load(folder / "frames.npz")
     with np.load(folder / "track.npz", allow_pickle=False) as arrays:
@@ -111,6 +112,7 @@ def read_columns(folder: Path) -> dict[str, Any]:
         "silhouette_iou": _as_list(chunk.silhouette_iou),
         "iterations": chunk.iterations.tolist(),
         "costs": {str(name): _as_list(costs[:, place]) for place, name in enumerate(chunk.cost_names)},
+        "terms": [find_term_look(str(name)) for name in chunk.cost_names],
         "stages": {str(name): _as_list(chunk.stages[:, place]) for place, name in enumerate(chunk.stage_names)},
         "views": _read_views(folder / "views.npz"),
     }

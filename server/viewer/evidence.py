@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from server.viewer.layers import FINGER_COLORS, TERM_COLORS, WRIST_COLOR, Layers, repeat
+from server.viewer.layers import FINGER_COLORS, WRIST_COLOR, Layers, repeat, term_color
 from server.viewer.nodes import SceneNodes
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def _draw_detections(nodes: SceneNodes, view: FrameView) -> None:
 def _draw_collisions(nodes: SceneNodes, view: FrameView) -> None:
     found = view.collisions
     if len(found.triangles):
-        nodes.triangles("/collisions/triangles", found.triangles, TERM_COLORS["collision"])
+        nodes.triangles("/collisions/triangles", found.triangles, term_color("collision"))
         edges = np.stack([found.triangles, np.roll(found.triangles, -1, axis=1)], axis=2).reshape(-1, 2, 3)
         nodes.segments("/collisions/edges", edges, np.full((len(edges), 3), 255, dtype=np.uint8), thickness=0.0003)
     if len(found.vertices):
@@ -100,7 +100,7 @@ def _draw_collisions(nodes: SceneNodes, view: FrameView) -> None:
 
 def _draw_contacts(nodes: SceneNodes, view: FrameView) -> None:
     for is_chosen, kind, color in (
-        (True, "chosen", TERM_COLORS["physics"]),
+        (True, "chosen", term_color("physics")),
         (False, "considered", WRIST_COLOR),
     ):
         parts = [part for part in view.contacts.contacts if part.is_chosen == is_chosen]

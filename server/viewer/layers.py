@@ -24,23 +24,14 @@ FINGER_COLORS: dict[str, Color] = {
 
 WRIST_COLOR: Color = (206, 212, 218)
 
-TERM_COLORS: dict[str, Color] = {
-    "model_to_data": (34, 211, 238),
-    "data_to_model": (232, 62, 180),
-    "data_to_surface": (163, 230, 53),
-    "silhouette": (255, 214, 10),
-    "collision": (255, 59, 48),
-    "salient": (255, 255, 255),
-    "physics": (180, 140, 255),
-}
 
-SPARE_TERM_COLORS: tuple[Color, ...] = ((148, 163, 255), (255, 176, 136), (150, 242, 215), (222, 190, 255))
+def term_color(term: str, dark: bool = True) -> Color:
+    """Colour of the correspondences of a term, on dark or white ground."""
+    from tracker.inspection import find_term_look
 
-
-def term_color(term: str) -> Color:
-    """Colour of the correspondences of a term; one that is not listed gets a spare that depends on its name only."""
-    spare = SPARE_TERM_COLORS[sum(term.encode()) % len(SPARE_TERM_COLORS)]
-    return TERM_COLORS.get(term, spare)
+    look = find_term_look(term)
+    red, green, blue = bytes.fromhex((look.color if dark else look.color_on_white)[1:])
+    return red, green, blue
 
 
 def joint_colors(model: ModelView) -> npt.NDArray[np.uint8]:

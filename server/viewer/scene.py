@@ -120,5 +120,5 @@ class ViewerScene:
     def _draw_correspondences(self, view: FrameView, layers: Layers) -> None:
         for term, segments in view.correspondences.items():
             if layers.shows_term(term) and len(segments):
-                colors = repeat(term_color(term), len(segments))
+                colors = repeat(term_color(term, layers.dark), len(segments))
                 self._nodes.segments(f"/correspondences/{term}", segments, colors, thickness=0.0006)

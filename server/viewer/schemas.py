@@ -49,8 +49,9 @@ class Term(BaseModel):
     """Correspondences of one term in the frame that is shown."""
 
     name: str
+    label: str = Field(description="For people.")
     count: int
-    color: str = Field(description="As in CSS.")
+    color: str = Field(description="As in CSS, on the ground that is shown.")
 
 
 class DetectionView(BaseModel):

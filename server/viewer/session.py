@@ -139,7 +139,7 @@ class ViewSession:
         return {
             "port": scene.port,
             "frame": frame,
-            "terms": _describe_terms(view) if self._layers.correspondences else [],
+            "terms": _describe_terms(view, self._layers.dark) if self._layers.correspondences else [],
             **describe_evidence(view, self._layers),
             "milliseconds": round(1000.0 * (time.perf_counter() - began), 1),
         }
@@ -185,8 +185,15 @@ class ViewSession:
             request.reply(error)
 
 
-def _describe_terms(view: FrameView) -> list[dict[str, Any]]:
+def _describe_terms(view: FrameView, dark: bool) -> list[dict[str, Any]]:
+    from tracker.inspection import find_term_look
+
     return [
-        {"name": term, "count": len(segments), "color": "#{:02x}{:02x}{:02x}".format(*term_color(term))}
+        {
+            "name": term,
+            "label": find_term_look(term).label,
+            "count": len(segments),
+            "color": "#{:02x}{:02x}{:02x}".format(*term_color(term, dark)),
+        }
         for term, segments in view.correspondences.items()
     ]

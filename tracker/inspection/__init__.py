@@ -15,6 +15,8 @@ if TYPE_CHECKING:
         render_overlay,
         render_unknown,
     )
+    from tracker.inspection.term_looks import find_term_look
     from tracker.inspection.view_aids import ViewAids
+    from tracker.terms.look import TermLook
 
 __getattr__, __dir__ = offer(__name__)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
 from tracker.terms.colliding_parts import find_crossings
+from tracker.terms.look import TermLook
 from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.penetration import find_swallowed
 from tracker.terms.point_plane import PointToPlane
@@ -46,6 +48,8 @@ class Collision:
       through which they would leave backwards (Φ = 0), if that is the shorter way out.
     - Fields and normals are held fixed when the correspondences are used.
     """
+
+    look: ClassVar[TermLook] = TermLook("collision", "Collision", "#ff3c2d", "#961e0f")
 
     weight: float = 0.3
     """γ_c, of each intruding vertex. The paper's 10 (§4.1.3) belongs to sums over pairs, which grow with the mesh; here

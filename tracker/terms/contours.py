@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,7 @@ from tracker.model.scene import PosedScene
 from tracker.observation.image_edges import DIRECTIONS, SLACK, ImageEdges, find_nearest_edge, sort_offsets
 from tracker.rendering import render_view
 from tracker.terms.drawn_frame import Matches
+from tracker.terms.look import TermLook
 from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -39,6 +41,8 @@ class Contours:
     Differs from the paper: distances are of the surface point from the edge's viewing ray, mm, not px in the image, so
     that views of any size weigh alike and the solver is the one of depth.
     """
+
+    look: ClassVar[TermLook] = TermLook("contours", "Contours", "#ffd2ff", "#965a78", (4, 2))
 
     edges: ImageEdges
     weight: float = 0.1

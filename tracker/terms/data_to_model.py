@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
@@ -11,6 +12,7 @@ from tracker.model.scene import PosedScene
 from tracker.observation.depth_edges import find_fall
 from tracker.observation.observation import HAND
 from tracker.terms.drawn_frame import Matches
+from tracker.terms.look import TermLook
 from tracker.terms.nearby_pixels import find_nearby_pixels
 from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
@@ -34,6 +36,8 @@ class DataToModel:
     Differs from the paper: a smaller weight and a limit in pixels. On rendered twins full weight within 20 px drew
     fingers to their neighbour's contour (docs/journal.md).
     """
+
+    look: ClassVar[TermLook] = TermLook("data_to_model", "Data to model", "#e13cb4", "#780f69", (6, 3))
 
     weight: float = 0.2
     max_distance: float = 0.030

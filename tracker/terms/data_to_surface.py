@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
 from tracker.terms.drawn_frame import Matches
+from tracker.terms.look import TermLook
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -23,6 +25,8 @@ class DataToSurface:
     form is what keeps fingers apart (docs/journal.md). Normals of the face, held fixed: those of the data are noisy,
     and noisy normals hold a surface back along itself, like friction.
     """
+
+    look: ClassVar[TermLook] = TermLook("data_to_surface", "Data to surface", "#a5ff69", "#699678", (10, 3))
 
     weight: float = 1.0
     stride: int = 3

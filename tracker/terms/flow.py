@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import cv2
 import numpy as np
@@ -12,6 +13,7 @@ import numpy.typing as npt
 from tracker.model.scene import PosedScene
 from tracker.observation.image_flow import ImageFlow
 from tracker.rendering import render_view
+from tracker.terms.look import TermLook
 from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
@@ -44,6 +46,8 @@ class Flow:
         weight: Of a point whose ray is near.
         reach: mm.
     """
+
+    look: ClassVar[TermLook] = TermLook("flow", "Flow", "#87a578", "#695a3c", (1, 3))
 
     ids: npt.NDArray[np.int32]
     barycentric: Array

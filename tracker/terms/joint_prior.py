@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
+
+from tracker.terms.look import TermLook
 
 Array = npt.NDArray[np.float64]
 
@@ -20,6 +23,8 @@ class AnatomicalLimits:
     Differs from the paper: beyond `linear_from` the residual goes on as its tangent, so that a start far outside its
     limits cannot overflow.
     """
+
+    look: ClassVar[TermLook] = TermLook("anatomy", "Anatomy", "#b4b469", "#4b2d1e", (4, 2))
 
     weight: float = 0.0015
     """γ_a (§3.2.7), times C_all."""
@@ -54,6 +59,8 @@ class AnatomicalLimits:
 class Regularization:
     """Stay near the angles of the previous frame, E = Σ_k (θ_k − θ̃_k)², [T16] Eq. 18, weighted by γ_r C_all."""
 
+    look: ClassVar[TermLook] = TermLook("regularization", "Regularization", "#7887f0", "#4b5a96", (2, 2))
+
     weight: float = 0.02
     """γ_r (§3.2.8), times C_all."""
 
@@ -71,6 +78,8 @@ class Bending:
     two hundred pixels only, and nothing in a depth image tells a rope from one that is shorter for its zigzags. With it
     a rope behaves as a thin rod, whose energy is in the change of its curvature; a single hinge is left alone.
     """
+
+    look: ClassVar[TermLook] = TermLook("bending", "Bending", "#b4d2c3", "#3c0069", (12, 3, 3, 3))
 
     weight: float = 0.1
     """Times C_all."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.model.scene import PosedScene, Scene
+from tracker.terms.look import TermLook
 from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
@@ -31,6 +33,8 @@ class MarkedJoints:
         weight: Of a joint that is believed; an annotator's pixel is about a millimetre.
         reach: mm.
     """
+
+    look: ClassVar[TermLook] = TermLook("joints", "Joints", "#967887", "#001e3c", (12, 4))
 
     ids: npt.NDArray[np.int32]
     directions: Array

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
+from tracker.terms.look import TermLook
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.point_point import PointToPoint
 from tracker.terms.residual import FrameContext
@@ -22,6 +24,8 @@ class ModelToData:
 
     Differs from the paper: the normal n_i(θ) is held fixed at its value when the match was made, as is usual.
     """
+
+    look: ClassVar[TermLook] = TermLook("model_to_data", "Model to data", "#00b4e1", "#1e96a5")
 
     weight: float = 1.0
     """Eq. 5 gives this term weight one."""

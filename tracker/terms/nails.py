@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,7 @@ from tracker.detection.assignment import assign_detections
 from tracker.geometry import se3
 from tracker.model.scene import PosedScene
 from tracker.rendering.seen_nails import NailPlaces
+from tracker.terms.look import TermLook
 from tracker.terms.marked_joints import find_rays
 from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.point_line import PointToLine
@@ -53,6 +55,8 @@ class Nails:
         rejection: λ of Eq. 14, m.
         reach: mm; a nail that far from its ray has a quarter of its pull.
     """
+
+    look: ClassVar[TermLook] = TermLook("nails", "Nails", "#5af0a5", "#0f0f00", (2, 3))
 
     places: NailPlaces
     views: Sequence[SeenNails]

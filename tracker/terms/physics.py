@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +11,7 @@ import numpy.typing as npt
 from tracker.model.scene import PosedScene
 from tracker.physics import Contact, PhysicsWorld, SupportOptions, find_support
 from tracker.physics.closest_points import find_closest_point
+from tracker.terms.look import TermLook
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.point_point import PointToPoint
 from tracker.terms.residual import FrameContext
@@ -73,6 +75,8 @@ class Supported:
 
     At each look the pose is simulated; an object that stays needs no contacts (§3.2.6).
     """
+
+    look: ClassVar[TermLook] = TermLook("physics", "Physics", "#965aff", "#8778d2", (8, 3, 2, 3))
 
     world: PhysicsWorld
     """Of the scene that is fitted."""

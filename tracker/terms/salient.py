@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,7 @@ from tracker.detection.confidence import C_THR
 from tracker.detection.detection import Detection
 from tracker.model.scene import PosedScene
 from tracker.rendering import View
+from tracker.terms.look import TermLook
 from tracker.terms.point_point import PointToPoint
 from tracker.terms.residual import FrameContext
 
@@ -45,6 +47,8 @@ class Salient:
     centimetres, in which pairs up to λ (1 + w_s) = 2.4 cm are accepted at its λ = 1.2. Our detections are more
     trustworthy than its depth detector's, so more is accepted.
     """
+
+    look: ClassVar[TermLook] = TermLook("salient", "Salient", "#ffffff", "#5a3ca5", (6, 3))
 
     detections: tuple[Detection, ...] = ()
     """δ_s of this frame; those below `min_confidence` are left out."""

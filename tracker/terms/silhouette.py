@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
@@ -10,6 +11,7 @@ from numba import njit
 from tracker.model.scene import PosedScene
 from tracker.observation.observation import HAND
 from tracker.terms.drawn_frame import Matches
+from tracker.terms.look import TermLook
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -24,6 +26,8 @@ class Silhouette:
 
     Differs from the paper: not in it; T16's depth discontinuities (`DataToModel`) hold the silhouette there.
     """
+
+    look: ClassVar[TermLook] = TermLook("silhouette", "Silhouette", "#e1c30f", "#968700", (2, 3))
 
     weight: float = 0.3
     stride: int = 2

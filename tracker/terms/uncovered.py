@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numba import njit
 
 from tracker.model.scene import PosedScene
 from tracker.terms.drawn_frame import Matches
+from tracker.terms.look import TermLook
 from tracker.terms.nearby_pixels import find_nearby_pixels
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
@@ -31,6 +33,8 @@ class Uncovered:
     Differs from the paper: not in it. A point-to-plane match holds a surface along its normal only, so nothing else
     tells how far a finger or a rope reaches.
     """
+
+    look: ClassVar[TermLook] = TermLook("uncovered", "Uncovered", "#3c962d", "#b4693c", (8, 4))
 
     weight: float = 0.05
     stride: int = 2

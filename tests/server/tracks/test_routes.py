@@ -39,6 +39,10 @@ def test_columns_have_a_value_for_every_frame(client: TestClient, address: str) 
     for name in ("seconds", "depth_residual_mm", "silhouette_iou", "iterations"):
         assert len(columns[name]) == 12
     assert all(len(column) == 12 for column in (*columns["costs"].values(), *columns["stages"].values()))
+    assert [term["name"] for term in columns["terms"]] == list(columns["costs"])
+    looks = {term["name"]: term for term in columns["terms"]}
+    assert looks["model_to_data"]["label"] == "Model to data"
+    assert looks["data_to_model"]["dash"] == [6, 3]
     assert columns["views"] == [], "one depth camera is compared with no other"
 
 

@@ -9121,12 +9121,48 @@ export interface components {
         Term: {
             /**
              * Color
-             * @description As in CSS.
+             * @description As in CSS, on the ground that is shown.
              */
             color: string;
             /** Count */
             count: number;
+            /**
+             * Label
+             * @description For people.
+             */
+            label: string;
             /** Name */
+            name: string;
+        };
+        /**
+         * TermLook
+         * @description How a term of the objective is shown.
+         */
+        TermLook: {
+            /**
+             * Color
+             * @description As in CSS, on dark ground; no two terms look alike to anybody.
+             */
+            color: string;
+            /**
+             * Color On White
+             * @description As in CSS, on white ground.
+             */
+            color_on_white: string;
+            /**
+             * Dash
+             * @description Strokes and gaps of its curve, px; empty for an unbroken one.
+             */
+            dash: number[];
+            /**
+             * Label
+             * @description For people.
+             */
+            label: string;
+            /**
+             * Name
+             * @description As in the costs.
+             */
             name: string;
         };
         /**
@@ -9217,6 +9253,11 @@ export interface components {
             };
             /** Status */
             status: ("ok" | "lost" | "recovered")[];
+            /**
+             * Terms
+             * @description Of every name in the costs of any frame, in their order.
+             */
+            terms: components["schemas"]["TermLook"][];
             /**
              * Views
              * @description Of a track in several colour cameras; none in others.

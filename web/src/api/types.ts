@@ -29,6 +29,8 @@ export type JobForm = Schemas["JobForm"];
 export type FormField = Schemas["JobFormField"];
 export type Preset = Schemas["JobPreset"];
 export type TrackFrames = Schemas["TrackFrames"];
+/** How a term of the objective is named and drawn. */
+export type TermLook = Schemas["TermLook"];
 export type FrameEnergy = Schemas["FrameEnergy"];
 export type TrackJoints = Schemas["TrackJoints"];
 /** A machine's proposal as the server gives it; `model/suggestion.ts` has it as the browser keeps it. */

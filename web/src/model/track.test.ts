@@ -12,7 +12,7 @@ const track: TrackFrames = {
   depth_residual_mm: [2, null, 4, 1],
   silhouette_iou: [0.9, null, 0.8, 0.9],
   iterations: [10, 0, 10, 10],
-  costs: {},
+  costs: {}, terms: [],
   stages: {},
   views: [],
 };

@@ -1,13 +1,11 @@
-import { Skeleton } from "@mantine/core";
+import { Skeleton, useComputedColorScheme } from "@mantine/core";
 import { useDebouncedValue } from "@mantine/hooks";
 import { useMemo } from "react";
 import { useFrameEnergy } from "../../api/tracks";
-import type { FrameEnergy, Track, TrackFrames } from "../../api/types";
+import type { FrameEnergy, TermLook, Track, TrackFrames } from "../../api/types";
 import { Plot } from "../../canvas/Plot";
 import type { Curve } from "../../canvas/series";
 import { PlotLegend } from "../../canvas/PlotLegend";
-import { formatName } from "../../model/format";
-import { termStyle } from "../../model/terms";
 import classes from "./TrackReview.module.css";
 
 interface EnergyPlotsProps {
@@ -21,19 +19,19 @@ interface EnergyPlotsProps {
 
 const NONE: readonly number[] = [];
 
-const curvesOf = (costs: Record<string, (number | null)[]>): Curve[] =>
-  Object.entries(costs).map(([term, values]) => ({
-    label: formatName(term),
-    unit: "",
-    values,
-    ...termStyle(term),
-    axis: "Energy, mm²",
-    digits: 0,
-  }));
+/** A curve for each term that has costs, as the studio says that it looks. */
+const curvesOf = (terms: readonly TermLook[], costs: Record<string, (number | null)[]>, isDark: boolean): Curve[] =>
+  terms.flatMap(({ name, label, color, color_on_white: onWhite, dash }) => {
+    const values = costs[name];
+    return values ? { label, unit: "", values, color: isDark ? color : onWhite, ...(dash.length > 0 ? { dash } : {}), axis: "Energy, mm²", digits: 0 } : [];
+  });
+
+const useIsDark = (): boolean => useComputedColorScheme("dark") === "dark";
 
 /** Energy of each term over the frames and, beside it, over the iterations of the frame one is at. */
 export function EnergyPlots({ track, frames, lost, frame, isLog, onSeek }: EnergyPlotsProps) {
-  const curves = useMemo(() => curvesOf(frames.costs), [frames]);
+  const isDark = useIsDark();
+  const curves = useMemo(() => curvesOf(frames.terms, frames.costs, isDark), [frames, isDark]);
   return (
     <>
     <PlotLegend curves={curves} index={frames.frame.indexOf(frame)} />
@@ -42,16 +40,17 @@ export function EnergyPlots({ track, frames, lost, frame, isLog, onSeek }: Energ
         <div className={classes.caption}>By frame, last iteration</div>
         <Plot label="Energy of each term by frame" frames={frames.frame} curves={curves} lost={lost} frame={frame} onSeek={onSeek} isLog={isLog} hasLegend={false} />
       </div>
-      <Iterations track={track} frame={frame} isLog={isLog} />
+      <Iterations track={track} terms={frames.terms} frame={frame} isLog={isLog} />
     </div>
     </>
   );
 }
 
-function Iterations({ track, frame, isLog }: { track: Track; frame: number; isLog: boolean }) {
+function Iterations({ track, terms, frame, isLog }: { track: Track; terms: readonly TermLook[]; frame: number; isLog: boolean }) {
+  const isDark = useIsDark();
   const [settled] = useDebouncedValue(frame, 60);
   const { data, error } = useFrameEnergy(track.id, settled);
-  const curves = useMemo(() => curvesOf(data?.costs ?? {}), [data]);
+  const curves = useMemo(() => curvesOf(terms, data?.costs ?? {}, isDark), [terms, data, isDark]);
   const iterations = useMemo(() => Array.from({ length: data?.iterations ?? 0 }, (_, place) => place + 1), [data]);
   const why = error ? `The iterations could not be loaded: ${error.message}` : data && explain(data);
 

@@ -5,7 +5,7 @@ import type { Layer } from "../../api/tracks";
 import type { ViewerSession } from "../../api/types";
 import { errorGradient } from "../../model/errorColor";
 import { describeCollisions, describeContacts, describeDetections, describeOrigin, describeUnknown } from "../../model/evidence";
-import { formatMeasure, formatName, formatNumber } from "../../model/format";
+import { formatMeasure, formatNumber } from "../../model/format";
 import classes from "./EvidenceCard.module.css";
 
 interface EvidenceCardProps {
@@ -110,10 +110,10 @@ function Correspondences({ found, shown, onShown }: CorrespondencesProps) {
             size="xs"
             label={
               <>
-                <i className={classes.swatch} style={{ background: term.color }} aria-hidden /> {formatName(term.name)}
+                <i className={classes.swatch} style={{ background: term.color }} aria-hidden /> {term.label}
               </>
             }
-            aria-label={`Correspondences of ${formatName(term.name).toLowerCase()}`}
+            aria-label={`Correspondences of ${term.label.toLowerCase()}`}
             checked={shown[term.name] ?? true}
             onChange={(event) => onShown({ ...shown, [term.name]: event.currentTarget.checked })}
           />

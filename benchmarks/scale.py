@@ -254,7 +254,8 @@ def write_page(sizes: list[int]) -> str:
         "# Hours of recordings in PostgreSQL",
         "",
         f"`python -m benchmarks.scale --recordings {' '.join(map(str, sizes))} --write`, {time.strftime('%Y-%m-%d')}, "
-        f"{os.cpu_count()} processors ({platform.machine()}). Median ms of {REPEATS} requests, one after another; load of the machine {os.getloadavg()[0]:.0f}.",
+        f"{os.cpu_count()} processors ({platform.machine()}). Median ms of {REPEATS} requests, one after another; "
+        f"load of the machine {os.getloadavg()[0]:.0f}.",
         "",
         f"| what | {heads} |",
         f"|---|{'---|' * len(sizes)}",

@@ -29,11 +29,10 @@ from typing import Any
 
 import psycopg
 from fastapi.testclient import TestClient
-from sqlalchemy import or_, select
 
 from server.app import create_app
 from server.database import Database
-from server.jobs.models import JobRow
+from server.jobs.dispatcher import find_waiting
 from server.settings import Settings
 from server.storage import open_storage
 from tests.postgres import run_postgres
@@ -158,14 +157,10 @@ def _md5_of(text: str) -> str:
 
 def time_dispatch(database: Database) -> Callable[[], Any]:
     """The look of a worker at the rows that wait, four times a second."""
-    wanted = or_(
-        (JobRow.state == "queued") & (JobRow.dispatched_attempt < JobRow.attempt),
-        (JobRow.state == "cancelled") & (JobRow.dispatched_attempt > 0),
-    )
 
     def look() -> Any:
         with database.reading() as session:
-            return list(session.scalars(select(JobRow).where(wanted).order_by(JobRow.created_at)))
+            return find_waiting(session)
 
     return look
 

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 from dbos import DBOS, SetWorkflowID
 from sqlalchemy import or_, select, update
+from sqlalchemy.orm import Session
 
 from server.database import Database
 from server.jobs import workers
@@ -18,6 +19,18 @@ from server.jobs.models import JobRow
 from server.jobs.workflow import QUEUE, Workflow, workflow_id
 
 log = logging.getLogger(__name__)
+
+
+AT_ONCE = 100
+"""Rows of one look: with 1,000 that waited each look of each worker read them all (68 ms; benchmarks/scale.py)."""
+
+
+def find_waiting(session: Session) -> list[JobRow]:
+    """The oldest jobs that are to be put into the queue or taken out of it."""
+    wants_start = (JobRow.state == "queued") & (JobRow.dispatched_attempt < JobRow.attempt)
+    wants_end = (JobRow.state == "cancelled") & (JobRow.dispatched_attempt > 0)
+    query = select(JobRow).where(or_(wants_start, wants_end)).order_by(JobRow.created_at)
+    return list(session.scalars(query.limit(AT_ONCE)))
 
 
 class Dispatcher:
@@ -28,10 +41,8 @@ class Dispatcher:
 
     def dispatch(self) -> None:
         """Look at the rows once."""
-        wants_start = (JobRow.state == "queued") & (JobRow.dispatched_attempt < JobRow.attempt)
-        wants_end = (JobRow.state == "cancelled") & (JobRow.dispatched_attempt > 0)
         with self._database.reading() as session:
-            jobs = list(session.scalars(select(JobRow).where(or_(wants_start, wants_end)).order_by(JobRow.created_at)))
+            jobs = find_waiting(session)
         for job in jobs:
             if job.state == "queued":
                 with SetWorkflowID(workflow_id(job.id, job.attempt)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import time
 import uuid
 
 import cv2
@@ -45,10 +46,18 @@ def spoil(client, sequence, kind, frame, seed=0):
     return stored["revision"] + 1
 
 
-def find(client, sequence, **query):
+def ask(client, sequence, **query):
     answer = client.get(f"{sequence}/flags", params=query)
     assert answer.status_code == 200, answer.text
     return answer.json()
+
+
+def find(client, sequence, **query):
+    """Flags of the labels as they are: on a busy machine a check rests after the last one, and says so."""
+    until = time.monotonic() + 60.0
+    while (page := ask(client, sequence, **query))["checked"]["is_behind"] and time.monotonic() < until:
+        time.sleep(0.3)
+    return page
 
 
 def test_right_labels_are_hardly_flagged(client, labelled):
@@ -288,14 +297,14 @@ def test_what_makes_no_sense_is_refused(client, labelled):
 def test_where_checks_would_take_too_long_the_last_one_is_given_and_says_that_it_is_behind(
     client, labelled, monkeypatch
 ):
-    assert not find(client, labelled)["checked"]["is_behind"]
+    assert not ask(client, labelled)["checked"]["is_behind"]
     spoil(client, labelled, "outside", 3)
     monkeypatch.setattr(service, "CREDIT_SECONDS", 0.0)
-    behind = find(client, labelled)
+    behind = ask(client, labelled)
     assert behind["checked"]["is_behind"]
     assert not [flag for flag in behind["items"] if flag["frame"] == 3], "it knows nothing of the new revision"
     monkeypatch.setattr(service, "CREDIT_SECONDS", 3.0)
-    caught_up = find(client, labelled)
+    caught_up = ask(client, labelled)
     assert not caught_up["checked"]["is_behind"]
     assert caught_up["items"][0]["frame"] == 3
 

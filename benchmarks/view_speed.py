@@ -103,10 +103,11 @@ def main() -> None:
     parser.add_argument("--size", type=int, nargs=2, default=(1280, 1024))
     parser.add_argument("--hands", nargs="+", choices=("right", "left"), default=["right"])
     parser.add_argument("--threads", type=int, nargs="+", default=[2])
-    parser.add_argument("--memory", action="store_true")
+    parser.add_argument("--memory", action="store_true", help=f"tell the resident set of {LONG} frames")
+    parser.add_argument("--frames", type=int, help=f"so many ({MOMENTS}, with --memory {LONG})")
     parser.add_argument("--work", type=Path, default=ROOT / "out" / "view_speed")
     given = parser.parse_args()
-    count = LONG if given.memory else MOMENTS
+    count = given.frames or (LONG if given.memory else MOMENTS)
     sequence = film(given.work, given.cameras, (given.size[0], given.size[1]), tuple(given.hands), count)
     for threads in given.threads:
         track, rate, work = follow(sequence, threads, given.memory)

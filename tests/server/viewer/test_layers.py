@@ -8,8 +8,6 @@ import pytest
 from server.viewer.layers import (
     FINGER_COLORS,
     LAYER_NAMES,
-    SPARE_TERM_COLORS,
-    TERM_COLORS,
     VIEW_ATTRIBUTES,
     WRIST_COLOR,
     Layers,
@@ -18,6 +16,7 @@ from server.viewer.layers import (
     term_color,
 )
 from tracker import HAND_JOINTS
+from tracker.inspection import find_term_look
 
 
 def test_a_scene_begins_with_the_points_and_the_meshes() -> None:
@@ -80,10 +79,11 @@ def test_each_finger_has_its_colour_and_the_wrist_none() -> None:
     assert len({tuple(color) for color in colors.tolist()}) == 6
 
 
-def test_a_term_keeps_its_colour_and_an_unknown_one_gets_a_spare_that_stays() -> None:
-    assert [term_color(term) for term in TERM_COLORS] == list(TERM_COLORS.values())
-    assert term_color("of tomorrow") in SPARE_TERM_COLORS and term_color("of tomorrow") == term_color("of tomorrow")
-    assert not set(SPARE_TERM_COLORS) & set(TERM_COLORS.values())
+def test_a_term_has_the_colour_of_its_look_on_either_ground() -> None:
+    look = find_term_look("model_to_data")
+    assert "#" + bytes(term_color("model_to_data")).hex() == look.color.lower()
+    assert "#" + bytes(term_color("model_to_data", dark=False)).hex() == look.color_on_white.lower()
+    assert term_color("of tomorrow") == term_color("of tomorrow")
 
 
 def test_one_colour_for_many_points() -> None:

@@ -36,7 +36,7 @@ NICENESS = 10
 
 
 LIMIT_SECONDS = 300.0
-"""Of one question. The longest known, a report on many tracks, takes half a minute beside other work."""
+"""Of one question: far beyond what any test or benchmark needs. Chosen, not measured."""
 
 
 class ComputeStoppedError(StudioError):

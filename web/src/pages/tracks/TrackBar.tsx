@@ -74,6 +74,13 @@ export function TrackBar(props: TrackBarProps) {
           </Badge>
         </Tooltip>
       )}
+      {track.is_of_earlier_cameras && (
+        <Tooltip label="The cameras of this recording were changed after the track was made. Track again, or judge it with care." multiline maw={360}>
+          <Badge variant="light" color="yellow" tt="none" tabIndex={0} leftSection={<IconAlertTriangle size={12} aria-hidden />}>
+            earlier cameras
+          </Badge>
+        </Tooltip>
+      )}
       {recording.cameras.length > 1 && (
         <Select size="xs" w={136} aria-label="Camera" allowDeselect={false} data={[{ value: all, label: "All cameras" }, ...recording.cameras.map((one) => one.id)]} value={camera} onChange={(id) => id && onCamera(id)} />
       )}

@@ -24,7 +24,11 @@ def test_points_all_over_the_body_and_close_to_it_are_good() -> None:
 
 @pytest.mark.parametrize(
     ("keep", "far", "shape", "said"),
-    [(1.0, 0.2, 1.0, "another person"), (0.6, 0.0, 1.0, "part of a person"), (1.0, 0.0, 6.0, "standard deviations")],
+    [
+        (1.0, 0.2, 1.0, "another person or thing"),
+        (0.6, 0.0, 1.0, "part of a person"),
+        (1.0, 0.0, 6.0, "standard deviations"),
+    ],
 )
 def test_each_fault_alone_makes_it_bad_and_is_named(keep: float, far: float, shape: float, said: str) -> None:
     height = VERTICES[:, 1]
@@ -36,3 +40,9 @@ def test_each_fault_alone_makes_it_bad_and_is_named(keep: float, far: float, sha
 
 def test_a_persons_own_template_has_no_shape_to_judge() -> None:
     assert judged(VERTICES, np.zeros(len(VERTICES)), np.zeros(0)).measures["shape"] == 0.0
+
+
+def test_a_hundredth_of_the_points_far_from_the_body_is_enough_for_a_doubt() -> None:
+    distances = np.where(np.arange(len(VERTICES)) < 0.01 * len(VERTICES), 0.02, 1e-3)
+    verdict = judged(VERTICES, distances, np.ones(20))
+    assert verdict.name == "doubtful" and "a part of the body lies in a wrong place" in verdict.reasons[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 from typing import Any
+from urllib.parse import quote
 
 from fastapi import Depends, Request, Response
 
@@ -21,7 +22,8 @@ def deprecated(successor: str) -> dict[str, Any]:
     """
 
     async def name_successor(request: Request, response: Response) -> None:
-        path = f"/api/v1{successor.format(**request.path_params)}"
+        names = {name: quote(str(value), safe="") for name, value in request.path_params.items()}
+        path = f"/api/v1{successor.format(**names)}"
         response.headers["Deprecation"] = f"@{int(SINCE.timestamp())}"
         response.headers["Link"] = f'<{path}>; rel="successor-version"'
 

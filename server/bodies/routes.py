@@ -20,10 +20,10 @@ from server.storage.upload_body import describe_upload_body, read_one_file
 
 router = APIRouter(prefix="/body-models", tags=["bodies"], responses=error_responses())
 
+MEDIA = "application/octet-stream"
 BINARY: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}}
+    200: {"content": {MEDIA: {"schema": {"type": "string", "format": "binary"}}}}
 }
-MEDIA = {"obj": "model/obj", "ply": "application/octet-stream", "glb": "model/gltf-binary"}
 LIMITS = UploadLimits(files=1, total_bytes=256 * 1024**2)
 MAX_FRAMES = 20_000
 """Frames of a motion that the page takes; the command line has no such limit."""
@@ -55,14 +55,14 @@ def pose_body(population: Population, body: BodyPoses) -> Response:
 def export_body_poses(population: Population, body: BodyExport) -> Response:
     """A pose as OBJ or PLY, or a motion as an animated glTF."""
     headers = name_download(f"{population} body", suffix=f".{body.format}")
-    return Response(service.write_poses(population, body), media_type=MEDIA[body.format], headers=headers)
+    return Response(service.write_poses(population, body), media_type=MEDIA, headers=headers)
 
 
 @router.get("/{population}/smplh.{kind}", response_class=Response, responses=BINARY)
 def download_body_model(population: Population, kind: Literal["npz", "pkl"]) -> Response:
     """The model as a file that `smplx.SMPLH` loads."""
     headers = name_download(f"SMPLH_{population.upper()}", suffix=f".{kind}")
-    return Response(service.write_smplh(population, f".{kind}"), media_type="application/octet-stream", headers=headers)
+    return Response(service.write_smplh(population, f".{kind}"), media_type=MEDIA, headers=headers)
 
 
 @router.post(

@@ -6,9 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field
 
+from server.database.numbers import Number
+
 Population = Literal["neutral", "male", "female"]
-Number = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
-Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Bounded = Annotated[Number, Field(ge=-1000.0, le=1000.0)]
+Vector = Annotated[list[Bounded], Field(min_length=3, max_length=3)]
 
 MAX_POSED = 64
 """Frames that are posed at a time; the page asks for the next ones while it plays."""
@@ -33,11 +35,11 @@ class BodyModelOut(BaseModel):
 class BodyFrame(BaseModel):
     """One pose: either all 52 rotation vectors, or those of some joints, with the hands in their pose spaces."""
 
-    pose: Annotated[list[Number], Field(min_length=NUMBERS, max_length=NUMBERS)] | None = Field(
+    pose: Annotated[list[Bounded], Field(min_length=NUMBERS, max_length=NUMBERS)] | None = Field(
         default=None, description="156 numbers, rotation vectors in the joints' order, rad, as AMASS keeps them."
     )
     joints: dict[str, Vector] = Field(default={}, max_length=52, description="Rotation vectors by joint, rad.")
-    hands: dict[Literal["left", "right"], Annotated[list[Number], Field(max_length=44)]] = Field(
+    hands: dict[Literal["left", "right"], Annotated[list[Bounded], Field(max_length=44)]] = Field(
         default={}, description="Coefficients of each hand's pose space, counted from its mean pose."
     )
     translation: Vector = [0.0, 0.0, 0.0]
@@ -46,7 +48,7 @@ class BodyFrame(BaseModel):
 class BodyPoses(BaseModel):
     """Poses of one person."""
 
-    shape: Annotated[list[Number], Field(max_length=400)] = Field(
+    shape: Annotated[list[Bounded], Field(max_length=400)] = Field(
         default=[], description="Standard deviations along the first directions of the shape space."
     )
     frames: list[BodyFrame] = Field(min_length=1, max_length=MAX_POSED)
@@ -56,9 +58,9 @@ class BodyExport(BaseModel):
     """Poses to be written as a file for other programs."""
 
     format: Literal["obj", "ply", "glb"] = Field(description="obj and ply hold one mesh; glb moves through all frames.")
-    shape: Annotated[list[Number], Field(max_length=400)] = []
+    shape: Annotated[list[Bounded], Field(max_length=400)] = []
     frames: list[BodyFrame] = Field(min_length=1, max_length=MAX_EXPORTED)
-    fps: float = Field(default=30.0, gt=0.0, le=1000.0, allow_inf_nan=False)
+    fps: Number = Field(default=30.0, gt=0.0, le=1000.0)
 
 
 class BodyMotionOut(BaseModel):

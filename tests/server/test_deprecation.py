@@ -24,13 +24,16 @@ def test_the_answer_of_a_deprecated_operation_says_since_when_and_what_to_use() 
     app = FastAPI()
 
     @app.post("/old/{thing_id}/restore", **deprecated("/bin/thing/{thing_id}/restore"))
-    def restore(thing_id: int) -> int:
+    def restore(thing_id: str) -> str:
         return thing_id
 
     answer = TestClient(app).post("/old/17/restore")
-    assert answer.json() == 17
+    assert answer.json() == "17"
     assert answer.headers["Deprecation"] == f"@{SINCE.timestamp():.0f}"
     assert answer.headers["Link"] == '</api/v1/bin/thing/17/restore>; rel="successor-version"'
+    odd = TestClient(app).post("/old/\U00087a0c>/restore")
+    assert odd.status_code == 200
+    assert odd.headers["Link"] == '</api/v1/bin/thing/%F2%87%A8%8C%3E/restore>; rel="successor-version"'
     assert app.openapi()["paths"]["/old/{thing_id}/restore"]["post"]["deprecated"] is True
 
 

@@ -100,6 +100,8 @@ def fill(app: FastAPI, sender: Sender, rendered: Path, track: Path, hand: Genera
         "/files/{name}": {"name": "track.npz"},
         "/calibrations/{calibration_id}/files/{name}": {"name": "cameras.toml"},
         "/calibrations/{calibration_id}/check": {"options": {}, "name": "fed"},
+        "/body-models/{population}/poses": {"frames": [{"hands": {"left": [0.5]}}]},
+        "/body-models/{population}/export": {"frames": [{"translation": [0, 1, 0]}], "format": "obj"},
     }
     return Known(ids, places)
 

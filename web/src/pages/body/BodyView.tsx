@@ -40,7 +40,7 @@ export function BodyView({ vertices, faces }: BodyViewProps) {
     <div ref={holder} className={classes.view} role="img" aria-label="Mesh of the body" data-drawn={isThere}>
       <canvas ref={canvas} aria-hidden />
       {!isThere && !failure && <Loader className={classes.loading} aria-label="The body is loading" />}
-      <Text size="xs" className={`quiet ${classes.note}`}>
+      <Text size="xs" className={classes.note}>
         {failure ?? "Drag to turn, scroll to go nearer, right button to move"}
       </Text>
     </div>

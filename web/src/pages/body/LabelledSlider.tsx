@@ -17,7 +17,8 @@ export function LabelledSlider({ label, unit, least, most, step, value, onChange
       <Group justify="space-between">
         <Text size="xs">{label}</Text>
         <Text size="xs" className="quiet">
-          {step < 1 ? value.toFixed(1) : value} {unit}
+          {step < 1 ? value.toFixed(1) : value}
+          {unit === "°" ? unit : ` ${unit}`}
         </Text>
       </Group>
       <Slider size="sm" min={least} max={most} step={step} label={null} thumbLabel={`${label}, ${unit === "sd" ? "standard deviations" : "degrees"}`} value={value} onChange={onChange} />

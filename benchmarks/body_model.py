@@ -2,7 +2,7 @@
 
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.body_model [--poses 100] [--people 2000] [--json]
 
-Bars (`docs/body_model.md`): the step at the seam at most 0.5 mm more than where nothing is sewn (95 %), the hands
+Bars (`docs/bodies.md`): the step at the seam at most 0.5 mm more than where nothing is sewn (95 %), the hands
 within 0.3 mm of the hand model, means and deviations of stature and hand length within 3 % of ANSUR II's, their
 correlation within 0.05. Exit code 1 when one is missed.
 """

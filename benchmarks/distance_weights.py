@@ -1,7 +1,7 @@
 """The crudest hand that a trained one can be compared with: blend weights by distance, size alone to fit.
 
-The prototype that the bars of `docs/model_training.md` come from had its untrained hand so. Ours has weights that
-people drew, which is a better hand to begin with and a harder one to compare with; both are measured.
+The bars of `benchmarks/results/model_training.md` come from a prototype with such an untrained hand. Ours has weights
+that people drew, which is a better hand to begin with and a harder one to compare with; both are measured.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ def match_scan(scan: Scan, vertices: np.ndarray, faces: np.ndarray) -> Matches:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--write", action="store_true", help="write the pictures of docs/registration.md")
+    parser.add_argument("--write", action="store_true", help="write the pictures of docs/scans.md")
     parser.add_argument("--rotations", type=int, default=0, metavar="N", help="register each scan in N rotations")
     parser.add_argument("--out", type=Path, metavar="FILE", help="keeps every rotation's figures as JSON")
     args = parser.parse_args()

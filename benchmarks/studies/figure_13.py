@@ -118,7 +118,7 @@ def show(rows: list[Row]) -> list[Block]:
         Text(
             f"{rows[0]['tips']} visible fingertips in {rows[0]['images']} images. Our detector has seen renders of its "
             "own hand only, none of these hands or motions; the trained ones have seen other motions of these hands. "
-            "The sequences were looked at when its pixel size and blur were chosen (docs/detection.md)."
+            "The sequences were looked at when its pixel size and blur were chosen (docs/objective.md)."
         ),
     ]
 

@@ -11,7 +11,7 @@ from benchmarks.studies.study import HAND_HAND, Extent, Row, Study
 from benchmarks.studies.trial import Results
 
 LAMBDAS = (*paper.TABLE_3_LAMBDA, 2.5)
-"""cm; the last is ours (docs/detection.md)."""
+"""cm; the last is ours (docs/objective.md)."""
 
 WEIGHTINGS = {"w_s = 1": False, "w_s = c_s / c_thr": True}
 CM = 0.01

@@ -43,7 +43,7 @@ HOLD = 1000.0
 
 @dataclass(frozen=True)
 class BodyOptions:
-    """How scans of people are registered; the defaults were measured, see docs/body_scans.md.
+    """How scans of people are registered; the defaults were measured, see docs/bodies.md.
 
     Attributes:
         hand_components: Of each hand while it is searched, and in the first fit of the whole body.

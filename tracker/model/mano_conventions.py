@@ -1,4 +1,4 @@
-"""In what way programs around MANO differ, each way to be chosen: references in docs/hands.md."""
+"""In what way programs around MANO differ, each way to be chosen: references in docs/hand_models.md."""
 
 from __future__ import annotations
 

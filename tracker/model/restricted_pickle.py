@@ -3,7 +3,7 @@
 A pickle is a program: loading one calls whatever it names. This reader knows the few names that model files use, gives
 inert records in their place, and turns what comes out into arrays by itself; NumPy, SciPy and chumpy are never called.
 chumpy, whose objects the published files hold, is not needed and could not be installed (references in
-docs/hands.md). Everything else that a pickle asks for is refused by its name.
+docs/hand_models.md). Everything else that a pickle asks for is refused by its name.
 """
 # pyright: reportAttributeAccessIssue=false, reportArgumentType=false
 # The parts of pickle._Unpickler that are overridden here are not in its types.

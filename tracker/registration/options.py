@@ -10,7 +10,7 @@ from tracker.registration.model_fit import FitSettings
 
 @dataclass(frozen=True)
 class RegistrationOptions:
-    """How scans are registered; the defaults were measured, see docs/registration.md.
+    """How scans are registered; the defaults were measured, see docs/scans.md.
 
     Attributes:
         side: "right" or "left" when known; None tries both.

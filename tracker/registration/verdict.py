@@ -31,7 +31,7 @@ LIMITS = {
     "moved": 2.8,
     "shape": 1.8,
 }
-"""A registration is good when every measure is below its limit, see docs/registration.md."""
+"""A registration is good when every measure is below its limit, see docs/scans.md."""
 
 BAD = 1.6
 """A measure so many times its limit makes it bad."""
@@ -158,7 +158,7 @@ def _cost(fit: ModelFit, scan: ScanPoints, state: HandState) -> float:
 def measure(
     fit: ModelFit, scan: ScanPoints, evaluation: Evaluation, surface: FreeSurface, distances: Array, count: int
 ) -> dict[str, float]:
-    """What tells right from wrong, see docs/registration.md.
+    """What tells right from wrong, see docs/scans.md.
 
     Returns:
         scan_to_model: Mean Geman-McClure cost (4 mm) of a scan point beside the model, mm².

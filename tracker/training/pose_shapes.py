@@ -1,7 +1,7 @@
 """Pose blend shapes, [R17] Eq. 4, by ridge regression with a cost that grows with the distance from the joint, Eq. 10.
 
 Differs from the paper: the cost is the square of the straight distance over 15 mm plus a constant, so that shapes at
-the joint itself are held, too (the paper's distance is geodesic: docs/model_training.md); its weight grows with the
+the joint itself are held, too (the paper's distance is geodesic: docs/journal.md); its weight grows with the
 number of registrations.
 Each person's template is eliminated: what is explained is how the unposed registrations of one person differ, so that
 templates and blend shapes need not wait for one another.
@@ -25,7 +25,7 @@ FLOOR = 0.05
 """The part of the cost that does not depend on the distance."""
 
 RIDGE = 1e-4
-"""Weight of the costs, per registration: chosen on generated people 26 to 31 (docs/model_training.md)."""
+"""Weight of the costs, per registration: chosen on generated people 26 to 31 (docs/journal.md)."""
 
 
 def measure_from_joints(template: Array, regressor: csr_array) -> Array:

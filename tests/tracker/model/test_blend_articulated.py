@@ -127,7 +127,7 @@ def test_mirrored_hands_are_mirror_images():
 
 
 def test_the_landmarks_jacobian_leaves_out_only_what_pose_blend_shapes_do():
-    """Skinning's part is exact; the rest is what docs/hands.md measures."""
+    """Skinning's part is exact; the rest is what docs/hand_models.md measures."""
     hand = articulated_of(untrained_hand())
     scene = Scene((hand, articulated_of(random_blend(side="left"))))
     pose = np.concatenate([random_angles(model, n) for n, model in enumerate(scene.models)])

@@ -114,7 +114,7 @@ def log_out(person: PersonDep, session: SessionDep, request: Request, response: 
 
 @router.post("/logout/everywhere", status_code=204)
 def log_out_everywhere(person: PersonDep, session: SessionDep, request: Request, response: Response) -> None:
-    """Log out in every browser. Tokens of scripts go on."""
+    """Log out in every browser. Tokens of scripts stay valid."""
     logins.end_logins(session, person.account_id)
     _forget_cookie(request, response)
 

@@ -44,7 +44,7 @@ class LoginThrottle:
             if wait > 0:
                 seconds = int(wait) + 1
                 raise TooManyTriesError(
-                    f"Too many failed tries. Wait {seconds} s, or ask a lead for a one-time code.",
+                    f"Too many failed logins. Wait {seconds} s, or ask a lead for a one-time code.",
                     headers={"Retry-After": str(seconds)},
                 )
             if len(self._times) > MAX_KEYS:

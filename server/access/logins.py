@@ -53,7 +53,7 @@ def log_in(
     with database.writing() as session:
         row = session.get_one(Account, account.id, with_for_update=True)
         if row.password_hash != known or row.disabled_at is not None:
-            raise LoginNeededError("The account was changed at this moment. Log in again.")
+            raise LoginNeededError("The account was changed just now. Log in again.")
         if stronger is not None:
             row.password_hash = stronger
         return row.id, add_login(session, row.id, browser)
@@ -162,7 +162,7 @@ def redeem_code(
     with database.writing() as session:
         session.get_one(Account, account.id, with_for_update=True)
         if session.scalar(query) is None:  # somebody else was first with it
-            raise LoginNeededError("The code was used at this moment. Ask a lead for a new one.")
+            raise LoginNeededError("The code was used just now. Ask a lead for a new one.")
         row = _set_password(session, account.id, password_hash, but=None)
         record_act(session, row.id, "account.password", "account", row.id, by="one-time code")
         return row.id, add_login(session, row.id, browser)

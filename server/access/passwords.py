@@ -29,14 +29,14 @@ def check_new_password(password: str, name: str) -> None:
     """Refuse a password that is soon guessed."""
     if not MIN_LENGTH <= len(password) <= MAX_LENGTH:
         raise InvalidError(
-            f"The password has {len(password)} characters; needed {MIN_LENGTH} to {MAX_LENGTH}. A few words do."
+            f"The password has {len(password)} characters; needed {MIN_LENGTH} to {MAX_LENGTH}. Use several words."
         )
     plain = password.casefold()
     rest = plain.replace(name.casefold(), "")
     for word in WELL_KNOWN:
         rest = rest.replace(word, "")
     if len(set(rest)) < 4:
-        raise InvalidError("That password is among the first to be guessed. A few words in a row do.")
+        raise InvalidError("That password is easy to guess. Use several words in a row.")
 
 
 def hash_password(password: str) -> str:
@@ -71,7 +71,9 @@ class _Turn:
 
     def __enter__(self) -> None:
         if not _turns.acquire(timeout=PATIENCE):
-            raise TooManyTriesError("Too many people log in at this moment. Try again.", headers={"Retry-After": "5"})
+            raise TooManyTriesError(
+                "Too many people are logging in. Try again in a few seconds.", headers={"Retry-After": "5"}
+            )
 
     def __exit__(self, *_: object) -> None:
         _turns.release()

@@ -50,7 +50,7 @@ def add_account(session: Session, actor: Account | None, name: str, role: Role) 
         _check_may_manage(actor, role)
     # "Anna" and "anna" would be taken for each other
     if session.scalar(select(Account.id).where(func.lower(Account.name) == name.lower())) is not None:
-        raise ConflictError(f"There is an account {name!r} already. Choose another name.")
+        raise ConflictError(f"There is already an account {name!r}. Choose another name.")
     account = Account(name=name, role=role)
     session.add(account)
     session.flush()
@@ -83,11 +83,11 @@ def change_account(
     role: Role | None = None,
     is_disabled: bool | None = None,
 ) -> Account:
-    """Change the role of an account, or shut it or open it again; nothing of its work goes."""
+    """Change the role of an account, or disable or enable it; its work is kept."""
     account = get_managed(session, actor, account_id)
     if expected != account.revision:
         raise StaleAccountError(
-            f"The account is at revision {account.revision} by now, not {expected}. Look again.",
+            f"The account is at revision {account.revision} now, not {expected}. Load it again.",
             headers={"ETag": f'"{account.revision}"'},
         )
     if account.id == actor.id:
@@ -104,7 +104,7 @@ def change_account(
 
 
 def set_disabled(session: Session, actor_id: uuid.UUID | None, account: Account, is_disabled: bool) -> None:
-    """Shut an account: its logins end, its tokens and codes open nothing any more. Or open it again."""
+    """Disable an account, so that its logins, tokens and codes end; or enable it."""
     account.disabled_at = utc_now() if is_disabled else None
     if is_disabled:
         end_logins(session, account.id)
@@ -117,7 +117,7 @@ def set_disabled(session: Session, actor_id: uuid.UUID | None, account: Account,
 def check_an_admin_is_left(session: Session) -> None:
     """Raise when nobody could let anybody in any more; the transaction must then not be committed."""
     if count_admins_who_can_log_in(session) == 0:
-        raise ConflictError("This is the last admin who can log in. Make somebody else admin before.")
+        raise ConflictError("This is the last admin who can log in. Make somebody else admin first.")
 
 
 def list_accounts(session: Session, cursor: str | None, limit: int) -> tuple[list[Account], str | None]:

@@ -49,7 +49,7 @@ def list_accounts(lead: LeadAccount, session: SessionDep, cursor: Cursor = None,
 
 @router.post("/accounts", status_code=201, responses=error_responses(409))
 def create_account(body: PersonIn, lead: LeadAccount, session: SessionDep) -> PersonAdded:
-    """Add somebody. With the code in the answer they set their password; it is nowhere later."""
+    """Add somebody. The answer holds the code with which they set their password; it is not shown again."""
     account = people.add_account(session, lead, body.name, body.role)
     code, expires_at = logins.make_code(session, account.id)
     return PersonAdded(person=_describe(session, [account], lead)[0], code=CodeOut(code=code, expires_at=expires_at))
@@ -64,7 +64,7 @@ def change_account(
     response: Response,
     if_match: IfMatch = None,
 ) -> PersonOut:
-    """Change a role, or shut an account or open it again. Nothing of the work of somebody goes."""
+    """Change a role, or disable or enable an account. The work of the person is kept."""
     expected = read_if_match(if_match)
     was_admin = people.get_managed(session, lead, account_id).role == "admin"
     account = people.change_account(session, lead, account_id, expected, body.role, body.is_disabled)

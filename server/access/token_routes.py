@@ -25,12 +25,12 @@ def list_tokens(person: PersonDep, session: SessionDep) -> Page[TokenOut]:
 
 @router.post("", status_code=201, responses=error_responses(409))
 def create_token(body: TokenIn, person: PersonDep, session: SessionDep) -> NewToken:
-    """Make a token. Its secret is in this answer and nowhere later."""
+    """Make a token. Its secret is in this answer only."""
     row, secret = tokens.add_token(session, person.account_id, body.name, body.may_write, body.days)
     return NewToken.model_validate(TokenOut.model_validate(row).model_dump() | {"secret": secret})
 
 
 @router.delete("/{token_id}", status_code=204, responses=error_responses(404))
 def revoke_token(token_id: uuid.UUID, person: PersonDep, session: SessionDep) -> None:
-    """Revoke a token: it opens nothing any more."""
+    """Revoke a token."""
     tokens.revoke_token(session, person.account_id, token_id)

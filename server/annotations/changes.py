@@ -151,7 +151,7 @@ def change_annotation(
     if done is not None:
         if now is None or (done.annotation_id, found.act, done.points) != (now.annotation_id, change.act, points):
             raise InvalidError(
-                f"The operation {change.operation_id} was another change before; {place} was left as it is. "
+                f"The operation_id {change.operation_id} belongs to another change; {place} was left as it is. "
                 "Make a new operation_id for each change."
             )
         return done

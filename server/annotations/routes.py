@@ -227,14 +227,14 @@ def list_key_frames(
 
 @router.put("/key-frames/{camera}/{frame}/{hand}", status_code=204)
 def add_key_frame(place: PlaceDep, session: SessionDep, account: CurrentAccount) -> None:
-    """Make the hand a key frame; who may mark it may do this. Twice does no harm."""
+    """Make the hand a key frame; whoever may mark it may do this. Repeating this is harmless."""
     policy.check_change(session, account, place)
     key_frames.add_key_frame(session, place, account.id)
 
 
 @router.delete("/key-frames/{camera}/{frame}/{hand}", status_code=204)
 def remove_key_frame(place: PlaceDep, session: SessionDep, account: CurrentAccount) -> None:
-    """The hand is a key frame no more; its joints stay. Twice does no harm."""
+    """Remove a key frame; its joints stay. Repeating this is harmless."""
     policy.check_change(session, account, place)
     key_frames.remove_key_frame(session, place)
 

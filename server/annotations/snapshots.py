@@ -125,13 +125,13 @@ def read_snapshot_bytes(storage: Storage, row: SnapshotRow) -> bytes:
         data = storage.document(AREA, row.id).read_bytes()
     except FileNotFoundError:
         raise DamagedSnapshotError(
-            f"The file of the snapshot {row.name!r} (version {row.version}) is gone from the studio's data folder; "
-            f"bring {AREA}/{row.id}.json back from a backup. The current labels are not touched by this."
+            f"The file of the snapshot {row.name!r} (version {row.version}) is missing in the studio's data folder; "
+            f"restore {AREA}/{row.id}.json from a backup. The current labels are not affected."
         ) from None
     if (found := hashlib.sha256(data).hexdigest()) != row.content_hash:
         raise DamagedSnapshotError(
             f"The file of the snapshot {row.name!r} (version {row.version}) is damaged: its SHA-256 is {found[:12]}, "
-            f"noted was {row.content_hash[:12]}.... Bring {AREA}/{row.id}.json back from a backup; it is not used."
+            f"expected {row.content_hash[:12]}. Restore {AREA}/{row.id}.json from a backup."
         )
     return data
 

@@ -75,7 +75,7 @@ class Authentication:
 
     async def let_in(self, scope: Scope) -> CurrentUser:
         if not self.settings.is_login_needed and not _is_near(scope):
-            raise LoginNeededError("This studio asks for no login, so it answers this machine only.")
+            raise LoginNeededError("This studio has no login, so it answers only this machine.")
         headers = Headers(scope=scope)
         if not self.settings.is_login_needed and "authorization" not in headers:
             return LOCAL_USER
@@ -133,7 +133,7 @@ def _check_is_meant(scope: Scope, user: CurrentUser) -> None:
     meant = Headers(scope=scope).get(ACCOUNT_HEADER)
     if meant is not None and meant != str(user.account_id):
         raise OtherAccountError(
-            f"This page belongs to somebody else; {user.name} is logged in by now. Log in again, or load the page."
+            f"This page belongs to somebody else; {user.name} is logged in now. Log in again, or load the page."
         )
 
 

@@ -149,7 +149,9 @@ def remove_files(storage: Storage, left: Sequence[tuple[str, uuid.UUID]]) -> Non
 def _find_binned(session: Session, name: str, id_: uuid.UUID) -> BinKind:
     kind = find_kind(name)
     if not is_deleted(session, kind, id_):
-        raise NotFoundError(f"The bin holds no {kind.word} {id_}. Somebody may have brought it back, or deleted it.")
+        raise NotFoundError(
+            f"The bin holds no {kind.word} {id_}. Somebody may have restored it, or deleted it for good."
+        )
     return kind
 
 

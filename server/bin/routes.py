@@ -34,7 +34,7 @@ def list_bin(
 
 @router.post("/{kind}/{item_id}/restore", status_code=204, responses=error_responses(409))
 def restore_from_bin(kind: str, item_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> None:
-    """Bring a deleted thing back. 409 when what it belongs to is in the bin too, which is restored first."""
+    """Restore a deleted thing. 409 when what it belongs to is in the bin too: restore that first."""
     service.restore(session, lead, kind, item_id)
 
 
@@ -42,7 +42,7 @@ def restore_from_bin(kind: str, item_id: uuid.UUID, session: SessionDep, lead: L
 def describe_erasure(
     kind: str, item_id: uuid.UUID, session: SessionDep, storage: StorageDep, lead: LeadAccount
 ) -> BinErasure:
-    """What goes with a deleted thing when it is deleted for good, and what keeps it if something does."""
+    """What else is deleted for good with a thing, and what prevents it, if something does."""
     return erasing.describe(session, storage, kind, item_id)
 
 
@@ -50,7 +50,7 @@ def describe_erasure(
 def delete_for_good(
     kind: str, item_id: uuid.UUID, database: DatabaseDep, storage: StorageDep, lead: LeadAccount
 ) -> None:
-    """Delete a thing in the bin for good, with its files and all that hangs on it: nothing brings it back.
+    """Delete a thing in the bin for good, with its files and all that depends on it. It cannot be restored.
 
     409 while a job uses it, or when something that stays was made from it.
     """

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 
 class BinItem(BaseModel):
-    """A thing that was deleted and can be brought back."""
+    """A thing that was deleted and can be restored."""
 
     model_config = ConfigDict(title="BinItem")
 
@@ -30,7 +30,7 @@ class BinGoing(BaseModel):
 
 
 class BinErasure(BaseModel):
-    """What goes when a thing in the bin is deleted for good. Nothing of it can be brought back."""
+    """What is deleted with a thing in the bin when it is deleted for good. It cannot be restored."""
 
     word: str = Field(description="The kind for people.")
     name: str

@@ -58,7 +58,7 @@ def restore(session: Session, account: Account, name: str, id_: uuid.UUID) -> No
     """Bring a thing back. What it is part of must be there: that is brought back first."""
     kind = find_kind(name)
     if not is_deleted(session, kind, id_):
-        raise NotFoundError(f"The bin holds no {kind.word} {id_}. Somebody may have brought it back.")
+        raise NotFoundError(f"The bin holds no {kind.word} {id_}. Somebody may have restored it.")
     if kind.parent is not None:
         parent = find_kind(kind.parent[0])
         parent_id = session.scalar(select(kind.parent[1]).where(kind.row.id == id_))
@@ -74,7 +74,7 @@ def find_kind(name: str) -> BinKind:
     for kind in BIN_KINDS:
         if kind.kind == name:
             return kind
-    raise NotFoundError(f"The bin knows no {name[:40]!r}; it has {', '.join(kind.kind for kind in BIN_KINDS)}.")
+    raise NotFoundError(f"The bin has no {name[:40]!r}; it has {', '.join(kind.kind for kind in BIN_KINDS)}.")
 
 
 def is_deleted(session: Session, kind: BinKind, id_: uuid.UUID) -> bool:

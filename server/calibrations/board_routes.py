@@ -47,7 +47,7 @@ def _answer(media_type: str) -> dict[int | str, dict[str, Any]]:
 
 @router.get("/form")
 def get_calibration_form() -> CalibrationForm:
-    """Kinds of boards with their usual measures, families of markers, and how cameras are calibrated unless told."""
+    """Kinds of boards with their usual measures, families of markers, and the default options of a calibration."""
     return CalibrationForm(
         boards=list(BOARDS),
         dictionaries=list_dictionaries(),

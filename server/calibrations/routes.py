@@ -85,7 +85,7 @@ def check_calibration(
     storage: StorageDep,
     account_id: AccountIdDep,
 ) -> CalibrationOut:
-    """Check the films with other options. One that has a result stays; the answer is a new one with its films."""
+    """Check the films with other options. A calibration with a result stays; the answer is a new one."""
     return CalibrationOut.model_validate(service.check_again(database, storage, calibration_id, body, account_id))
 
 

@@ -21,13 +21,13 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "account",
         help="people who may log in",
-        description="Add people, list them, shut their accounts, set passwords. A password is asked for, or read from "
-        "a pipe; it is never an argument, since arguments can be read by everybody on the machine.",
+        description="Add people, list them, disable their accounts, set passwords. A password is asked for, or read "
+        "from a pipe; it is never an argument, because everybody on the machine can read arguments.",
     )
     acts = parser.add_subparsers(required=True, metavar="ACT")
     add = acts.add_parser("add", help="add somebody")
     add.add_argument("name", metavar="NAME")
-    add.add_argument("--role", choices=ROLES, default="annotator", help="what they may do (default: annotator)")
+    add.add_argument("--role", choices=ROLES, default="annotator", help="their role (default: annotator)")
     add.add_argument("--code", action="store_true", help="ask for no password; print a one-time code that sets one")
     add.set_defaults(run=run_guarded(_add))
     password = acts.add_parser("password", help="set somebody's password")
@@ -36,7 +36,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     code = acts.add_parser("code", help="print a one-time code with which somebody sets their password")
     code.add_argument("name", metavar="NAME")
     code.set_defaults(run=run_guarded(_make_code))
-    for act, words in (("disable", "shut an account; nothing of its work goes"), ("enable", "open it again")):
+    for act, words in (("disable", "disable an account; its work is kept"), ("enable", "enable an account again")):
         one = acts.add_parser(act, help=words)
         one.add_argument("name", metavar="NAME")
         one.set_defaults(run=run_guarded(_set_disabled), is_disabled=act == "disable")

@@ -36,7 +36,7 @@ def add_subject(subjects: argparse._SubParsersAction) -> None:
         "server",
         help="how fast and how safely the studio saves",
         description="Serve a studio of its own in a temporary folder and have simulated annotators save a gesture "
-        "every second or so, some on the same frames; then look every acknowledged gesture up in the history.",
+        "every second or so, some on the same frames; then check that the history holds every acknowledged gesture.",
     )
     parser.add_argument("--annotators", type=int, default=50, metavar="N", help="people at once (50)")
     parser.add_argument("--seconds", type=float, default=60, metavar="S", help="how long (60)")
@@ -47,8 +47,8 @@ def add_subject(subjects: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--kill-every", type=float, metavar="S", help="kill -9 the studio this often, and start it again"
     )
-    parser.add_argument("--listeners", type=int, default=0, metavar="N", help="pages that hear of every save (0)")
-    parser.add_argument("--tracking", action="store_true", help="have a worker track a recording all the while")
+    parser.add_argument("--listeners", type=int, default=0, metavar="N", help="pages that listen to every save (0)")
+    parser.add_argument("--tracking", action="store_true", help="track a recording at the same time")
     add_json(parser)
     parser.set_defaults(run=run_guarded(run))
 

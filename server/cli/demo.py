@@ -52,7 +52,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         help="run the studio with a sample project",
         description="Run the studio with samples: a rendered recording, annotated here and there, with its track, "
         "a recording of three cameras, and scans of four people, enough to train a hand model from. "
-        "They are made once; what you do with them stays.",
+        "They are made once; your changes are kept.",
     )
     add_serve_arguments(parser)
     parser.set_defaults(run=run_guarded(run))

@@ -31,11 +31,11 @@ FORMATS = (*LABELS, "recording", "track", *TRACK_FILES)
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "export",
-        help="copy something out of the studio",
-        description="Copy a recording's labels (annotations.json or a format of others), the recording (a folder, with "
+        help="export labels, recordings or tracks",
+        description="Copy a recording's labels (annotations.json or another format), the recording (a folder, with "
         "its annotations) or its newest track out of the studio: the folder that tracking wrote (track), its arrays "
-        "(npz), a table of joints (csv), an animation (glb: glTF) or MANO-style parameters (mano: npz). What a format "
-        "of labels cannot hold is said on stderr.",
+        "(npz), a table of joints (csv), an animation (glb: glTF) or MANO-style parameters (mano: npz). What a "
+        "label format cannot hold is listed on stderr.",
     )
     parser.add_argument(
         "name",
@@ -46,14 +46,14 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--format", choices=FORMATS, required=True)
     parser.add_argument("--out", type=Path, required=True, metavar="PATH", help="a name that does not exist yet")
     parser.add_argument(
-        "--snapshot", type=int, metavar="V", help="labels: those of this snapshot's version, not of now"
+        "--snapshot", type=int, metavar="V", help="labels: those of this snapshot version instead of today's"
     )
     parser.add_argument(
         "--sources",
         default="all",
         metavar="WORDS",
-        help="labels: which joints, by where they came from: all, independent (no track had a part in them), or some "
-        "of hand, unknown, import, triangulation, interpolation, copy, fit, track with commas between; default: all",
+        help="labels: which joints, by their source: all, independent (no track had a part in them), or some "
+        "of hand, unknown, import, triangulation, interpolation, copy, fit, track, separated by commas; default: all",
     )
     parser.add_argument("--track", metavar="ID", help="labels in 3D: take the joints in space from this track")
     add_json(parser)
@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
     if out.exists():
         raise CommandError(f"{out}: is there already; give a name that does not exist yet.")
     if not out.parent.is_dir():
-        raise CommandError(f"{out.parent}: is no folder; make it first.")
+        raise CommandError(f"{out.parent}: is not a folder; make it first.")
     is_labels, names = args.format in LABELS, ", ".join(args.name)
     if not is_labels and (args.snapshot is not None or args.track is not None or args.sources != "all"):
         raise CommandError(
@@ -119,7 +119,7 @@ def _export_labels(session: Session, storage: Storage, args: argparse.Namespace,
     track_id = _read_id(args.track) if args.track is not None else None
     if args.track is not None:
         if track_id is None:
-            raise CommandError(f"--track {args.track!r} is no id of a track.")
+            raise CommandError(f"--track {args.track!r} is not the id of a track.")
         check_track(session, rows[0].id, track_id)
     snapshot = None if args.snapshot is None else find_snapshot(session, rows[0].id, args.snapshot)
     sets = [open_label_set(storage, row, read_labels(session, storage, row.id, snapshot), track_id) for row in rows]

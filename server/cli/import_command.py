@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 NUMBERS = {
     "fps": "frames per second",
     "fx": "focal length along x, px",
-    "fy": "focal length along y, px; as --fx when left out",
+    "fy": "focal length along y, px; equal to --fx when left out",
     "cx": "principal point x, px",
     "cy": "principal point y, px",
     "depth-scale": "metres per unit of the depth images, 0.001 for millimetres",
@@ -30,11 +30,11 @@ NUMBERS = {
 SCANS = "scans"
 TEXTS = {
     "name": "name of the recording",
-    "preset": "a kind of depth camera whose typical values stand in for what is not told: "
+    "preset": "a depth camera whose typical values replace those that are not given: "
     + "kinect_v1, kinect_v2, realsense_sr300, ...; the refusal of a recording lists those that fit it",
     "intrinsics": "TUM RGB-D: the camera it was recorded with",
-    "depth-pattern": "where the depth images lie, such as 'depth/depth_*.png'",
-    "color-pattern": "where the colour images lie; 'none' to import depth alone",
+    "depth-pattern": "pattern of the depth images, such as 'depth/depth_*.png'",
+    "color-pattern": "pattern of the colour images; 'none' to import depth alone",
     "color-format": "how frames of videos are stored: jpeg or png",
 }
 
@@ -42,9 +42,9 @@ TEXTS = {
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "import",
-        help="bring a recording, labels of one, or scans into the studio",
-        description="Bring a recording into the studio, or with --into the labels of recordings that are there: all of "
-        "it, or nothing and why. The format is recognised when it can be.",
+        help="import a recording, labels, or scans into the studio",
+        description="Import a recording into the studio, or with --into labels of recordings that are there. "
+        "Everything is imported, or nothing, with the reason. The format is recognised when it can be.",
     )
     parser.add_argument("path", type=Path, metavar="PATH", help="a folder or file")
     parser.add_argument(
@@ -54,21 +54,25 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     )
     scans = parser.add_argument_group("scans: PLY, OBJ or STL files, or a folder of them, perhaps with a scans.json")
     scans.add_argument("--collection", metavar="NAME", help="what they belong to (the folder's name)")
-    scans.add_argument("--subject", metavar="NAME", help="whose hand, where no scans.json says it")
-    scans.add_argument("--pose", metavar="NAME", help="which pose, where no scans.json says it")
-    scans.add_argument("--side", choices=("right", "left"), help="which hand, where no scans.json says it")
+    scans.add_argument("--subject", metavar="NAME", help="scans: whose hand, if no scans.json says it")
+    scans.add_argument("--pose", metavar="NAME", help="scans: which pose, if no scans.json says it")
+    scans.add_argument("--side", choices=("right", "left"), help="scans: which hand, if no scans.json says it")
     scans.add_argument("--metres-per-unit", type=float, metavar="N", help="of the files; guessed when left out")
     labels = parser.add_argument_group("labels")
     labels.add_argument("--into", nargs="+", metavar="NAME", help="labels: names or ids of the recordings they are of")
     labels.add_argument(
         "--policy",
         choices=("keep", "replace"),
-        help="labels: what becomes of hands that are labelled otherwise; without it such labels are refused",
+        help="labels: what to do with hands that have other labels already; without it such labels are refused",
     )
-    labels.add_argument("--hand", choices=("right", "left"), help="labels: of files that know one hand only")
-    labels.add_argument("--camera", metavar="ID", help="labels: of files that don't name it")
-    labels.add_argument("--pixel-centre", type=float, metavar="N", help="labels: 0 or 0.5, of the top-left pixel")
-    labels.add_argument("--joint-order", metavar="ORDER", help="labels: of files that number the joints")
+    labels.add_argument("--hand", choices=("right", "left"), help="labels: the hand, for files that hold only one")
+    labels.add_argument("--camera", metavar="ID", help="labels: the camera, for files that do not name one")
+    labels.add_argument(
+        "--pixel-centre", type=float, metavar="N", help="labels: centre of the top-left pixel in the file, 0 or 0.5"
+    )
+    labels.add_argument(
+        "--joint-order", metavar="ORDER", help="labels: order of the joints, for files that number them"
+    )
     for name, help_text in NUMBERS.items():
         parser.add_argument(f"--{name}", type=float, metavar="N", help=help_text)
     for name, help_text in TEXTS.items():

@@ -22,7 +22,7 @@ log = logging.getLogger(__name__)
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
-    parser = subparsers.add_parser("serve", help="run the studio", description="Run the studio until told to stop.")
+    parser = subparsers.add_parser("serve", help="run the studio", description="Run the studio until it is stopped.")
     add_serve_arguments(parser)
     parser.set_defaults(run=run_guarded(run))
 
@@ -39,7 +39,7 @@ looking took three times as long as the answer (0.43 s instead of 0.12)."""
 def add_serve_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--host", metavar="NAME", help="address to listen at (default: 127.0.0.1)")
     parser.add_argument("--port", type=int, metavar="N", help="port to listen at, 0 for a free one (default: 8000)")
-    parser.add_argument("--no-worker", action="store_true", help="do no jobs; `handloom worker` does them elsewhere")
+    parser.add_argument("--no-worker", action="store_true", help="run no jobs; `handloom worker` runs them elsewhere")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -14,9 +14,9 @@ from server.cli.guarded import load_settings, run_guarded
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "worker",
-        help="do the jobs of a studio",
-        description="Do jobs until told to stop. Several workers share them, one job at a time each. A worker may be "
-        "killed at any moment: its job goes on when one starts again.",
+        help="run the jobs of a studio",
+        description="Run jobs until stopped. Each worker runs one job at a time. A worker may be killed at any "
+        "moment: its job continues when a worker starts again.",
     )
     parser.add_argument("--with-parent", action="store_true", help=argparse.SUPPRESS)
     parser.set_defaults(run=run_guarded(run))

@@ -99,5 +99,5 @@ class Jobs:
             if job["state"] in ENDED:
                 raise JobFailed(job)
             if ends is not None and time.monotonic() > ends:
-                raise TimeoutError(f"The job {job_id} is still {job['state']} after {timeout:g} s; it goes on.")
+                raise TimeoutError(f"The job {job_id} is still {job['state']} after {timeout:g} s; it is not finished.")
             time.sleep(POLL_SECONDS)

@@ -73,6 +73,8 @@ class Link:
                         file.write(piece)
             return partial.replace(to)
         except httpx.TransportError as error:
-            raise StudioUnreachable(f"The download from {self.url} broke off: {error}. Start it again.") from error
+            raise StudioUnreachable(
+                f"The download from {self.url} was interrupted: {error}. Start it again."
+            ) from error
         finally:
             partial.unlink(missing_ok=True)

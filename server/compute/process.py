@@ -154,7 +154,7 @@ class ComputeProcess:
                 if running is not None and limit.is_over:
                     log.warning("%s took longer than %g s and was ended", work.__name__, limit_seconds)
                     raise ComputeTooLongError(
-                        f"This took longer than {limit_seconds:g} s and was ended. Ask for less, or try again later; "
+                        f"This took longer than {limit_seconds:g} s and was stopped. Ask for less, or try again later; "
                         "if it happens again, the log of the studio says what was computed."
                     ) from None
                 continue
@@ -162,7 +162,9 @@ class ComputeProcess:
                 answer.error.add_note(answer.note)
                 raise answer.error
             return answer
-        raise ComputeStoppedError("The process that computes this has ended twice. Try again; the log says more.")
+        raise ComputeStoppedError(
+            "The process that computes this crashed twice. Try again; the studio's log says more."
+        )
 
     def close(self) -> None:
         """End the process. Whoever waits for an answer gets a `ComputeStoppedError`."""
@@ -175,7 +177,7 @@ class ComputeProcess:
     def _get(self) -> _Running:
         with self._lock:
             if self._is_closed:
-                raise ComputeStoppedError("The studio stops; ask again when it is there.")
+                raise ComputeStoppedError("The studio is shutting down. Try again when it is running.")
             if self._running is None:
                 self._running = _Running.start(self._settings)
             return self._running

@@ -98,7 +98,7 @@ def find_file(storage: Storage, row: DetectorRow) -> Path:
     path = storage.folder(AREA, row.id) / FILE
     if not path.is_file() or compute_digest(path) != row.digest:
         raise DamagedDetectorError(
-            f"The file of the fingertip detector {row.name!r} is gone or not what it was. Bring {AREA}/{row.id}/{FILE} "
-            "back from a backup; it is not used."
+            f"The file of the fingertip detector {row.name!r} is missing or was changed. Restore "
+            f"{AREA}/{row.id}/{FILE} from a backup."
         )
     return path

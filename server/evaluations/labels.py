@@ -80,8 +80,7 @@ def read_labels(session: Session, storage: Storage, which: LabelsId) -> Labels:
     path = storage.document("snapshots", row.id)
     if not path.is_file() or hashlib.sha256(path.read_bytes()).hexdigest() != row.content_hash:
         raise NotFoundError(
-            f"The file of the snapshot {row.name!r} is gone from the data folder or damaged. Judge by another one, or "
-            "by the labels of now."
+            f"The file of the snapshot {row.name!r} is missing or damaged. Judge by another one, or by today's labels."
         )
     return Labels(
         read_annotations(path),

@@ -203,7 +203,7 @@ def apply_import(
         raise InvalidError("Nothing was imported: " + " ".join(problems))
     if check is not None and check != write_check(labels, plans):
         raise ConflictError(
-            "The files or the labels in these places changed since they were looked at; nothing was imported. "
+            "The files or the labels in these places changed since they were checked; nothing was imported. "
             "Look at the new report, then confirm it."
         )
     return [_apply(session, storage, plan, held[plan.sequence.id], labels, account, policy) for plan in plans]

@@ -74,5 +74,5 @@ def check_sees_all(session: Session, account: Account, sequence_id: uuid.UUID) -
     """Raise when some of the labels are hidden from the account."""
     if find_hidden(session, account, sequence_id):
         raise ForbiddenError(
-            "You mark frames of this recording blindly: its labels are shown to you whole when your work is accepted."
+            "You are marking frames of this recording blind. You will see all its labels when your work is accepted."
         )

@@ -167,7 +167,7 @@ async def check_recording_labels(
     storage: StorageDep,
     account: LeadAccount,
 ) -> LabelImportReport:
-    """Look at files of labels: what is new, what is labelled otherwise, what is lost. Nothing is stored."""
+    """Check files of labels: what is new, what differs, what is lost. Nothing is stored."""
     return await _check([sequence_id], request, database, storage, account)
 
 
@@ -181,7 +181,7 @@ async def import_recording_labels(
     storage: StorageDep,
     account: LeadAccount,
 ) -> LabelImportDone:
-    """Take files of labels into a recording, as their report said: with its `check`, and a `policy` for conflicts."""
+    """Import files of labels into a recording, as their report said: with its `check`, and a `policy` for conflicts."""
     return await _import([sequence_id], request, database, storage, account)
 
 
@@ -193,7 +193,7 @@ async def check_several(
     account: LeadAccount,
     sequence_ids: SequencesQuery,
 ) -> LabelImportReport:
-    """Look at files with labels of several recordings. Stores nothing."""
+    """Check files with labels of several recordings. Nothing is stored."""
     return await _check(sequence_ids, request, database, storage, account)
 
 
@@ -205,7 +205,7 @@ async def import_several(
     account: LeadAccount,
     sequence_ids: SequencesQuery,
 ) -> LabelImportDone:
-    """Take files with labels of several recordings in: into all of them or none."""
+    """Import labels of several recordings: into all of them or none."""
     return await _import(sequence_ids, request, database, storage, account)
 
 
@@ -230,7 +230,7 @@ async def _import(
         if policy not in ("keep", "replace"):
             raise InvalidError(f"The field `policy` is {policy[:40]!r}; needed keep or replace.")
         if not check:
-            raise InvalidError("The field `check` is missing: have the files looked at first, then send its `check`.")
+            raise InvalidError("The field `check` is missing: first have the files checked, then send that `check`.")
         with database.reading() as session:
             rows = [get_sequence(session, id_) for id_ in dict.fromkeys(ids)]
         labels = _read(storage, folder, rows, upload.fields)

@@ -141,7 +141,7 @@ class RecordingImport(BaseModel):
     new: int = Field(description="Hands where there are no labels yet.")
     same: int = Field(description="Hands whose labels are those of the file already.")
     conflict_count: int
-    conflicts: list[HandChangeOut] = Field(description="Hands that are labelled otherwise, the first ones.")
+    conflicts: list[HandChangeOut] = Field(description="Hands with other labels, the first ones.")
     locked: int = Field(description="Hands that must not be changed now; they are left as they are.")
     reasons: list[str] = Field(description="Why not.")
 

@@ -82,7 +82,7 @@ def download_snapshot(
 
 @router.get("/snapshots/{snapshot_id}/verify")
 def verify_snapshot(snapshot_id: uuid.UUID, session: SessionDep, storage: StorageDep) -> SnapshotVerification:
-    """Hash the file again: is it still what it was?"""
+    """Compare the file with its SHA-256."""
     row = snapshots.get_snapshot(session, snapshot_id)
     checked = snapshots.verify_snapshot(storage, row)
     return SnapshotVerification(is_intact=checked.is_intact, expected=row.content_hash, found=checked.found)
@@ -98,7 +98,7 @@ def compare_snapshot(
         uuid.UUID | Literal["now"], Query(alias="with", description="`now`, or a later or earlier snapshot.")
     ] = "now",
 ) -> LabelComparison:
-    """What changed from this snapshot to another one or to the labels of now, joint by joint."""
+    """What changed from this snapshot to another one or to the current labels, joint by joint."""
     row = snapshots.get_snapshot(session, snapshot_id)
     before = snapshots.read_snapshot(storage, row)
     if with_ == "now":

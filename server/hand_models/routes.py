@@ -36,7 +36,7 @@ _BODY = describe_upload_body(
 
 @router.get("/hand-skeleton")
 def get_hand_skeleton() -> HandSkeleton:
-    """Joints of a hand and how they hang together."""
+    """Joints of a hand and how they are connected."""
     fingers = dict.fromkeys(joint.split("_")[0] for joint in HAND_JOINTS if "_" in joint)
     return HandSkeleton(joints=list(HAND_JOINTS), edges=[(a, b) for a, b in HAND_EDGES], fingers=list(fingers))
 

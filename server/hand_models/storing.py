@@ -128,7 +128,7 @@ def read_upload(path: Path, side: str | None) -> BlendModel:
             model = load_mano(path, side)
         except TrackerError as foreign:
             raise InvalidError(
-                f"{path.name} is no hand model. Read as Handloom's own: {_say(own, path)} Read as MANO's: "
+                f"{path.name} is not a hand model. Read as Handloom's own: {_say(own, path)} Read as MANO's: "
                 f"{_say(foreign, path)} A model whose side its name does not tell needs the field `side`."
             ) from None
     if model.side not in ("right", "left") or model.num_bones != HAND_BONES:
@@ -168,8 +168,8 @@ def find_file(storage: Storage, row: HandModelRow) -> Path:
     path = storage.folder(AREA, row.id) / FILE
     if not path.is_file() or compute_digest(path) != row.digest:
         raise DamagedModelError(
-            f"The file of the hand model {row.name!r} is gone or not what it was. Bring {AREA}/{row.id}/{FILE} back "
-            "from a backup; it is not used."
+            f"The file of the hand model {row.name!r} is missing or was changed. Restore {AREA}/{row.id}/{FILE} "
+            "from a backup."
         )
     return path
 

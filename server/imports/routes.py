@@ -56,7 +56,7 @@ ImportContextDep = Annotated[ImportContext, Depends(get_import_context)]
 
 @router.get("/form")
 def get_import_form() -> ImportForm:
-    """What can be told about an upload that its files do not tell."""
+    """Options of an import, for what its files do not say."""
     hints = get_type_hints(ImportOptions)
     options = [
         ImportField(name=item.name, type=_name_type(hints[item.name]), help=item.metadata.get("help", ""))
@@ -117,7 +117,7 @@ def get_import_picture(
     name: Annotated[str, Query(max_length=1100, description="As in the report's `pictures`.")],
     context: ImportContextDep,
 ) -> Response:
-    """A small picture of an image that would come in; depth in colours, near bright and far dark."""
+    """A small picture of an image that would be imported; depth in colours, near bright and far dark."""
     service.get_import(context, import_id)
     data = make_picture(context.source(import_id), name)
     return Response(data, media_type="image/jpeg", headers={"Cache-Control": "private, max-age=86400, immutable"})
@@ -145,7 +145,7 @@ def confirm_import(
     account_id: AccountIdDep,
     summaries: SummariesDep,
 ) -> SequenceOut:
-    """Make it a recording: whole, or not at all."""
+    """Make it a recording, whole or not at all."""
     row = service.confirm_import(context, import_id, body.name, account_id, body.options)
     with context.database.reading() as session:
         return describe_sequences(session, [row], summaries)[0]

@@ -53,7 +53,7 @@ class ImportCalibration(BaseModel):
 
 
 class ImportConfirm(BaseModel):
-    """Make it a recording."""
+    """Make it a recording, whole or not at all."""
 
     model_config = ConfigDict(extra="forbid")
 

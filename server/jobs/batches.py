@@ -32,8 +32,8 @@ def create_batch(
     checked, refused = check_batch(session, sequence_ids, params)
     if refused:
         raise RefusedBatchError(
-            f"{len(refused)} of {len(refused) + len(checked)} recordings cannot be tracked so, and no job was started. "
-            f"The first: {refused[0].detail} Leave them out or change the options.",
+            f"{len(refused)} of {len(refused) + len(checked)} recordings cannot be tracked with these options; "
+            f"no job was started. The first: {refused[0].detail} Leave them out or change the options.",
             refused=[item.model_dump(mode="json") for item in refused],
         )
     batch_id = uuid4()

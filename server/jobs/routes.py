@@ -68,7 +68,7 @@ def check_job(body: AnyJobCreate, session: SessionDep, storage: StorageDep, acco
 
 @router.post("/jobs/batch/check")
 def check_batch(body: BatchCreate, session: SessionDep, account: ReviewerAccount) -> BatchCheck:
-    """Which of the recordings cannot be tracked so, and why. Nothing is started."""
+    """Which of the recordings cannot be tracked with these options, and why. Nothing is started."""
     return BatchCheck(refused=batches.check_batch(session, body.sequence_ids, body.params)[1])
 
 
@@ -112,14 +112,14 @@ def list_jobs(
 
 @router.get("/jobs/batches")
 def list_batches(session: SessionDep, cursor: Cursor = None, limit: Limit = 100) -> Page[BatchOut]:
-    """Batches with what has become of their jobs, the newest first."""
+    """Batches with the states of their jobs, the newest first."""
     items, next_cursor = batches.list_batches(session, cursor, limit)
     return Page(items=items, next_cursor=next_cursor)
 
 
 @router.get("/jobs/batches/{batch_id}", responses=error_responses(404))
 def get_batch(batch_id: uuid.UUID, session: SessionDep) -> BatchOut:
-    """One batch with what has become of its jobs."""
+    """One batch with the states of its jobs."""
     return batches.get_batch(session, batch_id)
 
 
@@ -163,7 +163,7 @@ def retry_job(job_id: uuid.UUID, session: SessionDep, storage: StorageDep, accou
 
 @router.post("/jobs/{job_id}/resume", responses=error_responses(404, 409))
 def resume_job(job_id: uuid.UUID, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
-    """Go on with a cancelled or failed job where it stopped."""
+    """Continue a cancelled or failed job where it stopped."""
     return describe_job(session, _act(session, storage, "resume", job_id, account.id))
 
 

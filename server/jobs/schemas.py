@@ -106,7 +106,7 @@ class TrainCreate(BaseModel):
     @model_validator(mode="after")
     def _names_one_source(self) -> TrainCreate:
         if (self.training_set_id is None) == (self.rule is None):
-            raise ValueError("needed is one of `training_set_id` and `rule`")
+            raise ValueError("give either `training_set_id` or `rule`")
         return self
 
 

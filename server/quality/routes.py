@@ -39,7 +39,7 @@ async def list_flags(
 
 @router.put("/flags/{camera}/{frame}/{hand}/{kind}/dismissal", status_code=204, responses=error_responses(409))
 def dismiss_flag(place: PlaceDep, kind: Kind, body: FlagLook, session: SessionDep, account: CurrentAccount) -> None:
-    """The label is right: put the flag away for this revision of it. 409 when the label has changed meanwhile."""
+    """The label is right: dismiss the flag for this revision of it. 409 when the label has changed meanwhile."""
     service.dismiss(session, place, kind, body.revision, account.id)
 
 
@@ -47,5 +47,5 @@ def dismiss_flag(place: PlaceDep, kind: Kind, body: FlagLook, session: SessionDe
 def restore_flag(
     place: PlaceDep, kind: Kind, session: SessionDep, revision: Annotated[int, Query(ge=1, le=10**9)]
 ) -> None:
-    """Bring a flag back that was put away."""
+    """Restore a dismissed flag."""
     service.restore(session, place, kind, revision)

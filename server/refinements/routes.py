@@ -19,7 +19,7 @@ router = APIRouter(tags=["refinements"], responses=error_responses(404))
 
 @router.get("/sequences/{sequence_id}/refinements")
 def list_refinements(sequence_id: uuid.UUID, session: SessionDep) -> list[RefinementOut]:
-    """What labels made of a recording's cameras, the newest first, at most 20."""
+    """Refined cameras of a recording, the newest first, at most 20."""
     return [_describe(row, is_current) for row, is_current in service.list_refinements(session, sequence_id)]
 
 
@@ -35,7 +35,7 @@ def create_refinement(
 def take_refinement(
     refinement_id: uuid.UUID, database: DatabaseDep, storage: StorageDep, lead: LeadAccount
 ) -> RefinementOut:
-    """Give the recording these cameras; those it had are kept. Tracks made before stay in the world of theirs."""
+    """Give the recording these cameras; those it had are kept. Earlier tracks stay as they are."""
     return _describe(service.take(database, storage, refinement_id, lead.id), True)
 
 

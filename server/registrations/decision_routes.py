@@ -80,7 +80,7 @@ def list_decisions(
 def undo_decision(
     decision_id: uuid.UUID, body: DecisionUndo, session: SessionDep, account: ReviewerAccount, response: Response
 ) -> DecisionDone:
-    """Take a decision of one's own back; what one decided before it stands again. Both stay in the history."""
+    """Undo your own decision; the one before it counts again. Both stay in the history."""
     decision, row, is_new = service.undo(session, decision_id, account.id, body.operation_id)
     response.status_code = 201 if is_new else 200
     return _describe(session, decision, row, account.id)

@@ -56,14 +56,16 @@ def undo(
         raise NotFoundError(f"There is no decision {decision_id}.")
     row = get_registration(session, decision.registration_id, hold=True)
     if decision.account_id != account_id:
-        raise ForbiddenError("Only who made a decision takes it back. Decide yourself instead: the last one counts.")
+        raise ForbiddenError(
+            "Only its author can undo a decision. Make a decision of your own instead: the last one counts."
+        )
     if decision.decision == "undo":
         raise ConflictError("This is an undo already; decide again instead.")
 
     def write(number: int) -> DecisionRow:
         taken = select(DecisionRow.id).where(DecisionRow.undoes_id == decision_id)
         if session.scalar(taken) is not None:
-            raise ConflictError("This decision was taken back already.")
+            raise ConflictError("This decision was already undone.")
         return DecisionRow(
             registration_id=row.id,
             account_id=account_id,

@@ -17,5 +17,5 @@ router = APIRouter(prefix="/lineage", tags=["curation"], responses=error_respons
 
 @router.get("/{kind}/{id}")
 def get_lineage(kind: Kind, id: uuid.UUID, session: SessionDep, account_id: AccountIdDep) -> Lineage:
-    """Scan to registration to decision to training set to model and back: where a thing comes from, what came of it."""
+    """From scan to model, by registration, decision and training set: where a thing comes from, what came of it."""
     return service.find_lineage(session, kind, id, account_id)

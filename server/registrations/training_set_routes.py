@@ -72,7 +72,7 @@ def list_training_members(
 
 @router.get("/{training_set_id}/verify", responses=error_responses(404))
 def verify_training_set(training_set_id: uuid.UUID, session: SessionDep, storage: StorageDep) -> TrainingVerification:
-    """Hash every file again: are they still what they were?"""
+    """Compare every file with its SHA-256."""
     return service.verify_training_set(storage, service.get_training_set(session, training_set_id))
 
 

@@ -248,8 +248,8 @@ def read_list(storage: Storage, row: TrainingSetRow) -> dict[str, Any]:
         data = b""
     if (found := hashlib.sha256(data).hexdigest()) != row.digest:
         raise DamagedSetError(
-            f"The list of the training set {row.name!r} is damaged: its SHA-256 is {found[:12]}, noted was "
-            f"{row.digest[:12]}. Bring {AREA}/{row.id}.json back from a backup; it is not used."
+            f"The list of the training set {row.name!r} is damaged: its SHA-256 is {found[:12]}, expected "
+            f"{row.digest[:12]}. Restore {AREA}/{row.id}.json from a backup."
         )
     return json.loads(data)
 
@@ -275,8 +275,8 @@ def list_files(storage: Storage, row: TrainingSetRow) -> list[tuple[str, Any]]:
     for item in read_list(storage, row)["registrations"]:
         if _find_fault(storage, item):
             raise DamagedSetError(
-                f"The registration {item['registration']} of the training set {row.name!r} is not what it was. "
-                f"Bring {registrations.AREA}/{item['registration']} back from a backup; nothing was trained from it."
+                f"The registration {item['registration']} of the training set {row.name!r} was changed. "
+                f"Restore {registrations.AREA}/{item['registration']} from a backup; nothing was trained."
             )
         path = storage.folder(registrations.AREA, uuid.UUID(item["registration"])) / registrations.FILE
         files.append((f"{item['registration']}/{registrations.FILE}", path))

@@ -181,7 +181,7 @@ class RemoteFolder:
             temporary.unlink(missing_ok=True)
         raise StoreError(
             f"The file {path.name} in the store {self._store.url} is damaged: found SHA-256 {found[:12]}, needed "
-            f"{digest[:12]}. Bring it back from a copy of the store."
+            f"{digest[:12]}. Restore it from a copy of the store."
         )
 
 

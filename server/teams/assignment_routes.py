@@ -57,7 +57,7 @@ def list_assignments(
 def make_assignment(
     project_id: uuid.UUID, body: AssignmentMake, session: SessionDep, account: LeadAccount, response: Response
 ) -> AssignmentOut:
-    """Give somebody a range of frames. Leads give work; no frame is given to two."""
+    """Assign a range of frames to somebody. No frame is assigned to two people."""
     return _answer(session, assignments.make_assignment(session, account, project_id, body), response)
 
 
@@ -87,7 +87,7 @@ def update_assignment(
 def withdraw_assignment(
     assignment_id: uuid.UUID, session: SessionDep, account: LeadAccount, if_match: IfMatch = None
 ) -> None:
-    """Take an assignment back; `restore` undoes it. The joints stay as they are."""
+    """Withdraw an assignment; `restore` undoes it. The joints stay as they are."""
     with _held(session, assignment_id, if_match) as row:
         assignments.withdraw_assignment(session, account, row, is_withdrawn=True)
 
@@ -110,7 +110,7 @@ def submit_assignment(
     response: Response,
     if_match: IfMatch = None,
 ) -> AssignmentOut:
-    """Hand the work in: from then on its annotations are locked."""
+    """Submit the work: from then on its annotations are locked."""
     with _held(session, assignment_id, if_match) as row:
         assignments.submit_assignment(session, account, row)
         return _answer(session, row, response)
@@ -124,7 +124,7 @@ def accept_assignment(
     response: Response,
     if_match: IfMatch = None,
 ) -> AssignmentOut:
-    """Find submitted work good: its annotations are locked for everybody."""
+    """Accept submitted work: its annotations are locked for everybody."""
     with _held(session, assignment_id, if_match) as row:
         assignments.accept_assignment(session, account, row)
         return _answer(session, row, response)

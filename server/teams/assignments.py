@@ -191,7 +191,7 @@ def return_assignment(session: Session, account: Account, row: AssignmentRow, te
     _check_reviewer(account, row)
     query = select(CommentRow.id).where(CommentRow.assignment_id == row.id, CommentRow.resolved_at.is_(None))
     if not text and session.scalar(query.limit(1)) is None:
-        raise InvalidError("Say what is to be changed: send a text, or leave comments in the frames first.")
+        raise InvalidError("Say what should be changed: send a text, or comment on frames first.")
     row.reviewer_id = account.id
     _go(session, account, row, "returned", "assignment.return", after=("submitted", "accepted"))
     if text:
@@ -248,7 +248,7 @@ def _check_frames(session: Session, sequence: SequenceRow, row: AssignmentRow) -
     first, last = row.frame_first, row.frame_last
     if not 0 <= first <= last < sequence.frame_count:
         raise InvalidError(
-            f"Frames {first} to {last} make no sense in {sequence.name}: give a first and a last one between 0 and "
+            f"Frames {first} to {last} are not valid in {sequence.name}: give a first and a last one between 0 and "
             f"{sequence.frame_count - 1}."
         )
     session.execute(select(SequenceRow.id).where(SequenceRow.id == sequence.id).with_for_update())

@@ -79,13 +79,13 @@ def update_project(
 
 @router.delete("/projects/{project_id}", status_code=204)
 def archive_project(project_id: uuid.UUID, session: SessionDep, account: LeadAccount) -> None:
-    """Put a project away; `restore` brings it back. What was accepted in it stays locked."""
+    """Archive a project; `restore` undoes it. What was accepted in it stays locked."""
     projects.archive_project(session, account, project_id, is_archived=True)
 
 
 @router.post("/projects/{project_id}/restore", **deprecated("/bin/project/{project_id}/restore"))
 def restore_project(project_id: uuid.UUID, session: SessionDep, account: LeadAccount, response: Response) -> ProjectOut:
-    """Bring an archived project back."""
+    """Restore an archived project."""
     return _answer(session, projects.archive_project(session, account, project_id, is_archived=False), response)
 
 
@@ -103,7 +103,7 @@ def list_project_sequences(
 def add_project_sequence(
     project_id: uuid.UUID, sequence_id: uuid.UUID, session: SessionDep, account: LeadAccount
 ) -> None:
-    """Take a recording into a project."""
+    """Add a recording to a project."""
     project = projects.get_project(session, project_id, working=True, hold=True)
     projects.add_recording(session, account, project, get_sequence(session, sequence_id))
 
@@ -112,7 +112,7 @@ def add_project_sequence(
 def remove_project_sequence(
     project_id: uuid.UUID, sequence_id: uuid.UUID, session: SessionDep, account: LeadAccount
 ) -> None:
-    """Take a recording out of a project, if nothing of it is assigned there."""
+    """Remove a recording from a project, if nothing of it is assigned there."""
     project = projects.get_project(session, project_id, working=True, hold=True)
     projects.remove_recording(session, account, project, sequence_id)
 

@@ -75,7 +75,7 @@ def delete_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) ->
     "/tracks/{track_id}/restore", responses=error_responses(404, 409), **deprecated("/bin/track/{track_id}/restore")
 )
 def restore_track(track_id: uuid.UUID, session: SessionDep, lead: LeadAccount) -> TrackOut:
-    """Bring a deleted track back."""
+    """Restore a deleted track."""
     record_act(session, lead.id, "track.restore", "track", track_id)
     return describe_tracks(session, [service.restore_track(session, track_id)])[0]
 
@@ -113,7 +113,7 @@ def get_track_joints(track: SeenTrack, storage: StorageDep, camera: str | None =
 def get_track_overlay(
     track: SeenTrack, camera: str, frame: FramePath, storage: StorageDep, overlays: OverlaysDep
 ) -> FileResponse:
-    """The meshes of one frame as the camera sees them, on transparent ground. Neither a track nor this changes ever."""
+    """The meshes of one frame as the camera sees them, on transparent ground. It never changes."""
     folder = storage.folder("tracks", track.id)
     path = overlays.find(folder, storage.folder("sequences", track.sequence_id), frame, camera)
     return FileResponse(path, media_type="image/png", headers={"Cache-Control": IMMUTABLE})
@@ -147,7 +147,7 @@ def download_track_file(
     """A file of the track."""
     path = storage.folder("tracks", track.id) / name
     if not path.is_file():
-        raise NotFoundError(f"The file {name} of this track is gone from the data folder.")
+        raise NotFoundError(f"The file {name} of this track is missing in the data folder.")
     headers = _name_file(session, track, name)
     return FileResponse(path, media_type="application/octet-stream", headers=headers)
 

@@ -84,7 +84,7 @@ def delete_track(session: Session, track_id: uuid.UUID) -> TrackRow:
 
 
 def restore_track(session: Session, track_id: uuid.UUID) -> TrackRow:
-    """Bring a deleted track back."""
+    """Restore a deleted track."""
     track = get_track(session, track_id, deleted=True)
     if track.deleted_at is None:
         raise ConflictError("The track is not deleted.")

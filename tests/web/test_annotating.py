@@ -252,7 +252,7 @@ def test_the_hand_is_turned_swapped_and_carried_on_one_step_of_undo_each(studio,
     page.keyboard.press("Control+b")
     expect(page.get_by_label("Frame", exact=True)).to_have_value("1")
     assert points(frame=1)[:2] == points()[:2]
-    page.get_by_role("button", name="Carry the pose on").click()
+    page.get_by_role("button", name="Copy the pose to the next frames").click()
     page.get_by_role("textbox", name="Up to frame").fill("5")
     page.get_by_role("button", name="Copy to 4 frames").click()
     assert [points(frame=frame) is not None for frame in range(7)] == [True] * 6 + [False]
@@ -328,7 +328,7 @@ def test_an_earlier_version_is_looked_at_and_brought_back(studio, recording, ope
     expect(versions.get_by_role("listitem")).to_have_count(3)
     versions.get_by_role("button").nth(2).click()
     screenshots.take(page, "13-history")
-    page.get_by_role("button", name="Bring revision 1 back").click()
+    page.get_by_role("button", name="Restore revision 1").click()
     expect(versions.get_by_role("listitem")).to_have_count(4)
     expect(versions.get_by_role("listitem").first).to_contain_text("as in revision 1 again")
     [stored] = find_annotations(studio, recording)

@@ -47,7 +47,7 @@ def test_a_board_is_chosen_films_are_sent_checked_and_calibrated_and_a_recording
     expect(problems).to_contain_text("cam0: two cameras have this name")
     page.get_by_label("Name of the camera of cam1.avi").fill("cam1")
     expect(problems).to_have_count(0)
-    page.get_by_label("At most out of step, s").fill("1")
+    page.get_by_label("Largest offset, s").fill("1")
     page.get_by_label("Name of the calibration").fill("Rig of the test")
     assert not find_faults(page)
     screenshots.take(page, "70-new-calibration")
@@ -55,7 +55,7 @@ def test_a_board_is_chosen_films_are_sent_checked_and_calibrated_and_a_recording
 
     page.wait_for_url(re.compile(r"/calibrations/[0-9a-f-]{36}$"))
     calibration = page.url.rsplit("/", 1)[1]
-    refusal = page.get_by_role("region", name="One thing must be mended")
+    refusal = page.get_by_role("region", name="One thing must be fixed")
     expect(refusal).to_contain_text("a marker measures 70 mm")
     expect(page.get_by_role("button", name="Calibrate", exact=True)).to_be_disabled()
     board.get_by_label("Marker, mm").fill("45")

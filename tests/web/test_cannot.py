@@ -102,7 +102,7 @@ def test_a_recording_that_cannot_be_tracked_is_not_offered_to_be(
     page.goto(f"/jobs/{job['id']}")
     expect(page.get_by_role("region", name="What is kept").get_by_text(re.compile("was deleted"))).to_be_visible()
     expect(page.get_by_role("button", name="Try again")).to_be_disabled()
-    expect(page.get_by_text("Nothing was finished yet that could be kept.", exact=False)).to_be_visible()
+    expect(page.get_by_text("No step was finished.", exact=False)).to_be_visible()
     expect(page.get_by_role("button", name="Resume")).to_have_count(0)
     take_both(open_page, screenshots, page, f"job-{scheme}")
     studio.send("POST", f"/sequences/{recording['id']}/restore").raise_for_status()

@@ -182,7 +182,7 @@ def test_what_is_judged_is_on_the_screen_and_a_held_key_judges_once(studio, fres
     wait_for_hand(page, first)
     accept = page.get_by_role("button", name=re.compile("^Accept"))
     page.keyboard.press("a")
-    expect(page.get_by_text("The hand is on its way")).to_be_visible()
+    expect(page.get_by_text("Loading the hand")).to_be_visible()
     expect(accept).to_be_disabled()
     page.keyboard.press("a")
     screenshots.take(page, "curate-waits")

@@ -78,7 +78,7 @@ def annotate(demo: Studio, page: Any, recording: str, frame: int) -> None:
     stored = [one["frame"] for one in demo.get(f"/sequences/{recording}/annotations")["items"]]
     assert stored == sorted([0, 15, 30, 45, frame]), stored
     page.goto(f"/recordings/{recording}/check")
-    expect(page.get_by_role("heading", name="No label looks wrong to what could be checked")).to_be_visible()
+    expect(page.get_by_role("heading", name="No check found a wrong label")).to_be_visible()
 
 
 def track_with(demo: Studio, page: Any, recording: str, model: str) -> None:

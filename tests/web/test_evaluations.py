@@ -107,7 +107,7 @@ def test_two_tracks_are_chosen_compared_and_the_address_holds_it_all(studio, jud
     kept = studio.send("POST", f"/sequences/{recording['id']}/labels/snapshots", json={"name": "Before the review"})
     page.reload()
     labels = page.get_by_role("combobox", name="Labels that judge")
-    expect(labels).to_have_value("Labels of now")
+    expect(labels).to_have_value("Current labels")
     labels.click()
     page.get_by_role("option", name="Snapshot 1: Before the review").click()
     expect(page).to_have_url(re.compile(f"snapshots={kept.json()['id']}"))
@@ -115,7 +115,7 @@ def test_two_tracks_are_chosen_compared_and_the_address_holds_it_all(studio, jud
     page.reload()
     expect(labels).to_have_value("Snapshot 1: Before the review")
     labels.click()
-    page.get_by_role("option", name="Labels of now").click()
+    page.get_by_role("option", name="Current labels").click()
     expect(page).not_to_have_url(re.compile("snapshots="))
 
 

@@ -112,7 +112,7 @@ def test_the_address_holds_what_the_list_is_narrowed_to(
     expect(jobs.get_by_text("Track Batch three")).to_have_count(0)
     screenshots.take(page, "jobs-filtered-light")
     page.get_by_label("Search jobs by recording").fill("nothing like it")
-    expect(page.get_by_role("heading", name="No job is like that")).to_be_visible()
+    expect(page.get_by_role("heading", name="No job matches")).to_be_visible()
     page.get_by_role("button", name="Show all").click()
     assert "search" not in page.url
     page.goto(f"/jobs/{job['id']}")

@@ -53,8 +53,8 @@ def test_the_worst_label_comes_first_and_can_be_found_right(studio, labelled, op
     page.get_by_text(re.compile(r"^Found right \(1\)")).click()
     expect(page).to_have_url(re.compile("show=right"))
     expect(items).to_have_count(1)
-    items.first.get_by_role("button", name="Bring back").click()
-    expect(page.get_by_role("heading", name="Nothing was put away")).to_be_visible()
+    items.first.get_by_role("button", name="Restore").click()
+    expect(page.get_by_role("heading", name="Nothing was dismissed")).to_be_visible()
 
 
 def test_keys_walk_to_the_mistake_and_mending_it_clears_the_flag(
@@ -168,7 +168,7 @@ def test_without_anything_to_go_by_the_queue_says_what_to_do(recording, open_pag
 
     page = open_page()
     page.goto(f"/recordings/{recording['id']}/check?show=frames")
-    expect(page.get_by_role("heading", name="No frame stands in the queue")).to_be_visible()
+    expect(page.get_by_role("heading", name="The queue is empty")).to_be_visible()
     expect(page.get_by_text("The hand detector has not looked through this recording.")).to_be_visible()
     page.get_by_role("link", name="Track it, or find its hands").click()
     expect(page).to_have_url(re.compile(f"/recordings/{recording['id']}$"))

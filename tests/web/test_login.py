@@ -411,7 +411,7 @@ def test_logging_out_says_what_waits_and_when_it_did_not_succeed(
     dialog.get_by_role("button", name="Stay").click()
     expect(dialog).to_have_count(0)
     leave()
-    dialog.get_by_role("button", name="Log out all the same").click()
+    dialog.get_by_role("button", name="Log out anyway").click()
     log_in(page, "Anna")
     page.unroute("**/annotations/cam0/12/right*")
     page.goto(f"/recordings/{lab.recording_id}/annotate?frame=12")

@@ -328,7 +328,7 @@ def test_files_that_cannot_be_imported_get_a_report_that_says_what_to_do(studio,
     page.locator("main h1, main h2").first.wait_for()
     page.get_by_test_id("choose-files").first.set_input_files(str(archive))
     expect(page.get_by_role("heading", name="Import report")).to_be_visible()
-    expect(page.get_by_text(re.compile("must be mended"))).to_be_visible()
+    expect(page.get_by_text(re.compile("must be fixed"))).to_be_visible()
     expect(page.get_by_text("found 1 file (txt)")).to_be_visible()
     expect(page.get_by_role("button", name="Store the recording")).to_have_count(0)
     screenshots.take(page, "10-refused")

@@ -57,7 +57,7 @@ def test_a_person_looks_takes_the_cameras_and_puts_those_of_before_back(studio, 
     assert after != before and after[0] == before[0]
 
     page.reload()
-    part.get_by_role("button", name="Put the cameras of before back").click()
+    part.get_by_role("button", name="Restore the previous cameras").click()
     expect(part.get_by_role("status")).to_contain_text("The cameras of before were put back")
     assert find_places(studio, knocked) == before
     assert find_faults(page) == []

@@ -176,7 +176,7 @@ def test_a_unit_is_said_beside_a_hand_before_anything_is_stored_and_corrected_af
     page.goto("/bin?kind=scan")
     page.get_by_role("button", name="Delete own_unit for good").click()
     erasing = page.get_by_role("dialog", name="Delete for good?")
-    expect(erasing).to_contain_text("The scan own_unit goes, and nothing can bring it back.")
+    expect(erasing).to_contain_text("The scan own_unit is deleted, and cannot be restored.")
     expect(erasing.get_by_role("list", name="What goes")).to_contain_text("of files")
     screenshots.take(page, "bin-delete-for-good")
     erasing.get_by_role("button", name="Keep it").click()
@@ -198,7 +198,7 @@ def test_the_list_is_narrowed_and_the_address_holds_how(scans, open_page):
     expect(page.get_by_role("row")).to_have_count(2)
     page.wait_for_url(re.compile("search=flat"))
     page.get_by_label("Filter scans by name").fill("nothing of that name")
-    page.get_by_text("No scan is like that").wait_for()
+    page.get_by_text("No scan matches").wait_for()
 
 
 def test_one_stroke_crops_a_scan_and_can_be_taken_back_before_and_after_it_is_saved(

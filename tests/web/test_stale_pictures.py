@@ -115,7 +115,7 @@ def test_nothing_is_changed_in_a_picture_that_is_not_on_the_screen(
     expect(page.get_by_label("Frame", exact=True)).to_have_value("10")
     assert picture.element.get_attribute("data-drawn") == "0", "the picture of frame 10 has not come"
     expect(note_of(page)).to_contain_text("Waiting for the picture of frame 10")
-    expect(note_of(page)).to_contain_text("That was not taken")
+    expect(note_of(page)).to_contain_text("That had no effect")
     expect(page.get_by_test_id("next-click")).to_contain_text("Not taken: the picture of frame 10 is on its way")
     screenshots.take(page, "stale-picture")
     picture.click(200, 200, button="right")

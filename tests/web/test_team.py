@@ -191,7 +191,7 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     expect(page.get_by_role("group", name="Comments")).to_contain_text("The wrist is lower.")
     page.get_by_label("Colour of frame 1").focus()
     page.keyboard.press("Alt+r")
-    reason = review.get_by_role("textbox", name="What is to be changed")
+    reason = review.get_by_role("textbox", name="What should be changed")
     expect(reason).to_be_focused()
     with page.expect_response("**/assignments/*/comments"):
         comment.fulfill(response=answer)
@@ -405,6 +405,6 @@ def test_a_page_that_only_leads_may_use_says_so_and_offers_a_way_on(join, open_a
     page.wait_for_url("**/calibrations")
     assert refused == []
     page.goto("/people")
-    page.get_by_role("heading", name="This is not open to you now").wait_for()
+    page.get_by_role("heading", name="You cannot open this now").wait_for()
     page.get_by_role("link", name="To the recordings", exact=True).click()
     page.wait_for_url("**/recordings")

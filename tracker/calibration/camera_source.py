@@ -118,7 +118,7 @@ def open_source(name: str, path: Path, fps: float | None = None) -> CameraSource
     if path.is_dir():
         images = _list(path, COLOR_SUFFIXES)
         if not images:
-            raise CalibrationError(f"{name}: {path} holds no images ({', '.join(COLOR_SUFFIXES)}) and is no video.")
+            raise CalibrationError(f"{name}: {path} holds no images ({', '.join(COLOR_SUFFIXES)}) and is not a video.")
         return CameraSource(name, path, tuple(images), fps or 0.0, len(images))
     told, promised = VideoFile(path.parent, path.name).read_header()
     return CameraSource(name, path, (), told or fps or USUAL_FPS, promised)

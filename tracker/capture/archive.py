@@ -82,7 +82,7 @@ def _check_directory_size(archive: Path, limits: ArchiveLimits) -> None:
         at = tail.rfind(b"PK\x05\x06")
         if at < 0 or len(tail) < at + 22:
             hint = "" if length else " (it is empty)"
-            raise ImportRefusedError(f"{archive.name}: is no zip archive{hint}; pack the folder as .zip.")
+            raise ImportRefusedError(f"{archive.name}: is not a zip archive{hint}; pack the folder as .zip.")
         size = struct.unpack_from("<I", tail, at + 12)[0]
         if at >= 20 and tail[at - 20 : at - 16] == b"PK\x06\x07":
             file.seek(min(struct.unpack_from("<Q", tail, at - 12)[0], length))
@@ -90,7 +90,7 @@ def _check_directory_size(archive: Path, limits: ArchiveLimits) -> None:
             if len(record) == 56 and record.startswith(b"PK\x06\x06"):
                 size = struct.unpack_from("<Q", record, 40)[0]
     if size > limits.directory_bytes:
-        raise ImportRefusedError(f"{archive.name}: its table of contents has {size} bytes; that is no recording.")
+        raise ImportRefusedError(f"{archive.name}: its table of contents has {size} bytes; this is not a recording.")
 
 
 def _check_entries(file: zipfile.ZipFile, archive: Path, limits: ArchiveLimits) -> list[zipfile.ZipInfo]:
@@ -173,10 +173,14 @@ def _extract(file: zipfile.ZipFile, entry: zipfile.ZipInfo, workplace: Path) -> 
         for chunk in _read(file, entry):
             written += len(chunk)
             if written > entry.file_size:
-                raise ImportRefusedError(f"{entry.filename}: gives more than the {entry.file_size} bytes it promises.")
+                raise ImportRefusedError(
+                    f"{entry.filename}: unpacks to more than the {entry.file_size} bytes that its header states."
+                )
             output.write(chunk)
     if written != entry.file_size:
-        raise ImportRefusedError(f"{entry.filename}: gives {written} of the {entry.file_size} bytes it promises.")
+        raise ImportRefusedError(
+            f"{entry.filename}: unpacks to {written} of the {entry.file_size} bytes that its header states."
+        )
 
 
 def _read(file: zipfile.ZipFile, entry: zipfile.ZipInfo) -> Iterator[bytes]:

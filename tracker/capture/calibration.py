@@ -63,10 +63,10 @@ def check_rigid(what: str, T: Array) -> None:
         raise CalibrationError(f"{what}: the last row is {T[3].tolist()}; needed [0, 0, 0, 1].")
     R = T[:3, :3]
     if np.abs(R).max() > 2:
-        raise CalibrationError(f"{what}: the upper left 3x3 is no rotation (it scales).")
+        raise CalibrationError(f"{what}: the upper left 3x3 is not a rotation (it scales).")
     error = float(np.abs(R.T @ R - np.eye(3)).max())
     if error > ORTHONORMAL_TOLERANCE:
-        raise CalibrationError(f"{what}: the upper left 3x3 is no rotation (off by {error:.3g}).")
+        raise CalibrationError(f"{what}: the upper left 3x3 is not a rotation (off by {error:.3g}).")
     if np.linalg.det(R) < 0:
         raise CalibrationError(f"{what}: the upper left 3x3 mirrors; needed a rotation.")
     if np.abs(T[:3, 3]).max() > 1000:

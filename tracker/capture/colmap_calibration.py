@@ -49,7 +49,7 @@ def parse_colmap(cameras: bytes, images: bytes, file: str) -> list[VideoCamera]:
             known = found.setdefault(name, camera)
             if np.abs(known.R - camera.R).max() > 1e-3 or np.abs(known.t - camera.t).max() > 1e-3 * _size(known):
                 raise CalibrationError(
-                    f"{file}: {name[:60]} has several images from different places; needed one that stands."
+                    f"{file}: {name[:60]} has several images from different places; needed a camera that stands still."
                 )
             if len(found) > MAX_COLMAP_CAMERAS:
                 raise CalibrationError(

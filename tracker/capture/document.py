@@ -128,7 +128,7 @@ def parse_json(data: bytes, file: str, error: type[TrackerError]) -> Node:
     """Strict JSON: UTF-8, no NaN or Infinity, no endless nesting."""
 
     def refuse(constant: str) -> NoReturn:
-        raise ValueError(f"it holds {constant}, which is no number")
+        raise ValueError(f"it holds {constant}, which is not a number")
 
     with reading(error, file, "valid JSON in UTF-8"):
         return Node(json.loads(data.decode("utf-8-sig"), parse_constant=refuse), file, "", error)

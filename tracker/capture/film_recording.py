@@ -36,7 +36,7 @@ def open_recording(path: Path, options: ImportOptions | None = None) -> Sequence
     is_stored = path.is_dir() and (path / SEQUENCE_FILE).exists()
     if not is_film and (is_stored or not path.is_dir() or not SyncedVideos().recognises(list_files(path))):
         if told := ", ".join(options.to_json()):
-            raise ImportRefusedError(f"{path}: holds no videos that anything could be told of; leave out {told}.")
+            raise ImportRefusedError(f"{path}: holds no videos. Leave out {told}, which are for videos only.")
         return load_sequence(path)
     return open_films(path, options)
 

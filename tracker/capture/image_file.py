@@ -72,9 +72,13 @@ def read_header(data: bytes, what: str) -> ImageHeader:
         found = "is empty" if not data else f"begins with {data[:8].hex(' ')}"
         raise FrameError(f"{what}: {found}; needed a PNG or JPEG image.")
     if not (1 <= header.width <= MAX_SIDE and 1 <= header.height <= MAX_SIDE):
-        raise FrameError(f"{what}: says it is {header.width}x{header.height} px; at most {MAX_SIDE} a side are read.")
+        raise FrameError(
+            f"{what}: its header says {header.width}x{header.height} px; at most {MAX_SIDE} a side are read."
+        )
     if header.width * header.height > MAX_PIXELS:
-        raise FrameError(f"{what}: says it has {header.width * header.height} pixels; at most {MAX_PIXELS} are read.")
+        raise FrameError(
+            f"{what}: its header says {header.width * header.height} pixels; at most {MAX_PIXELS} are read."
+        )
     return header
 
 

@@ -110,7 +110,7 @@ class ImageFiles:
     def _probe_file(self, name: str) -> ImageHeader:
         path = self.root / name
         if not is_inside(path, self.root) or not path.is_file():
-            raise FrameError(f"{name}: is no plain file inside the recording.")
+            raise FrameError(f"{name}: is not a plain file inside the recording.")
         with path.open("rb") as file:
             head = file.read(_HEAD_BYTES)
             size = file.seek(0, 2)

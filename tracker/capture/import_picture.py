@@ -32,7 +32,7 @@ def read_import_picture(source: Path | str, name: str) -> npt.NDArray[np.uint8] 
         raise FrameError(f"{file[:200]!r} {fault}.")
     path = root / file
     if not is_inside(path, root) or not path.is_file():
-        raise FrameError(f"{file[:200]}: is no file of this import.")
+        raise FrameError(f"{file[:200]}: is not a file of this import.")
     if match and file != name:
         return VideoFile(root, file).read_frame(int(match[2]))
     try:

@@ -60,7 +60,7 @@ def list_files(source: Path) -> ListedFiles:
             elif path.is_symlink() and not is_inside(path, root):
                 refused.append(f"{base}{name} is a link out of the folder")
             elif not path.is_file():
-                refused.append(f"{base}{name} is no plain file")
+                refused.append(f"{base}{name} is not a plain file")
             else:
                 names.append(base + name)
         if len(names) > MAX_FILES:

@@ -222,7 +222,9 @@ def find_unit(path: Path | str, scan: Scan, metres_per_unit: float | None) -> fl
         return metres_per_unit
     if is_certain(size):
         return next(iter(find_possible_units(size).values()))
-    found = f"a size of {size:.4g} units (longest side), which is no hand in metres, millimetres, centimetres or inches"
+    found = (
+        f"a size of {size:.4g} units (longest side), which is not a hand in metres, millimetres, centimetres or inches"
+    )
     if possible := find_possible_units(size):
         lengths = " or ".join(f"{write_length(size * metres)} (1 unit = 1 {name})" for name, metres in possible.items())
         found = f"a size of {size:.4g} units (longest side), which may be {lengths} or something else"

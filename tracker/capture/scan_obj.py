@@ -39,7 +39,7 @@ def _read_rows(path: Path, lines: list[bytes]) -> npt.NDArray[np.float64]:
     try:
         rows = np.array(b" ".join(lines).split(), dtype=np.bytes_).astype(np.float64)
     except ValueError as error:
-        raise ScanError(path, f"a coordinate that is no number ({str(error)[:60]})", NEEDED) from error
+        raise ScanError(path, f"a coordinate that is not a number ({str(error)[:60]})", NEEDED) from error
     if width < 3 or len(rows) != width * len(lines):
         raise ScanError(path, "points with different numbers of values", NEEDED)
     return rows.reshape(-1, width)

@@ -136,7 +136,7 @@ def _read_table(path, element: Element, data: bytes, words, order: str, place: i
     try:
         values = np.array(words[place:end], dtype=np.bytes_).astype(np.float64).reshape(element.count, -1)
     except ValueError as error:
-        raise ScanError(path, f"a value that is no number ({str(error)[:60]})", NEEDED) from error
+        raise ScanError(path, f"a value that is not a number ({str(error)[:60]})", NEEDED) from error
     table = np.empty(element.count, np.dtype([(name, kind) for name, kind, _ in element.properties]))
     with np.errstate(invalid="ignore", over="ignore"):
         for k, name in enumerate(table.dtype.names or ()):

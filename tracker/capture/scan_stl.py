@@ -35,4 +35,4 @@ def _read_ascii(path: Path, data: bytes) -> np.ndarray:
     try:
         return np.array(lines).astype(np.float64).reshape(-1, 3, 3)
     except ValueError as error:
-        raise ScanError(path, f"a vertex that is no number ({error})", NEEDED) from error
+        raise ScanError(path, f"a vertex that is not a number ({error})", NEEDED) from error

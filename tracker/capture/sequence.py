@@ -163,7 +163,7 @@ def load_sequence(folder: Path | str) -> Sequence:
     """The recording in a folder. Images are not looked at; `check_import` does that."""
     folder = Path(folder)
     if not folder.is_dir():
-        raise SequenceError(f"{folder}: is no folder; needed a recording folder with a {SEQUENCE_FILE}.")
+        raise SequenceError(f"{folder}: is not a folder; needed a recording folder with a {SEQUENCE_FILE}.")
     path = folder / SEQUENCE_FILE
     if not is_inside(path, folder):
         raise SequenceError(f"{path}: leads out of the recording.")

@@ -70,4 +70,4 @@ def load_truth(path: Path) -> Truth:
         return Truth(**values)
     except AssertionError as error:
         shapes = ", ".join(f"{name} {np.shape(value)}" for name, value in values.items())
-        raise SequenceError(f"{path}: the shapes in it do not belong together: {shapes}.") from error
+        raise SequenceError(f"{path}: the shapes in it do not match: {shapes}.") from error

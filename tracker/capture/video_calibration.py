@@ -68,7 +68,7 @@ def to_array(value: Any, what: str) -> Array:
             raise ValueError
         array = array.astype(np.float64)
     except (ValueError, TypeError, OverflowError):
-        raise CalibrationError(f"{what}: is no array of numbers.") from None
+        raise CalibrationError(f"{what}: is not an array of numbers.") from None
     if not np.isfinite(array).all():
         raise CalibrationError(f"{what}: holds NaN or infinity.")
     return array
@@ -88,7 +88,7 @@ def make_camera(name: str, what: str, values: dict[str, Any]) -> VideoCamera:
         raise CalibrationError(f"{what}: R has shape {R.shape}; needed 3x3 or a rotation vector.")
     error = float(np.abs(R.T @ R - np.eye(3)).max())
     if error > ORTHONORMAL_TOLERANCE or np.linalg.det(R) < 0:
-        raise CalibrationError(f"{what}: R is no rotation (off by {error:.3g}, determinant {np.linalg.det(R):.3g}).")
+        raise CalibrationError(f"{what}: R is not a rotation (off by {error:.3g}, determinant {np.linalg.det(R):.3g}).")
     t = to_array(values.get("t", np.zeros(3)), f"{what}: t").ravel()
     if t.shape != (3,):
         raise CalibrationError(f"{what}: t has {t.size} numbers; needed 3.")

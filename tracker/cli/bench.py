@@ -28,7 +28,7 @@ CASES = {
 
 def add_command(subparsers: argparse._SubParsersAction) -> argparse._SubParsersAction:
     """Add `bench`; gives what further subjects are added to."""
-    parser = subparsers.add_parser("bench", help="where the time goes", description="Measure speed on this machine.")
+    parser = subparsers.add_parser("bench", help="measure speed", description="Measure speed on this machine.")
     subjects = parser.add_subparsers(required=True, metavar="SUBJECT")
     _add_tracking(subjects)
     add_registration(subjects)
@@ -56,7 +56,7 @@ def _add_tracking(subjects: argparse._SubParsersAction) -> None:
 
 def bench(args: argparse.Namespace) -> dict[str, Any]:
     if args.frames < 10:
-        raise TrackerError(f"--frames {args.frames}: a median needs at least 10.")
+        raise TrackerError(f"--frames is {args.frames}; needed at least 10.")
     return {
         case: measure(
             _perform(case, args.twin, args.frames),

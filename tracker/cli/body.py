@@ -36,7 +36,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     )
     pose.add_argument("motion", type=Path, metavar="MOTION", help="the motion, .npz")
     pose.add_argument("--to", type=Path, required=True, metavar="OUT", help="a folder for obj and ply, a file for glb")
-    pose.add_argument("--format", choices=("obj", "ply", "glb"), help="(glb where OUT ends so, else obj)")
+    pose.add_argument(
+        "--format", choices=("obj", "ply", "glb"), help="obj, ply or glb (glb if OUT ends in .glb, otherwise obj)"
+    )
     pose.add_argument("--frames", type=parse_range, default=(None, None), metavar="A:B", help="frames A to B - 1 (all)")
     _add_population(pose, None)
     add_json(pose)
@@ -49,7 +51,7 @@ def _add_population(parser: argparse.ArgumentParser, default: str | None) -> Non
         "--population",
         choices=("neutral", "male", "female"),
         default=default,
-        help=f"whose mean and directions of shape ({from_file})",
+        help=f"population of the body ({from_file})",
     )
 
 

@@ -48,18 +48,18 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         help="known lenses, from a calibration with the same names; kept as they are",
     )
     parser.add_argument(
-        "--no-offset", action="store_true", help="frames of one number show one moment; look for no time offset"
+        "--no-offset",
+        action="store_true",
+        help="frames with the same number show the same moment; do not look for time offsets",
     )
-    parser.add_argument(
-        "--max-offset", type=float, default=10.0, metavar="SECONDS", help="how far videos may be out of step (10)"
-    )
+    parser.add_argument("--max-offset", type=float, default=10.0, metavar="SECONDS", help="largest time offset, s (10)")
     parser.add_argument("--fps", type=float, metavar="N", help="frames a second of folders of images")
     parser.add_argument(
         "--left-out",
         type=float,
         default=0.2,
         metavar="SHARE",
-        help="share of the time to judge by, not to fit to (0.2)",
+        help="share of the time used to judge the cameras, not to fit them (0.2)",
     )
     add_json(parser)
     parser.set_defaults(run=run_guarded(calibrate, show))

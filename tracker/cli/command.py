@@ -57,7 +57,7 @@ def parse_range(text: str) -> tuple[int | None, int | None]:
     except ValueError:
         bounds = None
     if bounds is None or not colon or any(bound is not None and bound < 0 for bound in bounds):
-        raise argparse.ArgumentTypeError(f"{text!r} is no range of frames; write A:B for the frames A to B - 1")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a range of frames; write A:B for the frames A to B - 1")
     return bounds
 
 

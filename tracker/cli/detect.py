@@ -19,7 +19,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "detect",
         help="find the hands in a recording's images",
         description="Find the hands in the colour, grey and infrared images of a recording, followed from frame to "
-        "frame, and write their joints as an annotations.json whose items have a score besides.",
+        "frame, and write their joints as an annotations.json whose items also have a score.",
     )
     add_recording(parser, "RECORDING")
     parser.add_argument(
@@ -29,7 +29,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "--frames", type=parse_range, default=(None, None), metavar="A:B", help="frames A to B - 1 (all)"
     )
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help=f"where the joints go ({DEFAULT_FILE} in the recording's folder)"
+        "--out", type=Path, metavar="FILE", help=f"file for the joints ({DEFAULT_FILE} in the recording's folder)"
     )
     add_json(parser)
     parser.set_defaults(run=run_guarded(detect, show))

@@ -33,9 +33,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "--sources",
         default="independent",
         metavar="WORDS",
-        help="annotations: which joints judge, by where they came from: independent (no track had a part in them), "
-        "all, or some of hand, unknown, import, triangulation, interpolation, copy, fit, detector, track with commas "
-        "between; default: independent",
+        help="annotations: which joints count, by their source: independent (no track had a part in them), "
+        "all, or some of hand, unknown, import, triangulation, interpolation, copy, fit, detector, track, separated "
+        "by commas; default: independent",
     )
     parser.add_argument("--truth", type=Path, metavar="FILE", help="a truth.npz of `handloom synthesize`")
     parser.add_argument(

@@ -40,7 +40,7 @@ def load_hands(
         found = models[side].hand
         if found is None or found.side != side:
             raise TrackerError(
-                f"{path}: is {'no hand' if found is None else f'a {found.side} hand'}; needed a {side} hand."
+                f"{path}: is {'not a hand' if found is None else f'a {found.side} hand'}; needed a {side} hand."
             )
     return models
 

@@ -18,16 +18,16 @@ from tracker.errors import TrackerError
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "model-loop",
-        help="register scans and train a hand model, again and again",
+        help="register scans and train a hand model, in several rounds",
         description="The loop of [R17] section 3.2: register all scans, take the registrations that are good or "
         "accepted, train a model, register again with that model, train again. OUT/round_1, round_2, ... get "
-        "registrations, model.npz and model.json. What is there already is kept: an interrupted run goes on where it "
+        "registrations, model.npz and model.json. What is there already is kept: an interrupted run continues where it "
         "stopped.",
     )
     parser.add_argument("scans", type=Path, nargs="+", metavar="SCAN", help="files, or folders with scans")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--rounds", type=int, default=2, metavar="N", help="of registering and training (2)")
-    parser.add_argument("--model", type=Path, metavar="FILE", help="to begin with (default: the untrained hand)")
+    parser.add_argument("--rounds", type=int, default=2, metavar="N", help="rounds of registering and training (2)")
+    parser.add_argument("--model", type=Path, metavar="FILE", help="the first hand model (default: the untrained hand)")
     parser.add_argument("--metres-per-unit", type=float, metavar="M", help=UNIT_HELP)
     parser.add_argument("--processes", type=int, default=1, metavar="N", help="scans at a time (1)")
     add_training_options(parser)

@@ -14,7 +14,7 @@ PATH_HELP = "a recording folder, with its sequence.json; or a folder of videos, 
 NUMBERS = {
     "fps": "frames per second, where the videos differ",
     "fx": "of one video without a calibration: focal length along x, px",
-    "fy": "focal length along y, px; as --fx when left out",
+    "fy": "focal length along y, px; equal to --fx when left out",
     "cx": "principal point x, px",
     "cy": "principal point y, px",
     "world-unit-m": "metres per unit of the calibration, such as the side of a square",
@@ -31,7 +31,10 @@ def add_recording(parser: argparse.ArgumentParser, metavar: str) -> None:
         "--hands", type=lambda text: tuple(text.split(",")), metavar="right,left", help="hands that are seen (right)"
     )
     videos.add_argument(
-        "--allow-gaps", action="store_true", default=None, help="videos of different length: to the end of the shortest"
+        "--allow-gaps",
+        action="store_true",
+        default=None,
+        help="accept videos of different length; use the frames that all have",
     )
 
 

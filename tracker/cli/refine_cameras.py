@@ -12,17 +12,17 @@ from tracker.cli.command import add_json, run_guarded
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "refine-cameras",
-        help="better places of a recording's cameras from its labels",
-        description="Move the cameras of a recording so that joints marked in two or more of them agree, and show how "
-        "well they agreed before and do after, also on labels that were left out. Nothing is changed without --take.",
+        help="correct a recording's cameras from its labels",
+        description="Move the cameras of a recording so that joints marked in two or more of them agree, and show the "
+        "agreement before and after, also on labels that were left out. Nothing is changed without --take.",
     )
     parser.add_argument("recording", type=Path, metavar="RECORDING", help="a recording folder")
     parser.add_argument(
         "--annotations", type=Path, metavar="FILE", help="labels (by default the recording's own annotations.json)"
     )
-    parser.add_argument("--lenses", action="store_true", help="focal lengths and distortion may change too")
+    parser.add_argument("--lenses", action="store_true", help="let focal lengths and distortion change too")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--take", action="store_true", help="give the recording these cameras; those it had are kept")
+    what.add_argument("--take", action="store_true", help="give the recording these cameras; the old ones are kept")
     what.add_argument("--put-back", action="store_true", help="give it the cameras it had before the last change")
     add_json(parser)
     parser.set_defaults(run=run_guarded(refine, show))

@@ -1,4 +1,4 @@
-"""`handloom register`: lay a hand model's mesh onto 3D scans."""
+"""`handloom register`: register a hand model to 3D scans."""
 
 from __future__ import annotations
 
@@ -30,22 +30,22 @@ NO_SCANS = ("truth.npz", "registration.npz", "registration.ply", "registration_s
 """Files of other meaning that may lie among scans."""
 
 UNIT_HELP = (
-    "unit of the files, where no scans.json says it (metres and millimetres are told by the size; what may be another "
-    "unit is refused without this)"
+    "unit of the files, where no scans.json says it (metres and millimetres are recognised by the size; other units "
+    "must be given)"
 )
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "register",
-        help="lay a hand model's mesh onto 3D scans",
+        help="register a hand model to 3D scans",
         description="Register the mesh of a hand model to each scan, without a manual start, and judge the result. For "
         "each scan, OUT/NAME gets registration.npz, registration.ply and registration_surface.ply. Scans whose "
-        "registration is there already, with the same scan and model, are skipped: an interrupted run goes on where "
+        "registration is there already, with the same scan and model, are skipped: an interrupted run continues where "
         "it stopped.",
     )
     parser.add_argument(
-        "scans", type=Path, nargs="+", metavar="SCAN", help="PLY, OBJ, STL or npz; a folder stands for all in it"
+        "scans", type=Path, nargs="+", metavar="SCAN", help="PLY, OBJ, STL or npz; a folder means all scans in it"
     )
     parser.add_argument("--model", type=Path, metavar="FILE", help="the hand model (default: the untrained hand)")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="the folder for the registrations")
@@ -110,7 +110,9 @@ def name_scans(paths: list[Path]) -> Iterator[tuple[Path, str]]:
     for path in paths:
         name = f"{path.resolve().parent.name}_{path.stem}" if is_shared else path.stem
         if name in taken:
-            raise TrackerError(f"{path} and {taken[name]} would share the name {name}; give them apart.")
+            raise TrackerError(
+                f"{path} and {taken[name]} would share the name {name}; register them into separate folders."
+            )
         taken[name] = path
         yield path, name
 

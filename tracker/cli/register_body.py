@@ -1,4 +1,4 @@
-"""`handloom register-body`: lay the body with hands onto 3D scans of people."""
+"""`handloom register-body`: register the body with hands to 3D scans of people."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "register-body",
-        help="lay the body with hands onto 3D scans of people",
+        help="register the body with hands to 3D scans of people",
         description="Register the body with both hands to each scan of a whole person, without a manual start, and "
         "judge the result ([R17] section 4). For each scan, OUT/NAME gets body.npz and body.ply. Scans that were "
-        "registered already, with the same points and model, are skipped: an interrupted run goes on where it stopped.",
+        "registered already, with the same points and model, are skipped, so an interrupted run continues.",
     )
     parser.add_argument(
-        "scans", type=Path, nargs="+", metavar="SCAN", help="PLY, OBJ, STL or npz; a folder stands for all in it"
+        "scans", type=Path, nargs="+", metavar="SCAN", help="PLY, OBJ, STL or npz; a folder means all scans in it"
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="the folder for the registrations")
     parser.add_argument("--model", type=Path, metavar="FILE", help="a body of SMPL-H's class, .npz or .pkl")
     parser.add_argument(
-        "--population", choices=("neutral", "male", "female"), default="neutral", help="of the body that comes along"
+        "--population", choices=("neutral", "male", "female"), default="neutral", help="population of the bundled body"
     )
     parser.add_argument(
-        "--metres-per-unit", type=float, metavar="M", help="unit of the files (told by the size of a person)"
+        "--metres-per-unit", type=float, metavar="M", help="unit of the files (recognised by the size of a person)"
     )
     parser.add_argument("--again", action="store_true", help="register finished scans again")
     add_json(parser)

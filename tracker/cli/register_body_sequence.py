@@ -1,4 +1,4 @@
-"""`handloom register-body-sequence`: lay a body with hands onto the scans of a moving person."""
+"""`handloom register-body-sequence`: register the body with hands to scans of a moving person."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from tracker.errors import TrackerError, say_count
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "register-body-sequence",
-        help="lay a body with hands onto the scans of a moving person",
+        help="register the body with hands to scans of a moving person",
         description="Register the scans of one person, frame after frame in the order of their names, to one template "
         "([R17] section 4.3): first the person's own template from the first frames, then every frame from the one "
         "before. OUT gets template.npz, frames/NNNNNN/body.npz and body.ply, motion.npz (156 numbers a frame) and "
-        "summary.json. A stopped or killed run goes on behind its last frame. Hands that a scan does not show are "
-        "guessed, and said so.",
+        "summary.json. A stopped or killed run continues after its last frame. Hands that a scan does not show are "
+        "guessed, and reported as guessed.",
     )
     parser.add_argument("scans", type=Path, nargs="+", metavar="SCAN", help="scans or a folder of them")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
     parser.add_argument("--frames", type=parse_range, default=(None, None), metavar="A:B", help="A to B - 1 (all)")
     parser.add_argument("--model", type=Path, metavar="FILE", help="a body of SMPL-H's class, .npz or .pkl")
     parser.add_argument("--population", choices=("neutral", "male", "female"), default="neutral")
-    parser.add_argument("--metres-per-unit", type=float, metavar="M", help="unit of the files (told by the size)")
+    parser.add_argument("--metres-per-unit", type=float, metavar="M", help="unit of the files (recognised by the size)")
     parser.add_argument("--fps", type=float, default=60.0, help="frames per second (60)")
     parser.add_argument(
-        "--prior", choices=("mixture", "gaussian", "none"), default="mixture", help="of the hands (mixture)"
+        "--prior", choices=("mixture", "gaussian", "none"), default="mixture", help="prior of the hands (mixture)"
     )
-    parser.add_argument("--no-hold", action="store_true", help="without E_r for hands that a scan does not show")
+    parser.add_argument("--no-hold", action="store_true", help="let hands that a scan does not show move (no E_r)")
     parser.add_argument("--no-velocity", action="store_true", help="without the velocity term")
     parser.add_argument("--chunk", type=int, default=0, metavar="N", help="frames of a chunk (all in one)")
     parser.add_argument("--processes", type=int, default=1, metavar="N", help="chunks at a time (1)")

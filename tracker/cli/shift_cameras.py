@@ -16,17 +16,17 @@ REACH_S = 2.0
 def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "shift-cameras",
-        help="recognise and mend cameras that are out of step",
-        description="Make a new recording in which cameras are shifted by whole frames, as far as all have pictures; "
-        "labels go with their pictures, tracks do not, and the old recording stays. Or tell from the motion of "
-        "detected hands how far cameras are out of step: --find.",
+        help="find and correct cameras that are out of step",
+        description="Make a new recording in which cameras are shifted by whole frames and cut to the frames that all "
+        "have. Labels follow their pictures, tracks do not, and the old recording stays. With --find: say from the "
+        "motion of detected hands how far cameras are out of step.",
     )
     parser.add_argument("recording", type=Path, metavar="RECORDING", help="a recording folder")
     parser.add_argument(
         "shifts", nargs="*", metavar="CAMERA=FRAMES", help="such as cam1=+3: a moment is 3 frames later in its video"
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="the new recording, a folder that does not exist yet")
-    parser.add_argument("--find", action="store_true", help="tell how far cameras are out of step, and change nothing")
+    parser.add_argument("--find", action="store_true", help="find how far cameras are out of step, and change nothing")
     parser.add_argument(
         "--detections",
         type=Path,
@@ -51,9 +51,7 @@ def shift(args: argparse.Namespace) -> dict[str, Any]:
             raise ImportRefusedError("--find changes nothing: leave out the shifts and --out.")
         return _find(args, sequence)
     if not args.shifts or args.out is None:
-        raise ImportRefusedError(
-            "Needed CAMERA=FRAMES and --out DIR; --find tells by how much cameras are out of step."
-        )
+        raise ImportRefusedError("Needed CAMERA=FRAMES and --out DIR; --find shows how far cameras are out of step.")
     options = ImportOptions(name=f"{sequence.name} in step"[:200], camera_shifts=" ".join(args.shifts))
     report = run_import(args.recording, args.out, "recording_folder", options)
     return {"out": str(args.out), "frames": report.frame_count, "warnings": list(report.warnings)}
@@ -65,7 +63,7 @@ def _find(args: argparse.Namespace, sequence: Any) -> dict[str, Any]:
     from tracker.cli.detect import DEFAULT_FILE
 
     if len(sequence.cameras) < 2:
-        raise CalibrationError(f"{args.recording}: has one camera, which is in step with itself.")
+        raise CalibrationError(f"{args.recording}: has only one camera; needed two or more.")
     file = args.detections or args.recording / DEFAULT_FILE
     if not file.exists():
         raise CalibrationError(f"{file}: is not there; run `handloom detect {args.recording}` first.")

@@ -40,9 +40,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--frames", type=parse_range, default=(None, None), metavar="A:B", help="frames A to B - 1 of the motion"
     )
-    parser.add_argument("--step", type=int, default=1, help="every so many frames of the motion")
+    parser.add_argument("--step", type=int, default=1, help="use every Nth frame of the motion")
     parser.add_argument("--noise", choices=("structured-light", "none"), default="structured-light")
-    parser.add_argument("--seed", type=int, default=0, help="of the noise")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the noise")
     parser.add_argument(
         "--background", type=float, default=0.0, metavar="M", help="a wall at this depth, m; 0 for none"
     )
@@ -127,5 +127,5 @@ def parse_size(text: str) -> tuple[int, int]:
     """Width and height of `WxH`, px."""
     words = text.lower().split("x")
     if len(words) != 2 or not all(word.isdecimal() and 32 <= int(word) <= 4096 for word in words):
-        raise argparse.ArgumentTypeError(f"{text!r} is no size; needed WIDTHxHEIGHT, 32 to 4096 px each, as 640x480")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size; needed WIDTHxHEIGHT, 32 to 4096 px each, as 640x480")
     return int(words[0]), int(words[1])

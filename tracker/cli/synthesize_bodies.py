@@ -18,17 +18,27 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "synthesize-bodies",
         help="make scans of people with known truth, still or moving",
         description="Make scans of whole people with their hands. OUT gets a PLY and OUT/truth an npz for each. Scans "
-        "that are there already are kept: an interrupted run goes on where it stopped.",
+        "that are there already are kept: an interrupted run continues where it stopped.",
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--people", type=int, default=10, metavar="N", help="so many, each in another pose (10)")
-    parser.add_argument("--first", type=int, default=0, metavar="N", help="number of the first person (0)")
-    parser.add_argument("--seed", type=int, default=0, help="another one makes other poses of the same people (0)")
-    parser.add_argument("--frames", type=int, default=0, metavar="N", help="the first person moves for so many frames")
-    parser.add_argument("--points", type=int, default=150_000, metavar="N", help="of a scan (150000)")
-    parser.add_argument("--noise-mm", type=float, default=0.5, metavar="MM", help="standard deviation (0.5)")
     parser.add_argument(
-        "--missing", type=float, default=None, metavar="SHARE", help="of hands (0), of a motion's frames (0.2)"
+        "--people", type=int, default=10, metavar="N", help="number of people, each in another pose (10)"
+    )
+    parser.add_argument("--first", type=int, default=0, metavar="N", help="number of the first person (0)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the poses (0)")
+    parser.add_argument(
+        "--frames", type=int, default=0, metavar="N", help="make this many scans of the first person in motion"
+    )
+    parser.add_argument("--points", type=int, default=150_000, metavar="N", help="points of a scan (150000)")
+    parser.add_argument(
+        "--noise-mm", type=float, default=0.5, metavar="MM", help="standard deviation of the noise, mm (0.5)"
+    )
+    parser.add_argument(
+        "--missing",
+        type=float,
+        default=None,
+        metavar="SHARE",
+        help="share of hands that are missing (0), or of a motion's frames (0.2)",
     )
     add_json(parser)
     parser.set_defaults(run=run_guarded(synthesize_bodies, show))

@@ -17,9 +17,9 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "synthesize-scans",
         help="make scans of hands with known truth",
-        description="Make scans of hands of 37 people in 51 poses, whose true surface no blend model makes. OUT/scans "
-        "gets a PLY and OUT/truth an npz for each, OUT/scans.json lists them. Scans that are there already are kept: "
-        "an interrupted run goes on where it stopped.",
+        description="Make scans of hands of 37 people in 51 poses, whose true surface no blend model can represent. "
+        "OUT/scans gets a PLY and OUT/truth an npz for each, OUT/scans.json lists them. Scans that are there already "
+        "are kept, so an interrupted run continues.",
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
     parser.add_argument(
@@ -32,18 +32,25 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "--motions",
         type=Path,
         metavar="FOLDER",
-        help="T16's models and motions; then 09-60 is a pose, too: its frame 60",
+        help="T16's models and motions; then 09-60 is a pose too: frame 60 of sequence 09",
     )
     parser.add_argument("--sides", default="right,left", metavar="LIST", help="right, left or right,left (both)")
     parser.add_argument("--repeats", type=int, default=1, metavar="N", help="scans of each pose (1)")
-    parser.add_argument("--seed", type=int, default=0, help="of the first repetition (0)")
-    parser.add_argument("--points", type=int, default=50_000, metavar="N", help="of a scan (50000)")
-    parser.add_argument("--noise-mm", type=float, default=0.2, metavar="MM", help="standard deviation (0.2)")
-    parser.add_argument("--strength", type=float, default=1.0, metavar="X", help="of swelling and sliding skin (1)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the first repetition (0)")
+    parser.add_argument("--points", type=int, default=50_000, metavar="N", help="points of a scan (50000)")
     parser.add_argument(
-        "--forearm", choices=("yes", "no", "half"), default="yes", help="in all scans, in none or in every second"
+        "--noise-mm", type=float, default=0.2, metavar="MM", help="standard deviation of the noise, mm (0.2)"
     )
-    parser.add_argument("--objects", action="store_true", help="a green object in grasps")
+    parser.add_argument(
+        "--strength", type=float, default=1.0, metavar="X", help="strength of swelling and sliding skin (1)"
+    )
+    parser.add_argument(
+        "--forearm",
+        choices=("yes", "no", "half"),
+        default="yes",
+        help="forearm in all scans, in none, or in every second one",
+    )
+    parser.add_argument("--objects", action="store_true", help="put a green object into grasps")
     parser.add_argument("--surfaces", action="store_true", help="keep the true surface of every scan too")
     add_json(parser)
     parser.set_defaults(run=run_guarded(synthesize_scans, show))

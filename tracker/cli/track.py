@@ -19,13 +19,13 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser = subparsers.add_parser(
         "track",
         help="fit hands to every frame of a recording",
-        description="Fit hands to every frame of a recording folder and write track.npz and summary.json. The start is "
-        "the annotation of the first frame where there is one, else what the hand detector sees in the colour image; "
-        "without colour the depth image is searched. Recordings of colour cameras alone, one to sixteen, start and go "
-        "on by what the hand detector sees in every view.",
+        description="Fit hands to every frame of a recording folder and write track.npz and summary.json. A hand "
+        "starts from the annotation of the first frame if there is one, otherwise from the hand detector in the colour "
+        "image; without colour the depth image is searched. Recordings of one to sixteen colour cameras without depth "
+        "use the hand detector in every view.",
     )
     add_recording(parser, "PATH")
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="where the track goes")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the track")
     parser.add_argument(
         "--hand",
         type=parse_hand,
@@ -36,7 +36,7 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "learnt from scans; the default hand otherwise",
     )
     parser.add_argument(
-        "--annotations", type=Path, metavar="FILE", help="instead of the recording's own; 'none' for no start"
+        "--annotations", type=Path, metavar="FILE", help="annotations instead of the recording's own; 'none' for none"
     )
     parser.add_argument(
         "--object",
@@ -49,12 +49,12 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--preset",
         choices=tuple(preset.name for preset in PRESETS),
-        help="options that go together; what is given besides wins: "
+        help="a set of options; options given explicitly override it: "
         + ", ".join(
             f"{preset.name} ({preset.values['terms']}, {preset.values['iterations']} iterations)" for preset in PRESETS
         ),
     )
-    parser.add_argument("--terms", metavar="LO+SC", help="LO with any of S, C, P behind a plus (LO)")
+    parser.add_argument("--terms", metavar="LO+SC", help="LO, or LO+ and any of S, C, P, such as LO+SC (LO)")
     parser.add_argument("--iterations", type=int, metavar="N", help="Gauss-Newton iterations a frame (10)")
     parser.add_argument("--first-iterations", type=int, metavar="N", help="iterations on the first frame (50)")
     parser.add_argument(
@@ -74,15 +74,17 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         type=Path,
         metavar="FILE",
         help="a fingertip detector that `handloom train-detector` wrote (.npz): it looks for fingertips in every "
-        "frame, for terms with S; otherwise the one that comes along looks where a frame goes badly. With --cameras a "
+        "frame, for terms with S; otherwise the bundled one is used where a frame goes badly. With --cameras a "
         "detector of finger nails",
     )
-    parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
+    parser.add_argument(
+        "--no-skin", action="store_true", help="do not use colour to distinguish hands from other things"
+    )
     parser.add_argument("--no-recovery", action="store_true", help="do not look for a lost hand")
     parser.add_argument(
         "--static-scene",
         choices=("find", "recording", "none"),
-        help="where tables and walls are for physics: the recording's, else found in the depth (find)",
+        help="tables and walls for physics: from the recording, otherwise found in depth (find)",
     )
     parser.add_argument(
         "--stop-below", type=float, metavar="MM", help="stop iterating when the mean joint moves less than this (never)"

@@ -45,16 +45,27 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         help="folders with annotated depth; for nails with annotated colour",
     )
     parser.add_argument("--what", choices=WHATS, default=WHATS[0], help="what it learns to find")
-    parser.add_argument("--rendered", type=int, default=0, metavar="N", help="and N rendered images of random hands")
-    parser.add_argument("--test", type=Path, action="append", default=[], metavar="RECORDING", help="judge it on these")
+    parser.add_argument("--rendered", type=int, default=0, metavar="N", help="add N rendered images of random hands")
+    parser.add_argument(
+        "--test",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="RECORDING",
+        help="recordings to judge the detector on",
+    )
     parser.add_argument("--on", choices=("depth", "color"), help="what the detector looks at (depth; nails: color)")
-    parser.add_argument("--step", type=int, default=1, metavar="N", help="one of N annotated images of a recording")
-    parser.add_argument("--no-skin", action="store_true", help="do not tell hands from other things by colour")
+    parser.add_argument("--step", type=int, default=1, metavar="N", help="use one of N annotated images of a recording")
+    parser.add_argument(
+        "--no-skin", action="store_true", help="do not use colour to distinguish hands from other things"
+    )
     parser.add_argument("--trees", type=int, default=10)
-    parser.add_argument("--depth", type=int, default=25, help="of the deepest leaf")
+    parser.add_argument("--depth", type=int, default=25, help="depth of the deepest leaf")
     parser.add_argument("--min-leaf", type=int, default=20, help="patches in the smallest leaf")
     parser.add_argument("--tests", type=int, default=20_000, help="binary tests tried at a node; fewer train faster")
-    parser.add_argument("--patches", type=int, default=100_000, help="of each sort for a tree; fewer train faster")
+    parser.add_argument(
+        "--patches", type=int, default=100_000, help="patches of each sort for a tree; fewer train faster"
+    )
     parser.add_argument("--per-image", type=int, default=60, help="patches of each sort from an image")
     parser.add_argument("--pixel-size", type=float, metavar="MM", help="width of a pixel of a patch (3; nails: 1.5)")
     parser.add_argument("--seed", type=int, default=0)
@@ -158,7 +169,9 @@ def _check(args: argparse.Namespace) -> None:
     if args.pixel_size is not None and not 0.5 <= args.pixel_size <= 20.0:
         raise TrackerError(f"--pixel-size is {args.pixel_size} mm; it must be from 0.5 to 20.")
     if args.what == "nails" and args.on == "depth":
-        raise TrackerError("Nails are not seen in depth. Leave --on depth out, or train a detector of fingertips.")
+        raise TrackerError(
+            "Nails are not visible in depth images. Leave --on depth out, or train a detector of fingertips."
+        )
     if args.curve is not None and not args.test:
         raise TrackerError("--curve needs --test RECORDING, the recordings that the curve is of.")
 
@@ -223,11 +236,11 @@ def _load(folder: Path, args: argparse.Namespace) -> tuple[Sequence, Annotations
         raise TrackerError(f"{folder}: has no annotations; mark hands in some of its frames first.")
     if args.what == "nails":
         if not any(camera.has_color for camera in sequence.cameras):
-            raise TrackerError(f"{folder}: has no camera with colour, in which nails are seen.")
+            raise TrackerError(f"{folder}: has no camera with colour; needed to see nails.")
         return sequence, load_annotations(path)
     cameras = [camera for camera in sequence.cameras if camera.has_depth]
     if not cameras:
-        raise TrackerError(f"{folder}: has no camera with depth, which gives patches their scale.")
+        raise TrackerError(f"{folder}: has no camera with depth; needed for the size of patches.")
     if args.on == "color" and not any(camera.has_color for camera in cameras):
         raise TrackerError(f"{folder}: has no camera with both colour and depth; needed for --on color.")
     return sequence, load_annotations(path)

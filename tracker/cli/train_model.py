@@ -20,23 +20,27 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         description="Learn template, shapes, blend weights, joints and pose blend shapes of a hand ([R17] section 3.3) "
         "from registrations, as `handloom register` writes them: from those whose verdict is good, or those of a list. "
         "Beside the model, FILE.json says what it was learnt from and how well it fits. Every stage is kept in "
-        "FILE.stages until the model is written: stopped and started again, the same training goes on where it was.",
+        "FILE.stages until the model is written: a stopped training continues when it is started again.",
     )
     parser.add_argument("registrations", type=Path, metavar="DIR", help="the folder with the registrations")
     parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="the model, .npz")
     add_training_options(parser)
     parser.add_argument("--initial", type=Path, metavar="FILE", help="the model they were registered with (untrained)")
-    parser.add_argument("--name", default="trained hand", help="of the model")
+    parser.add_argument("--name", default="trained hand", help="name of the model")
     add_json(parser)
     parser.set_defaults(run=run_guarded(train_model_command, show))
 
 
 def add_training_options(parser: argparse.ArgumentParser) -> None:
     """What `train-model` and `model-loop` share."""
-    parser.add_argument("--accepted", type=Path, metavar="FILE", help="names of accepted scans, a JSON list or lines")
-    parser.add_argument("--rounds-of-training", type=int, default=3, metavar="N", help="of training (3)")
+    parser.add_argument(
+        "--accepted", type=Path, metavar="FILE", help="a file with the names of accepted scans, a JSON list or lines"
+    )
+    parser.add_argument("--rounds-of-training", type=int, default=3, metavar="N", help="rounds of training (3)")
     parser.add_argument("--shapes", type=int, default=10, metavar="N", help="shape directions of the whole hand (10)")
-    parser.add_argument("--local-shapes", type=int, default=0, metavar="N", help="and of parts of the hand (0)")
+    parser.add_argument(
+        "--local-shapes", type=int, default=0, metavar="N", help="shape directions of parts of the hand (0)"
+    )
     parser.add_argument("--no-pose-shapes", action="store_true", help="plain linear blend skinning")
     parser.add_argument("--no-mirrored", action="store_true", help="learn from right hands only")
     parser.add_argument("--threads", type=int, default=2, metavar="N", help="poses fitted at a time (2)")

@@ -205,7 +205,7 @@ def _mean_std(found: Document) -> str:
 def _parameters(document: Document, names: Mapping[str, str]) -> str:
     tracks, parameters = document["tracks"], document["parameters"]
     same = ", ".join(f"{name} {word_of(value)}" for name, value in parameters["same"].items())
-    alike = f"<p class=quiet>Alike in all: {escape(same)}.</p>" if same else ""
+    alike = f"<p class=quiet>The same in all: {escape(same)}.</p>" if same else ""
     if not parameters["different"]:
         return f"<h2>Parameters</h2>{alike}"
     rows = [

@@ -38,7 +38,7 @@ def export_track(track: Track, sequence: Sequence, kind: str, out_path: Path) ->
     if out_path.is_dir():
         raise TrackingError(f"{out_path}: is a folder; give the name of a file, for example {EXPORT_KINDS[kind]}.")
     if not out_path.parent.is_dir():
-        raise TrackingError(f"{out_path.parent}: is no folder; make it first.")
+        raise TrackingError(f"{out_path.parent}: is not a folder; make it first.")
     _check(track, sequence)
     writers: dict[str, Callable[[], None]] = {
         "npz": lambda: save_arrays(out_path, track.arrays()),

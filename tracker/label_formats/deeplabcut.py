@@ -171,7 +171,7 @@ def _read_header(
         columns[i] = column
     if not columns:
         raise AnnotationError(
-            f"{name}: no column is a joint of a hand. Call body parts as in {', '.join(HAND_JOINTS[:3])} ..., "
+            f"{name}: no column is a joint of a hand. Name body parts like {', '.join(HAND_JOINTS[:3])} ..., "
             "individuals right and left."
         )
     return columns, start

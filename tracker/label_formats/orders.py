@@ -83,6 +83,6 @@ def read_names(names: Sequence[str], what: str) -> list[int]:
     if strange or missing or len(names) != len(HAND_JOINTS):
         raise AnnotationError(
             f"{what}: needed the 21 joints of a hand, each once; unknown {strange[:5] or 'none'}, "
-            f"missing {missing[:5] or 'none'}, {len(names)} in all. Call them as in {', '.join(HAND_JOINTS[:3])} ..."
+            f"missing {missing[:5] or 'none'}, {len(names)} in all. Name them like {', '.join(HAND_JOINTS[:3])} ..."
         )
     return [joint for joint in found if joint is not None]

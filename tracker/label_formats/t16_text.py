@@ -121,7 +121,7 @@ def _find_camera(number: str | None, labels: LabelSet, hints: ImportHints) -> st
     if number is not None and number.isdecimal() and 1 <= int(number[:9]) <= len(cameras):
         return cameras[int(number[:9]) - 1]
     raise AnnotationError(
-        f"Which camera {FOLDER} belongs to is not said; give the option camera ({', '.join(cameras)})."
+        f"Which camera {FOLDER} belongs to is unknown; give the option camera ({', '.join(cameras)})."
     )
 
 
@@ -137,8 +137,8 @@ def _read_slots(files: dict[str, bytes], folder: str, hints: ImportHints) -> Slo
     name = f"{folder}{NAMES_FILE}"
     if name not in files:
         raise AnnotationError(
-            f"{folder}{FOLDER} numbers its joints without saying which is which. Put a {NAMES_FILE} beside it (lines "
-            "such as '0 right/wrist'), or say the option joint_order, and hand if there is one hand only."
+            f"{folder}{FOLDER} numbers its joints, but does not name them. Put a {NAMES_FILE} beside it (lines "
+            "such as '0 right/wrist'), or give the option joint_order, and hand if there is one hand only."
         )
     slots: Slots = {}
     for line in _decode(name, files[name]).splitlines()[:MAX_LINES]:
@@ -169,7 +169,7 @@ def _read_frame(name: str, data: bytes, slots: Slots) -> dict[str, np.ndarray]:
         if number not in slots:
             raise AnnotationError(f"{name}: joint {number} is not among the {len(slots)} that were named.")
         if number in seen:
-            raise AnnotationError(f"{name}: joint {number} stands in it twice.")
+            raise AnnotationError(f"{name}: joint {number} appears twice.")
         if abs(x) > MAX_NUMBER or abs(y) > MAX_NUMBER:
             raise AnnotationError(f"{name}: joint {number} is at ({x}, {y}) px.")
         seen.add(number)

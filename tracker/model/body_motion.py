@@ -105,7 +105,7 @@ def _floats(
         raise ModelFileError(path, f"'{name}', {' x '.join(map(str, array.shape))}", f"'{name}', {wanted}")
     array = np.ascontiguousarray(array, dtype=np.float64)
     if array.size and not (np.all(np.isfinite(array)) and np.abs(array).max() <= limit):
-        raise ModelFileError(path, f"'{name}' with values that are endless or beyond {limit:g}", "sound numbers")
+        raise ModelFileError(path, f"'{name}' with values that are infinite or beyond {limit:g}", "sound numbers")
     return array
 
 

@@ -44,7 +44,7 @@ class Gltf:
         if type(index) is not int or not isinstance(items, list) or not 0 <= index < len(items):
             raise self.fail(f"a reference to {kind}[{str(index)[:20]}], which is not there", f"an entry of '{kind}'")
         if not isinstance(items[index], dict):
-            raise self.fail(f"{kind}[{index}] that is no object", "an object")
+            raise self.fail(f"{kind}[{index}] that is not an object", "an object")
         return items[index]
 
     def accessor(self, index: Any, form: str) -> npt.NDArray:
@@ -102,7 +102,7 @@ def read_gltf(path: Path) -> Gltf:
     text, binary = _split_glb(path, data) if data[:4] == b"glTF" else (data, None)
     document = json.loads(text.decode("utf-8"))
     if not isinstance(document, dict):
-        raise ModelFileError(path, "JSON that is no object", "a glTF 2.0 file")
+        raise ModelFileError(path, "JSON that is not an object", "a glTF 2.0 file")
     asset = document.get("asset")
     version = asset.get("version") if isinstance(asset, dict) else None
     if not isinstance(version, str) or not version.startswith("2."):
@@ -144,7 +144,7 @@ def _split_glb(path: Path, data: bytes) -> tuple[bytes, bytes | None]:
 def _read_buffers(path: Path, document: dict[str, Any], binary: bytes | None) -> list[bytes]:
     entries = document.get("buffers", [])
     if not isinstance(entries, list) or len(entries) > 64 or not all(isinstance(entry, dict) for entry in entries):
-        raise ModelFileError(path, "'buffers' that is no list of at most 64 objects", "a list of buffers")
+        raise ModelFileError(path, "'buffers' that is not a list of at most 64 objects", "a list of buffers")
     buffers: list[bytes] = []
     for number, entry in enumerate(entries):
         uri = entry.get("uri")
@@ -154,7 +154,7 @@ def _read_buffers(path: Path, document: dict[str, Any], binary: bytes | None) ->
             buffers.append(binary)
         elif not isinstance(uri, str):
             raise ModelFileError(
-                path, f"buffers[{number}] with a uri that is no text", "a relative file name or data URI"
+                path, f"buffers[{number}] with a uri that is not a text", "a relative file name or data URI"
             )
         elif uri.startswith("data:"):
             buffers.append(_decode_data_uri(path, uri))

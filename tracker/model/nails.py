@@ -56,7 +56,7 @@ class Nail:
 
 def find_nails(model: ArticulatedModel) -> tuple[Nail, ...]:
     """The nails of a hand, thumb to little finger."""
-    assert model.hand is not None, f"{model.name} is no hand"
+    assert model.hand is not None, f"{model.name} is not a hand"
     scene = Scene((model,))
     joints = scene.pose_at(scene.rest_pose()).landmarks(0)
     chains = HandChains(

@@ -111,7 +111,9 @@ class NpzFields:
         """float64 of this shape (-1: any length), finite and within ±limit."""
         array = self._take(name, KINDS["float"], shape)
         if array.size and not (np.all(np.isfinite(array)) and np.abs(array).max() <= limit):
-            raise ModelFileError(self.path, f"'{name}' with values that are endless or beyond {limit}", "sound numbers")
+            raise ModelFileError(
+                self.path, f"'{name}' with values that are infinite or beyond {limit}", "sound numbers"
+            )
         return array
 
     def integers(self, name: str, shape: tuple[int, ...], low: int, high: int) -> npt.NDArray[np.int64]:

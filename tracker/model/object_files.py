@@ -197,7 +197,7 @@ def _read_static_gltf(gltf: Gltf) -> tuple[Array, Faces]:
     """All triangles of all nodes, where the nodes put them."""
     nodes = gltf.document.get("nodes", [])
     if not isinstance(nodes, list) or len(nodes) > MAX_NODES:
-        raise gltf.fail("nodes that are no list, or too many", f"at most {MAX_NODES} nodes")
+        raise gltf.fail("nodes that are not a list, or too many", f"at most {MAX_NODES} nodes")
     vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
     for number, node in enumerate(nodes):
         if not isinstance(node, dict) or "mesh" not in node:

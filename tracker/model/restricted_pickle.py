@@ -177,7 +177,7 @@ def _resolve(value: Any, links: int = 0) -> Any:
     if not isinstance(value, Record):
         return value if isinstance(value, (str, bytes, int, float, list, tuple)) else None
     if links > MAX_LINKS:
-        raise ValueError("too many objects behind one another")
+        raise ValueError("objects that are nested too deeply")
     if value.kind == "ndarray":
         version_and = value.state
         shape, dtype, is_fortran, raw = version_and[-4:]

@@ -199,7 +199,7 @@ def _numbers(path: Path, lines: list[str], columns: int, what: str) -> Array:
     except ValueError as error:
         raise ModelFileError(path, f"{str(error)[:120]}", f"{columns} numbers for {what}") from error
     if values.shape != (len(lines), columns) or not np.all(np.isfinite(values)):
-        raise ModelFileError(path, "a line with missing or endless numbers", f"{columns} numbers for {what}")
+        raise ModelFileError(path, "a line with missing or infinite numbers", f"{columns} numbers for {what}")
     return values
 
 

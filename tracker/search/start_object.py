@@ -98,7 +98,7 @@ def place_object(model: ArticulatedModel, item: RecordedObject) -> Array:
     """
     if item.T_world_object is None:
         raise TrackingError(
-            f"{item.name}: nobody placed it in the first frame; needed `initial.T_world_object` in sequence.json."
+            f"{item.name}: it has no place in the first frame; needed `initial.T_world_object` in sequence.json."
         )
     scene = Scene((model,))
     pose = scene.rest_pose()

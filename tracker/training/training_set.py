@@ -119,7 +119,7 @@ def load_training_set(
     """
     folder = Path(folder)
     if not folder.is_dir():
-        raise TrainingError(f"{folder}: no folder; give the folder that `handloom register` wrote to.")
+        raise TrainingError(f"{folder}: there is no such folder; give the folder that `handloom register` wrote to.")
     vertices, subjects, pose_names, is_left, seen = [], [], [], [], 0
     for path in sorted(folder.rglob("*.npz")):
         fields = _read_registration(path)

@@ -152,7 +152,7 @@ def test_a_damaged_snapshot_says_so_and_is_not_used(studio: Studio, add_recordin
     assert get_labels(studio.client, sequence) == {(0, "right"): make_points()}
     path.unlink()
     assert studio.client.get(f"{address}/verify").json()["found"] is None
-    assert "is gone" in studio.client.get(f"{address}/labels.json").json()["detail"]
+    assert "is missing" in studio.client.get(f"{address}/labels.json").json()["detail"]
 
 
 def test_a_snapshot_of_another_recording_or_none_is_refused(studio: Studio, add_recording: AddRecording) -> None:

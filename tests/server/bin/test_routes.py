@@ -38,7 +38,7 @@ def test_what_was_deleted_is_listed_the_last_first_and_comes_back(studio: Studio
     assert lea.send("POST", f"/bin/scan/{first['id']}/restore").status_code == 204
     assert studio.client.get(f"{API}/scans/{first['id']}").json() == scans[2]
     again = lea.send("POST", f"/bin/scan/{first['id']}/restore")
-    assert again.status_code == 404 and "brought it back" in again.json()["detail"]
+    assert again.status_code == 404 and "restored it" in again.json()["detail"]
     assert lea.send("POST", f"/bin/project/{project['id']}/restore").status_code == 204
     assert lea.get("/bin", kind="project")["items"] == []
     assert lea.send("POST", f"/bin/moon/{first['id']}/restore").status_code == 404

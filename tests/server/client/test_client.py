@@ -90,7 +90,7 @@ def test_a_job_is_watched_to_its_end(remote: Remote, studio: Studio, add_recordi
     assert heard == ["queued", "failed"]
     assert "queued" in list(remote.jobs.log(job["id"]))
     assert remote.jobs.resume(job["id"])["attempt"] == 2
-    with pytest.raises(TimeoutError, match="it goes on"):
+    with pytest.raises(TimeoutError, match="it is not finished"):
         remote.jobs.wait(job["id"], timeout=0.0)
     assert remote.jobs.cancel(job["id"])["state"] == "cancelled"
     assert job["sequence_id"] == recording["id"]

@@ -61,7 +61,7 @@ def test_a_detector_comes_in_is_offered_by_the_form_and_goes_out_to_the_byte(stu
     path = studio.settings.data_dir / "detectors" / made["id"] / "detector.npz"
     path.write_bytes(data + b"x")
     answer = studio.client.get(f"{API}/detectors/{made['id']}/detector.npz")
-    assert answer.status_code == 409 and "not what it was" in answer.json()["detail"]
+    assert answer.status_code == 409 and "was changed" in answer.json()["detail"]
 
 
 def test_a_deleted_detector_is_in_the_bin_comes_back_and_goes_for_good(studio: Studio) -> None:

@@ -69,7 +69,7 @@ def test_a_model_whose_file_is_another_is_refused_with_where_it_belongs(database
         path.unlink()
     else:
         path.write_bytes(path.read_bytes()[:-1] + b"x")
-    with pytest.raises(DamagedModelError, match=rf"Bring models/{id_}/"):
+    with pytest.raises(DamagedModelError, match=rf"Restore models/{id_}/"):
         open_model(storage, row)
 
 
@@ -104,7 +104,7 @@ def test_a_deleted_model_is_not_used_until_it_is_restored(database: Database, st
 def test_a_file_that_is_no_model_is_refused_without_the_places_of_this_machine(tmp_path: Path) -> None:
     path = tmp_path / "hand.npz"
     path.write_bytes(b"no model")
-    with pytest.raises(InvalidError, match=r"hand\.npz is no hand model") as told:
+    with pytest.raises(InvalidError, match=r"hand\.npz is not a hand model") as told:
         read_upload(path, None)
     assert str(tmp_path) not in told.value.detail
 

@@ -180,5 +180,5 @@ def test_the_archive_is_not_written_when_a_file_was_changed(curation: Curation) 
             assert archive.testzip() is None
         path = storage(curation).folder("registrations", id_) / "registration.npz"
         path.write_bytes(path.read_bytes() + b"\0")
-        with pytest.raises(service.DamagedSetError, match="nothing was trained from it"):
+        with pytest.raises(service.DamagedSetError, match="nothing was trained"):
             service.write_archive(storage(curation), row, io.BytesIO())

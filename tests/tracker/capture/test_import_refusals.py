@@ -182,7 +182,7 @@ def test_links_out_of_the_folder_are_refused(recording: Path, folder: Path, tmp_
     refuse(folder, "depth/000002.png is a link out of the folder", RGBD)
     os.unlink(folder / "depth/000002.png")
     os.mkfifo(folder / "depth/000002.png")
-    refuse(folder, "depth/000002.png is no plain file", RGBD)
+    refuse(folder, "depth/000002.png is not a plain file", RGBD)
 
 
 def test_a_linked_folder_is_refused(folder: Path, tmp_path: Path) -> None:

@@ -252,7 +252,7 @@ def test_a_pipe_in_place_of_a_frame_does_not_hang(recording: Path) -> None:
 
 
 def test_no_folder_and_no_document_are_errors(tmp_path: Path) -> None:
-    with pytest.raises(SequenceError, match="no folder"):
+    with pytest.raises(SequenceError, match="not a folder"):
         load_sequence(tmp_path / "nothing")
     with pytest.raises(TrackerError, match="no such file"):
         load_sequence(tmp_path)

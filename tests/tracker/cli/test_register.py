@@ -63,7 +63,7 @@ def test_each_scan_gets_its_files_and_a_row_and_a_second_run_skips_what_is_done(
 
 def test_bad_input_is_said_with_exit_code_2(scans, tmp_path, capsys):
     for words, told in (
-        ((scans / "broken.obj", "--out", tmp_path / "a"), "no number"),
+        ((scans / "broken.obj", "--out", tmp_path / "a"), "not a number"),
         ((scans / "nothing.ply", "--out", tmp_path / "a"), "cannot be read"),
         ((scans / "one.ply", "--out", tmp_path / "a", "--model", scans / "one.ply"), "one.ply"),
         ((scans / "one.ply", "--out", tmp_path / "a", "--processes", 0), "needed 1 to 256"),

@@ -68,7 +68,7 @@ def test_renders_alone_do_and_the_same_seed_gives_the_same_file(tmp_path, capsys
     ("arguments", "said"),
     [
         ([], "Nothing to learn from"),
-        (["nowhere"], "is no folder"),
+        (["nowhere"], "is not a folder"),
         (["--rendered", "5", "--trees", "0"], "--trees is 0"),
         (["--rendered", "5", "--pixel-size", "nan"], "--pixel-size is nan"),
         (["--rendered", "5", "--curve", "x.csv"], "--curve needs --test"),
@@ -112,7 +112,7 @@ def test_nails_are_learnt_from_annotated_views_and_renders_and_looked_for_in_vie
 
 
 @pytest.mark.parametrize(
-    ("words", "said"), [(["--rendered", "5", "--on", "depth"], "not seen in depth"), ([], "Nothing to learn from")]
+    ("words", "said"), [(["--rendered", "5", "--on", "depth"], "not visible in depth"), ([], "Nothing to learn from")]
 )
 def test_what_nails_cannot_be_learnt_from_is_said(words, said, tmp_path, capsys):
     out = tmp_path / "nails.npz"

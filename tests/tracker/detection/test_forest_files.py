@@ -85,7 +85,7 @@ def test_a_walk_that_would_go_astray_is_refused(saved, tmp_path, values, why):
     [
         ({"format": np.array(["something else"])}, "the format 'something else'"),
         ({"kind": np.array(["smell"])}, "the kind 'smell'"),
-        ({"sizes": np.array([0.003, 0.032, np.nan])}, "endless"),
+        ({"sizes": np.array([0.003, 0.032, np.nan])}, "infinite"),
         ({"sizes": np.array([0.003, 0.032, 0.0])}, "sizes"),
         ({"nodes": np.zeros((0, 5), dtype=np.int64)}, "node_starts"),
         ({"nodes": np.full((9, 5), 10**6)}, "values from"),

@@ -35,7 +35,7 @@ def test_what_cannot_be_exported_is_said_and_leaves_nothing(moved, only_ball, tm
 
     out = tmp_path / "out"
     fails("as 'fbx'; there are npz, csv, glb, mano", moved, "fbx", out)
-    fails("is no folder; make it first", moved, "csv", tmp_path / "none" / "out.csv")
+    fails("is not a folder; make it first", moved, "csv", tmp_path / "none" / "out.csv")
     fails("is a folder; give the name of a file", moved, "csv", tmp_path)
     fails("Give the recording it ran on", moved, "csv", out, camera_ids=("cam7",))
     fails("follows ball and no hand", only_ball, "mano", out)

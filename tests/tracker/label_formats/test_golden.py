@@ -166,7 +166,7 @@ def test_the_layout_of_t16_is_written_as_its_readers_read_it(make_set: MakeSet) 
 
 def test_numbers_of_joints_that_nobody_explained_are_refused_unless_told(make_set: MakeSet) -> None:
     files = {"joints_2D_GT/002.txt": b"0\t7\t8\n1\t0\t5\n2\t-3\t4\n20\t9\t10\n"}
-    with pytest.raises(AnnotationError, match="without saying which is which"):
+    with pytest.raises(AnnotationError, match="but does not name them"):
         import_labels(None, files, [make_set(cameras=1)])
     hints = ImportHints(joint_order="interhand", hand="left")
     _, back = import_labels(None, files, [make_set(cameras=1)], hints)

@@ -104,7 +104,7 @@ def test_a_missing_depth_image_is_named(recording, capsys):
         (lambda camera: camera["K"][0].__setitem__(0, 0.0), "fx is 0 px"),
         (lambda camera: camera["K"][1].__setitem__(1, -525.0), "fy is -525 px"),
         (lambda camera: camera.update(T_world_camera=np.zeros((4, 4)).tolist()), "T_world_camera"),
-        (lambda camera: camera.update(T_world_camera=np.diag([2.0, 2, 2, 1]).tolist()), "no rotation"),
+        (lambda camera: camera.update(T_world_camera=np.diag([2.0, 2, 2, 1]).tolist()), "not a rotation"),
         (lambda camera: camera.update(depth_scale=0.0), "depth_scale"),
         (lambda camera: camera.update(distortion=[1.0, 2.0, 3.0]), "distortion"),
     ],
@@ -196,7 +196,7 @@ def test_a_hand_without_fingertips_is_tracked_without_them(recorded, recording, 
 def test_an_object_in_place_of_a_hand_is_refused(recording, capsys):
     trimesh.creation.icosphere(radius=0.03).export(recording / "ball.ply")
     assert track(recording, "--hand", f"right={recording / 'ball.ply'}") == BAD_INPUT
-    assert "is no hand" in refusal(capsys)
+    assert "is not a hand" in refusal(capsys)
 
 
 def open_box(subdivisions: int) -> trimesh.Trimesh:

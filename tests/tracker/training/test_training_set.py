@@ -46,7 +46,7 @@ def test_the_digest_names_the_set_whatever_the_order():
 
 
 def test_what_does_not_fit_is_refused(tmp_path):
-    with pytest.raises(TrainingError, match="no folder"):
+    with pytest.raises(TrainingError, match="no such folder"):
         load_training_set(tmp_path / "nowhere")
     with pytest.raises(TrainingError, match="0 registrations"):
         load_training_set(tmp_path)

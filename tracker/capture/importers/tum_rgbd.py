@@ -173,5 +173,5 @@ def _read_list(files: ListedFiles, name: str) -> tuple[npt.NDArray[np.float64], 
         raise ImportRefusedError(f"{name}: lists no images.")
     if (np.diff(times) <= 0).any():
         worst = int(np.flatnonzero(np.diff(times) <= 0)[0])
-        raise ImportRefusedError(f"{name}: times do not ascend at {entries[worst + 1][1]}.")
+        raise ImportRefusedError(f"{name}: times do not increase at {entries[worst + 1][1]}.")
     return times, [image for _, image in entries]

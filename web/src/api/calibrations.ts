@@ -87,7 +87,7 @@ export const boardUrl = (board: BoardOptions, kind: "pdf" | "png"): string =>
 /** Why there is no such board, in the server's words. */
 export const askBoardFault = (board: BoardOptions): Promise<string> =>
   fetchBytes(boardUrl(board, "png")).then(
-    () => "The picture could not be shown; the board is possible.",
+    () => "The preview could not be shown, but the board is valid.",
     (failure: Error) => failure.message,
   );
 

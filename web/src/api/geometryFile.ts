@@ -22,14 +22,14 @@ export function readGeometry(data: ArrayBuffer): GeometryFile {
   const mark = new TextDecoder("latin1").decode(data.slice(0, 4));
   if (mark !== "HLG1" || data.byteLength < 8) throw new Error("This is no geometry that this version of the app can read. Load the page again.");
   const length = new DataView(data).getUint32(4, true);
-  if (8 + length > data.byteLength) throw new Error("The geometry came incomplete. Load the page again.");
+  if (8 + length > data.byteLength) throw new Error("The geometry arrived incomplete. Reload the page.");
   const { arrays: places, ...facts } = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 8, length))) as { arrays: ArrayPlace[] };
   const arrays = Object.fromEntries(
     places.map(({ name, type, shape, offset }) => {
       const Kind = KINDS[type];
       const count = shape.reduce((product, size) => product * size, 1);
       const start = 8 + length + offset;
-      if (start + count * Kind.BYTES_PER_ELEMENT > data.byteLength) throw new Error("The geometry came incomplete. Load the page again.");
+      if (start + count * Kind.BYTES_PER_ELEMENT > data.byteLength) throw new Error("The geometry arrived incomplete. Reload the page.");
       return [name, new Kind(data, start, count)];
     }),
   );

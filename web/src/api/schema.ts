@@ -119,7 +119,7 @@ export interface paths {
         put?: never;
         /**
          * Create Token
-         * @description Make a token. Its secret is in this answer and nowhere later.
+         * @description Make a token. Its secret is in this answer only.
          */
         post: operations["create_token"];
         delete?: never;
@@ -140,7 +140,7 @@ export interface paths {
         post?: never;
         /**
          * Revoke Token
-         * @description Revoke a token: it opens nothing any more.
+         * @description Revoke a token.
          */
         delete: operations["revoke_token"];
         options?: never;
@@ -163,7 +163,7 @@ export interface paths {
         put?: never;
         /**
          * Create Account
-         * @description Add somebody. With the code in the answer they set their password; it is nowhere later.
+         * @description Add somebody. The answer holds the code with which they set their password; it is not shown again.
          */
         post: operations["create_account"];
         delete?: never;
@@ -187,7 +187,7 @@ export interface paths {
         head?: never;
         /**
          * Change Account
-         * @description Change a role, or shut an account or open it again. Nothing of the work of somebody goes.
+         * @description Change a role, or disable or enable an account. The work of the person is kept.
          */
         patch: operations["change_account"];
         trace?: never;
@@ -248,7 +248,7 @@ export interface paths {
         post?: never;
         /**
          * Withdraw Assignment
-         * @description Take an assignment back; `restore` undoes it. The joints stay as they are.
+         * @description Withdraw an assignment; `restore` undoes it. The joints stay as they are.
          */
         delete: operations["withdraw_assignment"];
         options?: never;
@@ -271,7 +271,7 @@ export interface paths {
         put?: never;
         /**
          * Accept Assignment
-         * @description Find submitted work good: its annotations are locked for everybody.
+         * @description Accept submitted work: its annotations are locked for everybody.
          */
         post: operations["accept_assignment"];
         delete?: never;
@@ -395,7 +395,7 @@ export interface paths {
         put?: never;
         /**
          * Submit Assignment
-         * @description Hand the work in: from then on its annotations are locked.
+         * @description Submit the work: from then on its annotations are locked.
          */
         post: operations["submit_assignment"];
         delete?: never;
@@ -456,7 +456,7 @@ export interface paths {
         post?: never;
         /**
          * Delete For Good
-         * @description Delete a thing in the bin for good, with its files and all that hangs on it: nothing brings it back.
+         * @description Delete a thing in the bin for good, with its files and all that depends on it. It cannot be restored.
          *
          *     409 while a job uses it, or when something that stays was made from it.
          */
@@ -475,7 +475,7 @@ export interface paths {
         };
         /**
          * Describe Erasure
-         * @description What goes with a deleted thing when it is deleted for good, and what keeps it if something does.
+         * @description What else is deleted for good with a thing, and what prevents it, if something does.
          */
         get: operations["describe_erasure"];
         put?: never;
@@ -497,7 +497,7 @@ export interface paths {
         put?: never;
         /**
          * Restore From Bin
-         * @description Bring a deleted thing back. 409 when what it belongs to is in the bin too, which is restored first.
+         * @description Restore a deleted thing. 409 when what it belongs to is in the bin too: restore that first.
          */
         post: operations["restore_from_bin"];
         delete?: never;
@@ -699,7 +699,7 @@ export interface paths {
         };
         /**
          * Get Calibration Form
-         * @description Kinds of boards with their usual measures, families of markers, and how cameras are calibrated unless told.
+         * @description Kinds of boards with their usual measures, families of markers, and the default options of a calibration.
          */
         get: operations["get_calibration_form"];
         put?: never;
@@ -745,7 +745,7 @@ export interface paths {
         put?: never;
         /**
          * Check Calibration
-         * @description Check the films with other options. One that has a result stays; the answer is a new one with its films.
+         * @description Check the films with other options. A calibration with a result stays; the answer is a new one.
          */
         post: operations["check_calibration"];
         delete?: never;
@@ -905,7 +905,7 @@ export interface paths {
         put?: never;
         /**
          * Undo Decision
-         * @description Take a decision of one's own back; what one decided before it stands again. Both stay in the history.
+         * @description Undo your own decision; the one before it counts again. Both stay in the history.
          */
         post: operations["undo_decision"];
         delete?: never;
@@ -1200,7 +1200,7 @@ export interface paths {
         };
         /**
          * Get Hand Skeleton
-         * @description Joints of a hand and how they hang together.
+         * @description Joints of a hand and how they are connected.
          */
         get: operations["get_hand_skeleton"];
         put?: never;
@@ -1260,7 +1260,7 @@ export interface paths {
         };
         /**
          * Get Import Form
-         * @description What can be told about an upload that its files do not tell.
+         * @description Options of an import, for what its files do not say.
          */
         get: operations["get_import_form"];
         put?: never;
@@ -1346,7 +1346,7 @@ export interface paths {
         put?: never;
         /**
          * Confirm Import
-         * @description Make it a recording: whole, or not at all.
+         * @description Make it a recording, whole or not at all.
          */
         post: operations["confirm_import"];
         delete?: never;
@@ -1364,7 +1364,7 @@ export interface paths {
         };
         /**
          * Get Import Picture
-         * @description A small picture of an image that would come in; depth in colours, near bright and far dark.
+         * @description A small picture of an image that would be imported; depth in colours, near bright and far dark.
          */
         get: operations["get_import_picture"];
         put?: never;
@@ -1431,7 +1431,7 @@ export interface paths {
         put?: never;
         /**
          * Check Batch
-         * @description Which of the recordings cannot be tracked so, and why. Nothing is started.
+         * @description Which of the recordings cannot be tracked with these options, and why. Nothing is started.
          */
         post: operations["check_batch"];
         delete?: never;
@@ -1449,7 +1449,7 @@ export interface paths {
         };
         /**
          * List Batches
-         * @description Batches with what has become of their jobs, the newest first.
+         * @description Batches with the states of their jobs, the newest first.
          */
         get: operations["list_batches"];
         put?: never;
@@ -1469,7 +1469,7 @@ export interface paths {
         };
         /**
          * Get Batch
-         * @description One batch with what has become of its jobs.
+         * @description One batch with the states of its jobs.
          */
         get: operations["get_batch"];
         put?: never;
@@ -1883,7 +1883,7 @@ export interface paths {
         put?: never;
         /**
          * Resume Job
-         * @description Go on with a cancelled or failed job where it stopped.
+         * @description Continue a cancelled or failed job where it stopped.
          */
         post: operations["resume_job"];
         delete?: never;
@@ -1943,7 +1943,7 @@ export interface paths {
         put?: never;
         /**
          * Check Several
-         * @description Look at files with labels of several recordings. Stores nothing.
+         * @description Check files with labels of several recordings. Nothing is stored.
          */
         post: operations["check_several"];
         delete?: never;
@@ -1983,7 +1983,7 @@ export interface paths {
         put?: never;
         /**
          * Import Several
-         * @description Take files with labels of several recordings in: into all of them or none.
+         * @description Import labels of several recordings: into all of them or none.
          */
         post: operations["import_several"];
         delete?: never;
@@ -2001,7 +2001,7 @@ export interface paths {
         };
         /**
          * Get Lineage
-         * @description Scan to registration to decision to training set to model and back: where a thing comes from, what came of it.
+         * @description From scan to model, by registration, decision and training set: where a thing comes from, what came of it.
          */
         get: operations["get_lineage"];
         put?: never;
@@ -2083,7 +2083,7 @@ export interface paths {
         put?: never;
         /**
          * Log Out Everywhere
-         * @description Log out in every browser. Tokens of scripts go on.
+         * @description Log out in every browser. Tokens of scripts stay valid.
          */
         post: operations["log_out_everywhere"];
         delete?: never;
@@ -2152,7 +2152,7 @@ export interface paths {
         post?: never;
         /**
          * Archive Project
-         * @description Put a project away; `restore` brings it back. What was accepted in it stays locked.
+         * @description Archive a project; `restore` undoes it. What was accepted in it stays locked.
          */
         delete: operations["archive_project"];
         options?: never;
@@ -2175,7 +2175,7 @@ export interface paths {
         put?: never;
         /**
          * Make Assignment
-         * @description Give somebody a range of frames. Leads give work; no frame is given to two.
+         * @description Assign a range of frames to somebody. No frame is assigned to two people.
          */
         post: operations["make_assignment"];
         delete?: never;
@@ -2220,7 +2220,7 @@ export interface paths {
         /**
          * Restore Project
          * @deprecated
-         * @description Bring an archived project back.
+         * @description Restore an archived project.
          */
         post: operations["restore_project"];
         delete?: never;
@@ -2259,13 +2259,13 @@ export interface paths {
         get?: never;
         /**
          * Add Project Sequence
-         * @description Take a recording into a project.
+         * @description Add a recording to a project.
          */
         put: operations["add_project_sequence"];
         post?: never;
         /**
          * Remove Project Sequence
-         * @description Take a recording out of a project, if nothing of it is assigned there.
+         * @description Remove a recording from a project, if nothing of it is assigned there.
          */
         delete: operations["remove_project_sequence"];
         options?: never;
@@ -2304,7 +2304,7 @@ export interface paths {
         put?: never;
         /**
          * Take Refinement
-         * @description Give the recording these cameras; those it had are kept. Tracks made before stay in the world of theirs.
+         * @description Give the recording these cameras; those it had are kept. Earlier tracks stay as they are.
          */
         post: operations["take_refinement"];
         delete?: never;
@@ -2988,13 +2988,13 @@ export interface paths {
         get?: never;
         /**
          * Dismiss Flag
-         * @description The label is right: put the flag away for this revision of it. 409 when the label has changed meanwhile.
+         * @description The label is right: dismiss the flag for this revision of it. 409 when the label has changed meanwhile.
          */
         put: operations["dismiss_flag"];
         post?: never;
         /**
          * Restore Flag
-         * @description Bring a flag back that was put away.
+         * @description Restore a dismissed flag.
          */
         delete: operations["restore_flag"];
         options?: never;
@@ -3052,13 +3052,13 @@ export interface paths {
         get?: never;
         /**
          * Add Key Frame
-         * @description Make the hand a key frame; who may mark it may do this. Twice does no harm.
+         * @description Make the hand a key frame; whoever may mark it may do this. Repeating this is harmless.
          */
         put: operations["add_key_frame"];
         post?: never;
         /**
          * Remove Key Frame
-         * @description The hand is a key frame no more; its joints stay. Twice does no harm.
+         * @description Remove a key frame; its joints stay. Repeating this is harmless.
          */
         delete: operations["remove_key_frame"];
         options?: never;
@@ -3077,7 +3077,7 @@ export interface paths {
         put?: never;
         /**
          * Check Recording Labels
-         * @description Look at files of labels: what is new, what is labelled otherwise, what is lost. Nothing is stored.
+         * @description Check files of labels: what is new, what differs, what is lost. Nothing is stored.
          */
         post: operations["check_recording_labels"];
         delete?: never;
@@ -3137,7 +3137,7 @@ export interface paths {
         put?: never;
         /**
          * Import Recording Labels
-         * @description Take files of labels into a recording, as their report said: with its `check`, and a `policy` for conflicts.
+         * @description Import files of labels into a recording, as their report said: with its `check`, and a `policy` for conflicts.
          */
         post: operations["import_recording_labels"];
         delete?: never;
@@ -3201,7 +3201,7 @@ export interface paths {
         };
         /**
          * List Refinements
-         * @description What labels made of a recording's cameras, the newest first, at most 20.
+         * @description Refined cameras of a recording, the newest first, at most 20.
          */
         get: operations["list_refinements"];
         put?: never;
@@ -3452,7 +3452,7 @@ export interface paths {
         };
         /**
          * Compare Snapshot
-         * @description What changed from this snapshot to another one or to the labels of now, joint by joint.
+         * @description What changed from this snapshot to another one or to the current labels, joint by joint.
          */
         get: operations["compare_snapshot"];
         put?: never;
@@ -3512,7 +3512,7 @@ export interface paths {
         };
         /**
          * Verify Snapshot
-         * @description Hash the file again: is it still what it was?
+         * @description Compare the file with its SHA-256.
          */
         get: operations["verify_snapshot"];
         put?: never;
@@ -3576,7 +3576,7 @@ export interface paths {
         };
         /**
          * Get Track Overlay
-         * @description The meshes of one frame as the camera sees them, on transparent ground. Neither a track nor this changes ever.
+         * @description The meshes of one frame as the camera sees them, on transparent ground. It never changes.
          */
         get: operations["get_track_overlay"];
         put?: never;
@@ -3763,7 +3763,7 @@ export interface paths {
         /**
          * Restore Track
          * @deprecated
-         * @description Bring a deleted track back.
+         * @description Restore a deleted track.
          */
         post: operations["restore_track"];
         delete?: never;
@@ -3885,7 +3885,7 @@ export interface paths {
         };
         /**
          * Verify Training Set
-         * @description Hash every file again: are they still what they were?
+         * @description Compare every file with its SHA-256.
          */
         get: operations["verify_training_set"];
         put?: never;
@@ -4589,7 +4589,7 @@ export interface components {
         };
         /**
          * BinErasure
-         * @description What goes when a thing in the bin is deleted for good. Nothing of it can be brought back.
+         * @description What is deleted with a thing in the bin when it is deleted for good. It cannot be restored.
          */
         BinErasure: {
             /**
@@ -4630,7 +4630,7 @@ export interface components {
         };
         /**
          * BinItem
-         * @description A thing that was deleted and can be brought back.
+         * @description A thing that was deleted and can be restored.
          */
         BinItem: {
             /**
@@ -6157,7 +6157,7 @@ export interface components {
         };
         /**
          * ImportConfirm
-         * @description Make it a recording.
+         * @description Make it a recording, whole or not at all.
          */
         ImportConfirm: {
             /** Name */
@@ -7852,7 +7852,7 @@ export interface components {
             conflict_count: number;
             /**
              * Conflicts
-             * @description Hands that are labelled otherwise, the first ones.
+             * @description Hands with other labels, the first ones.
              */
             conflicts: components["schemas"]["HandChangeOut"][];
             /**

@@ -25,7 +25,7 @@ export function PictureNote({ frame, shownFrame, hasPicture, setback, onRetry, i
       </Text>
       <Text size="xs">
         {shown}
-        {setback ? `${setback.error.message} ${setback.isForGood ? safe : `It is asked for again by itself. ${safe}`}` : `${isRefused ? "That was not taken: nothing" : "Nothing"} is changed before it is here.`}
+        {setback ? `${setback.error.message} ${setback.isForGood ? safe : `It is asked for again by itself. ${safe}`}` : `${isRefused ? "That had no effect: nothing" : "Nothing"} can be changed until it is here.`}
       </Text>
       {setback && (
         <Button size="compact-xs" variant="default" mt={8} onClick={onRetry}>

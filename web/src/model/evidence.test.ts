@@ -7,7 +7,7 @@ const part = { hand: "right", part: "index distal", distance_mm: 2, is_chosen: f
 
 test("a frame where nothing is found says so", () => {
   expect(describeDetections({ is_of_run: true, own_detector: null, items: [] })).toContain("No fingertip was found");
-  expect(describeCollisions({ is_of_run: true, triangles: 0, vertices: 0, deepest_mm: 0, full_mm: 5, pairs: [] })).toBe("Nothing stands in anything else here.");
+  expect(describeCollisions({ is_of_run: true, triangles: 0, vertices: 0, deepest_mm: 0, full_mm: 5, pairs: [] })).toBe("Nothing intersects here.");
   expect(describeContacts({ ...contacts, object: null })).toContain("needs an object and a hand");
   expect(describeContacts({ ...contacts, object: null, fault: "Physics needs pybullet." })).toBe("Physics needs pybullet.");
 });
@@ -19,8 +19,8 @@ test("an object is held, or falls for want of fingers, or would be held by those
   expect(describeContacts({ ...contacts, held_displacement_mm: 0.4, parts: [{ ...part, is_chosen: true }] })).toContain("in contact it moves 0.4 mm");
 });
 
-test("what the run did without is said to be worked out now", () => {
-  expect(describeOrigin("collisions", false)).toContain("did without collision (C)");
+test("a layer of a term that the run did not use is said to be computed now", () => {
+  expect(describeOrigin("collisions", false)).toContain("did not use collision (C)");
   expect(describeOrigin("collisions", true)).toBeNull();
   expect(describeOrigin("detections", true, "tips.npz")).toBe("Found by “tips.npz”, at which the run looked in every frame.");
 });
@@ -29,7 +29,7 @@ test("what was left out is counted, and what cannot be known without colour is s
   const unknown = { color: "#f06595", pixels: 2400, before: 310, by_color: true };
   expect(describeUnknown(unknown)).toBe("2,400 pixels were left out; 310 of them hide the hand.");
   expect(describeUnknown({ ...unknown, pixels: 0, before: 0 })).toBe("Nothing near the hands was left out here.");
-  expect(describeUnknown({ ...unknown, by_color: false })).toContain("Without colour only what hides the hand");
+  expect(describeUnknown({ ...unknown, by_color: false })).toContain("Without colour, only things in front of the hand");
 });
 
 test("a layer's count is known when it is on", () => {

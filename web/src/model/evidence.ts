@@ -23,7 +23,7 @@ export function describeDetections({ items }: Detections): string {
 }
 
 export function describeCollisions({ pairs, vertices, deepest_mm: deepest }: Collisions): string {
-  if (pairs.length === 0) return "Nothing stands in anything else here.";
+  if (pairs.length === 0) return "Nothing intersects here.";
   if (vertices === 0) return "Surfaces touch and cross; no vertex is inside.";
   return `${formatCount(vertices, "vertex is", "vertices are")} inside, ${mm(deepest)} deep at most.`;
 }
@@ -41,13 +41,13 @@ export function describeContacts({ fault, object, is_stable: isStable, displacem
 
 export function describeUnknown({ pixels, before, by_color: byColor }: Unknown): string {
   const told = pixels === 0 ? "Nothing near the hands was left out here." : `${formatCount(pixels, "pixel was", "pixels were")} left out; ${before > 0 ? before.toLocaleString("en") : "none"} of them hide${before === 1 ? "s" : ""} the hand.`;
-  return byColor ? told : `${told} Without colour only what hides the hand can be told from it.`;
+  return byColor ? told : `${told} Without colour, only things in front of the hand can be distinguished from it.`;
 }
 
 /** That a layer shows what the run itself did without; null if it did not. */
 export function describeOrigin(layer: "detections" | "collisions" | "contacts", isOfRun: boolean, ownDetector: string | null = null): string | null {
   const terms = { detections: "fingertips (S)", collisions: "collision (C)", contacts: "physics (P)" } as const;
-  if (!isOfRun) return `Worked out now. This run did without ${terms[layer]}.`;
+  if (!isOfRun) return `Computed now. This run did not use ${terms[layer]}.`;
   if (ownDetector !== null) return `Found by “${ownDetector}”, at which the run looked in every frame.`;
   return layer === "detections" ? "The run itself looks at them only where a frame goes badly." : null;
 }

@@ -25,7 +25,7 @@ export function useCamerasStage(): CamerasStageParts {
       current.current = createCamerasStage(found);
       setStage(current.current);
     } catch {
-      setFailure("This browser draws no 3D (WebGL is off or missing). Turn on hardware or software rendering in its settings, or use another one.");
+      setFailure("This browser cannot draw 3D (WebGL is off or missing). Turn on hardware or software rendering in its settings, or use another one.");
     }
   }, []);
   useEffect(() => {

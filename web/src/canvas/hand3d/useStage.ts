@@ -39,7 +39,7 @@ export function useStage(drawn?: RefObject<string>): StageParts {
         });
         setStage(current.current);
       } catch {
-        setFailure("This browser draws no 3D (WebGL is off or missing). Turn on hardware or software rendering in its settings, or use another one.");
+        setFailure("This browser cannot draw 3D (WebGL is off or missing). Turn on hardware or software rendering in its settings, or use another one.");
       }
     },
     [drawn],

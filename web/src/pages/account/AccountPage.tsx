@@ -85,7 +85,7 @@ export default function AccountPage() {
             Tokens for scripts
           </Title>
           <Text size="sm" className="quiet" mb="md">
-            A script sends one as <code>Authorization: Bearer …</code> and may what you may, except to manage accounts.
+            A script sends one as <code>Authorization: Bearer …</code> and may do what you may do, except manage accounts.
           </Text>
           <Tokens />
         </section>

@@ -54,8 +54,8 @@ export default function AuditPage() {
           <TextInput w={328} label="Which one" placeholder="id of a recording, track, account …" defaultValue={filter.subject_id ?? ""} onChange={(event) => put("subject_id", event.currentTarget.value.trim())} />
         </Group>
         {lines?.length === 0 && (
-          <EmptyState icon={<IconHistory size={48} stroke={1.25} />} title="Nothing of the kind was done">
-            Logins, changes of accounts, imports, jobs and assignments leave a line here. Take a filter away to see more.
+          <EmptyState icon={<IconHistory size={48} stroke={1.25} />} title="No such entries">
+            Logins, changes of accounts, imports, jobs and assignments are listed here. Remove a filter to see more.
           </EmptyState>
         )}
         {!lines && <Skeleton height={240} />}

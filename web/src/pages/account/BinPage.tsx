@@ -42,12 +42,12 @@ export default function BinPage() {
         <Group gap="md" mb="md" align="end" justify="space-between">
           <Select w={208} label="What" placeholder="everything" clearable data={KINDS} value={kind} onChange={(value) => setAddress(value ? { kind: value } : {}, { replace: true })} />
           <Text size="sm" className="quiet">
-            Nothing leaves the bin by itself. What is restored is as it was; what is deleted here is gone for good.
+            Nothing leaves the bin by itself. What is restored is as it was; what is deleted here cannot be restored.
           </Text>
         </Group>
         {items?.length === 0 && (
           <EmptyState icon={<IconTrash size={48} stroke={1.25} />} title="The bin is empty">
-            Recordings, tracks, scans, models and projects that somebody deletes are kept here, and can be brought back.
+            Recordings, tracks, scans, models and projects that somebody deletes are kept here, and can be restored.
           </EmptyState>
         )}
         {!items && <Skeleton height={240} />}

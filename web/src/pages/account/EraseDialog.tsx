@@ -44,7 +44,7 @@ export function EraseDialog({ item, onClose }: EraseDialogProps) {
       failed="Nothing was deleted."
     >
       <Text size="sm" style={{ overflowWrap: "anywhere" }}>
-        The {item?.word} <strong>{item?.name}</strong> goes, and nothing can bring it back.
+        The {item?.word} <strong>{item?.name}</strong> is deleted, and cannot be restored.
       </Text>
       {!told && !error && <Skeleton height={72} role="status" aria-label="What goes with it is counted" />}
       {told && told.obstacle === null && (
@@ -62,7 +62,7 @@ export function EraseDialog({ item, onClose }: EraseDialogProps) {
       )}
       {told && told.obstacle !== null && (
         <Text size="sm" c="var(--warn-text)" role="status">
-          It cannot go: {told.obstacle}.
+          It cannot be deleted: {told.obstacle}.
         </Text>
       )}
     </FormDialog>

@@ -23,7 +23,7 @@ function LeaveDialog({ isOpen, isLeaving, onStay, onLeave }: LeaveProps) {
   const { mine, crops } = useElsewhere(NOTHING);
   const isSaved = mine === 0 && crops === 0;
   return (
-    <FormDialog title="Log out" size={440} isOpen={isOpen} onClose={onStay} onSubmit={onLeave} verb={isSaved ? "Log out" : "Log out all the same"} stay="Stay" isGrave={!isSaved} isBusy={isLeaving}>
+    <FormDialog title="Log out" size={440} isOpen={isOpen} onClose={onStay} onSubmit={onLeave} verb={isSaved ? "Log out" : "Log out anyway"} stay="Stay" isGrave={!isSaved} isBusy={isLeaving}>
       {mine > 0 && (
         <Text size="sm">
           {formatCount(mine, "change")} of yours {mine === 1 ? "is" : "are"} not on the server yet. {mine === 1 ? "It stays" : "They stay"} in this browser and {mine === 1 ? "is" : "are"} sent when you log in here again; nobody else sees{" "}

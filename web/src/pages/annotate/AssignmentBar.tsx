@@ -44,7 +44,7 @@ export function AssignmentBar() {
     if (first && !asked.cameras.includes(camera)) act(selectCamera, first);
   }, [asked, camera, act]);
 
-  const reason = blind ? "You mark this frame blindly: open your own version of it" : lockReason(assignment, me, replicas, hand);
+  const reason = blind ? "You are marking this frame blind: open your own version" : lockReason(assignment, me, replicas, hand);
   useEffect(() => {
     show({ lock: reason });
     return () => show({ lock: null });
@@ -82,7 +82,7 @@ export function AssignmentBar() {
   sendNow.current = send;
   const submit = (): void => {
     if (!progress) return;
-    if (isStuck(session.saving())) notifications.show({ color: "yellow", message: "Settle the changes that are not saved, then submit." });
+    if (isStuck(session.saving())) notifications.show({ color: "yellow", message: "Resolve the unsaved changes, then submit." });
     else if (unfinished !== "" && !isSure) setSure(true);
     else setWaiting(true);
   };
@@ -142,7 +142,7 @@ export function AssignmentBar() {
       {writing ? (
         <Words
           key={writing}
-          label={writing === "return" ? "What is to be changed" : `Comment on the ${hand} ${jointLabel(joint)}`}
+          label={writing === "return" ? "What should be changed" : `Comment on the ${hand} ${jointLabel(joint)}`}
           isBusy={change.isPending}
           onCancel={() => setWriting(null)}
           onSend={(text) =>
@@ -185,9 +185,9 @@ export function AssignmentBar() {
             </Tooltip>
           )}
           {maySubmit && (
-            <Tooltip label={hint("Hand the work in; it is locked until its review", "assignment.submit")}>
+            <Tooltip label={hint("Submit the work; it is locked until it is reviewed", "assignment.submit")}>
               <Button size="compact-xs" variant={isMine ? "filled" : "default"} loading={change.isPending || isWaiting} onClick={submit}>
-                {isSure ? "Submit nevertheless" : "Submit"}
+                {isSure ? "Submit anyway" : "Submit"}
               </Button>
             </Tooltip>
           )}
@@ -199,7 +199,7 @@ export function AssignmentBar() {
             </Tooltip>
           )}
           {mayAccept && (
-            <Tooltip label={hint("Find it good; it is locked from then on", "assignment.accept")}>
+            <Tooltip label={hint("Accept the work; it is locked from then on", "assignment.accept")}>
               <Button size="compact-xs" loading={change.isPending} onClick={() => send("accept")}>
                 Accept
               </Button>

@@ -28,7 +28,7 @@ export function AssignmentComments() {
     return (
       <div className={classes.comments}>
         <Text size="xs" className="quiet">
-          {assignment ? "Comments are between the annotator of this frame and the reviewers." : "This frame is nobody's assignment. Leads give work on the page of a project; what reviewers say about it stands here."}
+          {assignment ? "Comments are between the annotator of this frame and the reviewers." : "This frame is not assigned. Leads assign work on a project's page; comments of reviewers appear here."}
         </Text>
       </div>
     );
@@ -43,7 +43,7 @@ export function AssignmentComments() {
       {!data && !error && [0, 1].map((index) => <Skeleton key={index} height={72} />)}
       {data?.length === 0 && (
         <Text size="xs" className="quiet">
-          Nothing was said yet. Choose a joint and press Comment to ask or to say what is to be changed.
+          No comments yet. Choose a joint and press Comment to ask, or to say what should be changed.
         </Text>
       )}
       {data?.map((comment) => (

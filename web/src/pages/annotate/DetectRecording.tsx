@@ -35,7 +35,7 @@ export function DetectRecording({ recording, jobs: { last, found, error } }: { r
           ? `Whether the recording was looked through is not known: ${error.message}`
           : found
             ? `The detector looked through the whole recording ${formatAgo(found.ended_at ?? found.created_at)}.`
-            : "The detector looks at each image by itself. Looking through the whole recording it follows the hands and finds more of them."}
+            : "The detector looks at each image by itself. In a pass through the whole recording it follows the hands and finds more of them."}
       </Text>
       {isWaiting && (
         <>

@@ -45,7 +45,7 @@ export function HistoryPanel() {
   if (entries.length === 0) {
     return (
       <Text size="sm" className={classes.empty}>
-        Nobody has marked the {hand} hand in frame {frame} yet. Every gesture on it will be listed here, and any version can be brought back.
+        Nobody has marked the {hand} hand in frame {frame} yet. Every gesture on it will be listed here, and any version can be restored.
       </Text>
     );
   }
@@ -73,7 +73,7 @@ export function HistoryPanel() {
                 disabled={isLocked}
                 onClick={() => act(restorePose, { key, pose: entry.pose }) && show({ preview: null })}
               >
-                Bring revision {entry.revision} back
+                Restore revision {entry.revision}
               </Button>
             )}
           </li>

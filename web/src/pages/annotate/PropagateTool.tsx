@@ -22,7 +22,7 @@ function Propagate({ close }: { close: () => void }) {
   return (
     <Stack gap="sm">
       <Text size="sm" fw={600}>
-        Carry the {state.hand} hand on
+        Copy the {state.hand} hand to the next frames
       </Text>
       <Button
         size="xs"
@@ -55,7 +55,7 @@ function Propagate({ close }: { close: () => void }) {
         </>
       ) : (
         <Text size="xs" className="quiet">
-          There is no room ahead: {blocker}.
+          The pose cannot be copied further: {blocker}.
         </Text>
       )}
     </Stack>
@@ -66,7 +66,7 @@ function Propagate({ close }: { close: () => void }) {
 export function PropagateTool() {
   const isNothing = useAnnotation((state) => isEmpty(poseAt(state, activeKey(state))));
   return (
-    <ToolPopover label="Carry the pose on" icon={<IconCopyPlus size={18} />} isDisabled={isNothing} width={248}>
+    <ToolPopover label="Copy the pose to the next frames" icon={<IconCopyPlus size={18} />} isDisabled={isNothing} width={248}>
       {(close) => <Propagate close={close} />}
     </ToolPopover>
   );

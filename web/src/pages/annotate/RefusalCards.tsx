@@ -11,13 +11,13 @@ export function RefusalCards() {
   return [...refusals].map(([key, reason]) => (
     <div key={key} className={`card ${classes.notice}`} role="alert">
       <Text size="sm" fw={600}>
-        The server does not take the {parseKey(key).hand} hand of frame {parseKey(key).frame}
+        The server did not accept the {parseKey(key).hand} hand of frame {parseKey(key).frame}
       </Text>
       <Text size="xs" my={8}>
         {reason} Your version is kept in this browser; change it, or drop it.
       </Text>
       <Button size="xs" variant="default" onClick={() => session.queue.discard(key)}>
-        Drop my version
+        Discard my version
       </Button>
     </div>
   ));

@@ -23,9 +23,9 @@ export function describeClick(state: AnnotatorState, pose: Pose, placeMode: Plac
 
 /** Why nothing can be changed in the picture now; null when it can. */
 export function describeWait(frame: number, pictures: Pictures | null, isPlaying: boolean, isRefused: boolean): string | null {
-  if (isPlaying) return "Playing: nothing is changed before you pause";
+  if (isPlaying) return "Playing: pause to change something";
   if (pictures?.setback && pictures.color === null && pictures.depth === null) return `The picture of frame ${frame} could not be loaded: nothing can be changed in it`;
-  if (pictures?.setback && pictures.isStale) return `The picture of frame ${frame} is not here yet, the studio does not answer; nothing is changed before it is here`;
-  if (!pictures || pictures.isStale) return `${isRefused ? "Not taken: the" : "The"} picture of frame ${frame} is on its way; nothing is changed before it is here`;
+  if (pictures?.setback && pictures.isStale) return `The picture of frame ${frame} is not here yet, the studio does not answer; nothing can be changed until it is here`;
+  if (!pictures || pictures.isStale) return `${isRefused ? "No effect: the" : "The"} picture of frame ${frame} is on its way; nothing can be changed until it is here`;
   return null;
 }

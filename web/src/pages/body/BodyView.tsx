@@ -41,7 +41,7 @@ export function BodyView({ vertices, faces }: BodyViewProps) {
       <canvas ref={canvas} aria-hidden />
       {!isThere && !failure && <Loader className={classes.loading} aria-label="The body is loading" />}
       <Text size="xs" className={classes.note}>
-        {failure ?? "Drag to turn, scroll to go nearer, right button to move"}
+        {failure ?? "Drag to turn, scroll to zoom, right button to move"}
       </Text>
     </div>
   );

@@ -33,7 +33,7 @@ export default function CalibrationsPage() {
   if (data?.length === 0)
     return (
       <EmptyState icon={<IconCamera size={56} stroke={1.25} />} title="No cameras are calibrated yet" action={<Begin />}>
-        Several cameras need to know where each other stands. Print a board, film it with all of them, and send the films: lenses, places and time offsets are found, and judged on moments that were left out.
+        The positions of several cameras relative to each other must be known. Print a board, film it with all of them, and send the films: lenses, places and time offsets are found, and judged on moments that were left out.
       </EmptyState>
     );
   const remove = ({ id, name }: Calibration): void =>

@@ -94,7 +94,7 @@ export function FilmChoice({ films, lenses, mostCameras, onFilms, onLenses }: Fi
           )}
         </FileButton>
         <Text size="xs" className="quiet" style={{ overflowWrap: "anywhere" }}>
-          {lenses.length > 0 ? `${lenses.map(({ path }) => path).join(", ")}: kept as they are, by the cameras’ names.` : "Not needed. A calibration of before whose cameras have the same names: its lenses are kept as they are."}
+          {lenses.length > 0 ? `${lenses.map(({ path }) => path).join(", ")}: kept as they are, by the cameras’ names.` : "Optional. An earlier calibration whose cameras have the same names; its lenses are kept."}
         </Text>
         {lenses.length > 0 && (
           <Button variant="subtle" size="compact-sm" onClick={() => onLenses([])}>

@@ -64,7 +64,7 @@ export function FilmsChecked({ calibration }: { calibration: Calibration }) {
   return (
     <div className={classes.columns}>
       <Stack gap="md">
-        <Sentences title={count === 1 ? "One thing must be mended" : `${count} things must be mended`} sentences={report.problems} isProblem />
+        <Sentences title={count === 1 ? "One thing must be fixed" : `${count} things must be fixed`} sentences={report.problems} isProblem />
         <Sentences title="Worth knowing" sentences={report.notes} isProblem={false} />
         {report.cameras.length > 0 && (
           <section aria-label="Films">

@@ -25,7 +25,7 @@ function Sending({ upload }: { upload: FilmUpload }) {
     <Stack maw={640} mx="auto" mt={64} gap="md" className="card" p="xl" role="status">
       <Group gap="sm">
         {sent === 1 && <Loader size="sm" />}
-        <Title order={2}>{sent === 1 ? "Looking at the films" : "Sending the films"}</Title>
+        <Title order={2}>{sent === 1 ? "Checking the films" : "Sending the films"}</Title>
       </Group>
       <Text className="quiet">
         {formatCount(upload.films.length, "film")}, {formatBytes(bytes)}. {sent === 1 ? "The first picture of each is looked at." : "Stay on any page of the studio until they have arrived."}

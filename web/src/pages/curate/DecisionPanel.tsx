@@ -73,7 +73,7 @@ export function DecisionPanel({ item, mine, reasons, mayDecide, isDrawn, onDecid
       </div>
       {!mayDecide && (
         <Text size="xs" className="quiet">
-          Reviewers and leads decide; you look on.
+          Reviewers and leads decide; you can only look.
         </Text>
       )}
       <div className={classes.acts} role="group" aria-label="Decision">

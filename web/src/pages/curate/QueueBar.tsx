@@ -81,7 +81,7 @@ export function QueueBar({ choice, onChange, state }: QueueBarProps) {
             {done.toLocaleString("en")} of {all.toLocaleString("en")} decided
           </Text>
         )}
-        <Progress value={all > 0 ? (100 * done) / all : 0} w={128} aria-label={counts ? `${done} of ${all} decided` : "Being counted"} />
+        <Progress value={all > 0 ? (100 * done) / all : 0} w={128} aria-label={counts ? `${done} of ${all} decided` : "Counting …"} />
       </div>
       <Button size="xs" variant="default" component={Link} to="/curate/agreement" leftSection={<IconUsers size={14} aria-hidden />} style={{ flex: "none" }}>
         Agreement

@@ -49,7 +49,7 @@ export function Filters({ choice, comparison, onChange }: FiltersProps) {
           onChange={(camera) => onChange({ camera: camera ?? "" })}
         />
       )}
-      <Tooltip label="Its annotation may have helped the tracker to begin" multiline maw={280}>
+      <Tooltip label="The tracker may have started from its annotation" multiline maw={280}>
         <Checkbox size="xs" label="Without the first frame" checked={choice.withoutStart} onChange={(event) => onChange({ withoutStart: event.currentTarget.checked })} />
       </Tooltip>
       <Group gap={8} ml="auto">

@@ -20,7 +20,7 @@ export function LabelsPicker({ comparison, snapshots, onChange }: LabelsPickerPr
     <Popover position="bottom-end" width={320} shadow="md" trapFocus>
       <Popover.Target>
         <Button size="xs" variant="default" leftSection={<IconTags size={16} aria-hidden />}>
-          {snapshots.length === 0 ? "Labels of now" : `Labels of ${formatCount(snapshots.length, "snapshot")}`}
+          {snapshots.length === 0 ? "Current labels" : `Labels of ${formatCount(snapshots.length, "snapshot")}`}
         </Button>
       </Popover.Target>
       <Popover.Dropdown>
@@ -51,7 +51,7 @@ function RecordingLabels({ recording, label, chosen, onChange }: { recording: st
       disabled={!data}
       error={error ? "The snapshots could not be loaded" : undefined}
       comboboxProps={{ withinPortal: !label }}
-      data={[{ value: "", label: own.length === 0 && data ? "Labels of now (no snapshot yet)" : "Labels of now" }, ...own.map((one) => ({ value: one.id, label: `Snapshot ${one.version}: ${one.name}` }))]}
+      data={[{ value: "", label: own.length === 0 && data ? "Current labels (no snapshot yet)" : "Current labels" }, ...own.map((one) => ({ value: one.id, label: `Snapshot ${one.version}: ${one.name}` }))]}
       value={value}
       onChange={(id) => onChange(id ? [...others, id] : others)}
     />

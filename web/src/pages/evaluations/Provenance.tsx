@@ -51,7 +51,7 @@ export function ParameterTable({ comparison }: { comparison: Comparison }) {
       )}
       {same.length > 0 && (
         <Text size="sm" className="quiet" mt="sm">
-          {tracks.length > 1 ? "Alike in all: " : ""}
+          {tracks.length > 1 ? "The same in all: " : ""}
           {same.join(", ")}
         </Text>
       )}

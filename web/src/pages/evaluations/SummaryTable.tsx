@@ -71,7 +71,7 @@ export function SummaryTable({ comparison, reference, onReference }: SummaryTabl
                     <Link className={classes.link} to={`/recordings/${track.recording_key}/annotate?frame=0`}>
                       Annotate some of its frames
                     </Link>
-                    , or choose other joints above.{track.left_out_joints > 0 && ` All ${track.left_out_joints} joints are left out because of where they came from.`}
+                    , or choose other joints above.{track.left_out_joints > 0 && ` All ${track.left_out_joints} joints are left out because of their source.`}
                   </Text>
                 </Table.Td>
               ) : (

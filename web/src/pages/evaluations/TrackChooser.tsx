@@ -47,7 +47,7 @@ export function TrackChooser({ initial, onChoose, onProject }: TrackChooserProps
           </Button>
         }
       >
-        An evaluation sets tracks against the joints that people marked. Open a recording, annotate some of its frames, and track it.
+        An evaluation compares tracks with the joints that people marked. Open a recording, annotate some of its frames, and track it.
       </EmptyState>
     );
   }

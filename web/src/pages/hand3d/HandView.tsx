@@ -50,7 +50,7 @@ export function HandView({ scope, label, parts: { holder, canvas, stage, failure
         </div>
       )}
       {isBusy && !failure && !noStage && <div className={classes.waiting} role="status">
-          <span>The hand is on its way</span>
+          <span>Loading the hand</span>
         </div>}
       {(failure || noStage) && <div className={classes.failure}>{noStage ? <Text role="alert">{noStage}</Text> : failure}</div>}
     </div>

@@ -48,7 +48,7 @@ export function ImportOptionsForm({ importId, report, live }: ImportOptionsFormP
             <Group gap={8} role="status">
               <Loader size={14} />
               <Text size="sm" className="quiet">
-                Looking again …
+                Checking again …
               </Text>
             </Group>
           )}

@@ -57,7 +57,7 @@ function Confirm({ checked, options, needed, isBehind }: ConfirmProps) {
       </Group>
       {!checked.report.ok && (
         <Text size="sm" mt="sm" className="quiet" role="status">
-          {needed.length > 0 ? `Still needed: ${needed.map(({ label }) => label.charAt(0).toLowerCase() + label.slice(1)).join(", ")}.` : "It can be stored once what is said above is mended."}
+          {needed.length > 0 ? `Still needed: ${needed.map(({ label }) => label.charAt(0).toLowerCase() + label.slice(1)).join(", ")}.` : "It can be stored once the problems above are fixed."}
         </Text>
       )}
       {confirm.error && (
@@ -85,7 +85,7 @@ function Checked({ checked }: { checked: Import }) {
   const isHopeless = !report.ok && report.cameras.length === 0 && needed.length === 0;
   return (
     <Stack gap="md">
-      <Sentences title={problems.length === 1 ? "One thing must be mended" : `${formatCount(problems.length, "thing")} must be mended`} sentences={problems} isProblem />
+      <Sentences title={problems.length === 1 ? "One thing must be fixed" : `${formatCount(problems.length, "thing")} must be fixed`} sentences={problems} isProblem />
       {isOfCameras(checked) && <TakenCameras checked={checked} />}
       {!isHopeless && <ImportPictures importId={checked.id} cameras={report.cameras} open={needed.flatMap(({ field }) => KIND_OF[field] ?? [])} />}
       {(report.takes ?? []).length > 0 && <ImportOptionsForm importId={checked.id} report={report} live={live} />}
@@ -143,7 +143,7 @@ export default function ImportPage() {
             {report.ok
               ? `Read as: ${formatFileFormat(report.format)}. Nothing is stored until you say so.`
               : stillNeeded(report.questions ?? []).length > 0
-                ? `Read as: ${formatFileFormat(report.format)}. Something has to be told first. Nothing is stored until you say so.`
+                ? `Read as: ${formatFileFormat(report.format)}. Some information is missing. Nothing is stored until you say so.`
                 : "This cannot be imported as it is. Nothing was stored."}
           </Text>
         </div>

@@ -31,7 +31,7 @@ export function Thumbnails({ importId, names, what }: ThumbnailsProps) {
 
 const KINDS: Record<string, string> = { color: "Colour", depth: "Depth" };
 
-/** What would come in, as pictures; kinds that are still to be chosen are left to their question. */
+/** What would be imported, as pictures; kinds that are still to be chosen are left to their question. */
 export function ImportPictures({ importId, cameras, open }: { importId: string; cameras: readonly CameraReport[]; open: readonly string[] }) {
   const rows = cameras.flatMap((camera) =>
     Object.entries(camera.pictures ?? {})
@@ -42,7 +42,7 @@ export function ImportPictures({ importId, cameras, open }: { importId: string; 
   return (
     <section className="card" style={{ padding: 16 }} aria-label="Pictures of what would come in">
       <Title order={2} mb="sm">
-        What would come in
+        What would be imported
       </Title>
       <Group gap="lg" align="flex-start">
         {rows.map(({ key, title, names }) => (

@@ -47,7 +47,7 @@ export function NewImportPage() {
       <Stack maw={640} mx="auto" mt={64} gap="md" className="card" p="xl">
         <Group gap="sm">
           {isChecking && <Loader size="sm" />}
-          <Title order={2}>{isChecking ? "Looking at the files" : "Sending the files"}</Title>
+          <Title order={2}>{isChecking ? "Checking the files" : "Sending the files"}</Title>
         </Group>
         <Text className="quiet">
           {formatCount(incoming.files.length, "file")}, {formatBytes(incoming.bytes)}.{" "}

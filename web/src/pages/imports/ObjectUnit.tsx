@@ -28,7 +28,7 @@ export function ObjectUnit({ question, value, onChange }: ObjectUnitProps) {
           ))}
           {choices.length === 0 && (
             <Text size="sm" className="quiet">
-              No usual unit makes a thing to hold of it.
+              No usual unit gives it a size that a hand can hold.
             </Text>
           )}
         </Stack>

@@ -43,7 +43,7 @@ export function JobPage() {
   useTitle(job ? `${formatJobKind(job.kind)} ${job.title}` : "Job");
   if (error && !job)
     return (
-      <Failure what="The job could not be loaded" error={error} safe="If it runs, it goes on by itself." onRetry={() => void refetch()}>
+      <Failure what="The job could not be loaded" error={error} safe="If it is running, it continues." onRetry={() => void refetch()}>
         <Button variant="default" component={Link} to="/jobs">
           To the jobs
         </Button>

@@ -34,7 +34,7 @@ export function JobsPage() {
   };
 
   if (error && !data) {
-    return <Failure what="The jobs could not be loaded" error={error} safe="Running jobs go on by themselves." onRetry={() => void refetch()} />;
+    return <Failure what="The jobs could not be loaded" error={error} safe="Running jobs continue." onRetry={() => void refetch()} />;
   }
   return (
     <div className="page">
@@ -53,8 +53,8 @@ export function JobsPage() {
           {selected.length > 0 && <SelectionBar jobs={selected} onClear={() => setChosen(new Set())} />}
           {!data && Array.from({ length: 5 }, (_, index) => <Skeleton key={index} height={72} radius="lg" />)}
           {data && jobs.length === 0 && isNarrowed && (
-            <EmptyState icon={<IconFilterOff size={40} stroke={1.25} />} title="No job is like that">
-              Loosen the filters above, or show all.
+            <EmptyState icon={<IconFilterOff size={40} stroke={1.25} />} title="No job matches">
+              Change the filters above, or show all.
             </EmptyState>
           )}
           {data && jobs.length === 0 && !isNarrowed && (

@@ -8,13 +8,13 @@ import { Obstacles } from "../parts/Obstacles";
 export function Restart({ job, check }: { job: Job; check: RestartCheck | undefined }) {
   if (!check) return null;
   const { kept, retry } = check;
-  const again = job.kind === "track" ? " Try again takes the fitted shape over, too, unless the first frame was annotated anew." : " Try again begins anew with the same parameters.";
+  const again = job.kind === "track" ? " Try again also reuses the fitted shape, unless the annotation of the first frame has changed." : " Try again starts over with the same parameters.";
   return (
     <Stack gap="sm" className="card" p="md" mb="md" component="section" aria-label="What is kept">
       <Text size="sm">
         {kept.length > 0
-          ? `Kept: ${joinWords(kept)}. Resume goes on from there.${again}`
-          : "Nothing was finished yet that could be kept. What the job worked on is untouched; Try again begins anew with the same parameters."}
+          ? `Kept: ${joinWords(kept)}. Resume continues from there.${again}`
+          : "No step was finished. The job's input is unchanged; Try again starts over with the same parameters."}
       </Text>
       <Obstacles check={retry} />
     </Stack>

@@ -38,7 +38,7 @@ export function Comparison({ recording, snapshots, snapshot, other, onChoose }: 
           </Tooltip>
         </Group>
       </Group>
-      {error && <Failure what="These labels could not be compared" error={error} safe="The labels of now are as they were." onRetry={() => void refetch()} />}
+      {error && <Failure what="These labels could not be compared" error={error} safe="The current labels are unchanged." onRetry={() => void refetch()} />}
       {isPending && !error && <Skeleton h={160} />}
       {data && (
         <div className="card" style={{ padding: 16 }}>

@@ -75,7 +75,7 @@ export function ImportCard({ recording }: { recording: Recording }) {
         <button type="button" className={classes.drop} data-over={isOver} onClick={() => input.current?.click()}>
           <IconUpload size={24} stroke={1.5} aria-hidden />
           <Text size="sm" fw={600}>
-            {isOver ? "Drop to look at the labels" : files.length > 0 ? formatCount(files.length, "file") : "Drop labels on this page, or choose files"}
+            {isOver ? "Drop to check the labels" : files.length > 0 ? formatCount(files.length, "file") : "Drop labels on this page, or choose files"}
           </Text>
           <Text size="xs" className="quiet" ta="center">
             COCO, COCO-WholeBody, FreiHAND, InterHand2.6M, DeepLabCut CSV, T16, annotations.json, or a .zip. Nothing is stored before you confirm.
@@ -104,7 +104,7 @@ export function ImportCard({ recording }: { recording: Recording }) {
         </Collapse>
         {check.isPending && (
           <Text size="sm" className="quiet" role="status">
-            Looking at the labels …
+            Checking the labels …
           </Text>
         )}
         {check.error && (

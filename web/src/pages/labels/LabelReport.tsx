@@ -76,7 +76,7 @@ export function LabelReport({ recording, report, upload, onDone, onStale }: Labe
               </Table.Tbody>
             </Table>
           </ScrollArea.Autosize>
-          <Radio.Group label="Hands that are labelled otherwise" value={policy} onChange={(value) => setPolicy(value)}>
+          <Radio.Group label="Hands with other labels" value={policy} onChange={(value) => setPolicy(value)}>
             <Stack gap={4} mt={4}>
               <Radio value="keep" label="Keep what is here" size="sm" />
               <Radio value="replace" label="Replace by the file's, as new revisions" size="sm" />

@@ -84,8 +84,8 @@ export function SnapshotTable({ recording, snapshots, compared, onCompare }: Sna
       const { is_intact, found } = await verifySnapshot(snapshot.id);
       notifications.show(
         is_intact
-          ? { message: `Version ${snapshot.version} is intact: its SHA-256 is the one noted.`, color: "teal" }
-          : { message: found ? `Version ${snapshot.version} is damaged: its SHA-256 is now ${found.slice(0, 12)}… Bring the file back from a backup.` : `The file of version ${snapshot.version} is gone. Bring it back from a backup.`, color: "red", autoClose: false },
+          ? { message: `Version ${snapshot.version} is intact: its SHA-256 matches.`, color: "teal" }
+          : { message: found ? `Version ${snapshot.version} is damaged: its SHA-256 is now ${found.slice(0, 12)}… Restore the file from a backup.` : `The file of version ${snapshot.version} is missing. Restore it from a backup.`, color: "red", autoClose: false },
       );
     } catch (failure) {
       notifications.show({ color: "red", title: "Not verified", message: (failure as Error).message });
@@ -104,7 +104,7 @@ export function SnapshotTable({ recording, snapshots, compared, onCompare }: Sna
         <Stack className="card" p="md" gap={4}>
           <Text fw={600}>No snapshot yet</Text>
           <Text size="sm" className="quiet">
-            A snapshot keeps the labels as they are, for good and under a hash: to compare with later, to name in a report, to go back to. Imports and restores keep one by themselves before they change anything.
+            A snapshot keeps the labels as they are, with a hash: to compare with later, to cite in a report, or to restore. Imports and restores keep one before they change anything.
           </Text>
         </Stack>
       )}

@@ -86,7 +86,7 @@ export function LineageList({ kind, id }: { kind: LineageKind; id: string }) {
           <Groups title="Went into" groups={data.went_into} />
           {[...data.comes_from, ...data.went_into].every((group) => group.total === 0) && (
             <Text size="xs" className="quiet">
-              Nothing has come of it yet.
+              Nothing has been made from it yet.
             </Text>
           )}
         </Stack>

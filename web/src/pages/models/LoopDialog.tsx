@@ -45,7 +45,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
       <Radio.Group label="Learn from" value={by} onChange={(value) => setBy(value)}>
         <Stack gap="sm" mt="sm">
           <Radio value="verdict" label="What the program calls good, and nobody has rejected" />
-          <Radio value="decisions" label="What people have accepted by now: one round, then its registrations wait for people" />
+          <Radio value="decisions" label="What people have accepted so far: one round, then its registrations wait for review" />
         </Stack>
       </Radio.Group>
       <Group grow gap="md" align="flex-start">

@@ -113,12 +113,12 @@ export function ReportPlots({ report }: { report: TrainingReport }) {
           What it has learnt
         </Title>
         <div className={classes.plots}>
-          <Curves title="Compactness" note="Variance that so many components hold" axis="Variance, %" unit="%" digits={1} lines={compactness} />
+          <Curves title="Compactness" note="Variance explained by this many components" axis="Variance, %" unit="%" digits={1} lines={compactness} />
           <Curves title="Generalisation of shapes" note="Mean error of templates, by number of shape components" axis="Mean error, mm" unit="mm" digits={2} lines={shapes} />
           <Curves title="Passes" note="Distance of the model to what it learns from after each pass" axis="Distance, mm" unit="mm" digits={3} lines={passes} />
           <Bars title="By hand" note="Distance to the registrations, and how many" rows={report.byHand} show={mm} />
           <Bars title="By pose" note="Distance to the registrations, and how many" rows={report.byPose} show={mm} />
-          <Bars title="Time" note="What training spent where" rows={report.seconds} show={formatDuration} />
+          <Bars title="Time" note="Time of each stage of training" rows={report.seconds} show={formatDuration} />
         </div>
       </section>
     </>

@@ -17,8 +17,8 @@ async function verify(set: TrainingSet): Promise<void> {
     const { is_intact, damaged } = await verifyTrainingSet(set.id);
     notifications.show(
       is_intact
-        ? { message: `“${set.name}” is intact: every file has the SHA-256 that was noted.`, color: "teal" }
-        : { message: `${formatCount(damaged.length, "registration")} of “${set.name}” changed or gone. Bring the files back from a backup.`, color: "red", autoClose: false },
+        ? { message: `“${set.name}” is intact: the SHA-256 of every file matches.`, color: "teal" }
+        : { message: `${formatCount(damaged.length, "registration")} of “${set.name}” changed or missing. Restore the files from a backup.`, color: "red", autoClose: false },
     );
   } catch (failure) {
     notifications.show({ color: "red", title: "Not verified", message: (failure as Error).message });
@@ -55,7 +55,7 @@ export function TrainingSets() {
         )}
       />
       <Text size="xs" className="quiet" mt={4}>
-        A set never changes: who decides otherwise later makes a new one.
+        A set never changes; after later decisions, make a new one.
       </Text>
     </section>
   );

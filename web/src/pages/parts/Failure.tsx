@@ -22,7 +22,7 @@ export function Failure({ what, error, safe, onRetry, children }: FailureProps) 
   return (
     <Stack align="center" gap="sm" py={48} px="md" ta="center" role="alert">
       <Icon size={40} stroke={1.5} color={isForbidden ? "var(--text-quiet)" : "var(--bad-text)"} aria-hidden />
-      <Title order={2}>{isForbidden ? "This is not open to you now" : what}</Title>
+      <Title order={2}>{isForbidden ? "You cannot open this now" : what}</Title>
       <Text maw={560} className="quiet" style={{ overflowWrap: "anywhere" }}>
         {error instanceof Error ? error.message : String(error)}
       </Text>

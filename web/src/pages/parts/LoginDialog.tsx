@@ -18,7 +18,7 @@ export function LoginDialog({ me, isOther }: { me: Me; isOther: boolean }) {
             .
           </>
         ) : (
-          "Log in to go on where you are."
+          "Log in to continue where you are."
         )}{" "}
         What you did is kept in this browser for {me.name}, and is saved only under that name.
       </Text>

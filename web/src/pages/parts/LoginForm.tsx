@@ -61,7 +61,7 @@ export function CodeForm({ code, onIn }: { code: string; onIn: (me: Me) => void 
   return (
     <form onSubmit={check}>
       <Stack gap="md">
-        <PasswordInput label="New password" description="At least 10 characters; a few words in a row do." name="new-password" autoComplete="new-password" value={password} onChange={(event) => setPassword(event.currentTarget.value)} required withAsterisk={false} autoFocus />
+        <PasswordInput label="New password" description="At least 10 characters; use several words." name="new-password" autoComplete="new-password" value={password} onChange={(event) => setPassword(event.currentTarget.value)} required withAsterisk={false} autoFocus />
         <PasswordInput label="Again" name="new-password-again" autoComplete="new-password" value={again} onChange={(event) => setAgain(event.currentTarget.value)} required withAsterisk={false} />
         <Refusal text={failure} />
         <Button type="submit" loading={isSending} fullWidth>

@@ -74,7 +74,7 @@ export function Gate({ children }: { children: ReactNode }) {
   if (code !== null || presence.kind === "out") return <LoginPage code={code} />;
   if (presence.kind === "asking") return null;
   if (presence.kind === "away") {
-    return <Failure what="The studio does not answer" error={presence.failure} safe="What you did before is safe; trying again by itself." />;
+    return <Failure what="The studio does not answer" error={presence.failure} safe="Your work is safe; reconnecting." />;
   }
   return (
     <>

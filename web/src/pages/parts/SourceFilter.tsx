@@ -12,7 +12,7 @@ export function SourceFilter({ chosen, onChange }: SourceFilterProps) {
   const [first = INDEPENDENT] = chosen;
   const way = first === INDEPENDENT || first === ALL_SOURCES ? first : "some";
   const kinds = SOURCE_CHOICES.filter((one) => chosen.includes(one.value)).map((one) => one.label);
-  const words = way === INDEPENDENT ? "Without tracks' own" : way === ALL_SOURCES ? "All sources" : kinds.join(", ");
+  const words = way === INDEPENDENT ? "Independent of tracks" : way === ALL_SOURCES ? "All sources" : kinds.join(", ");
   return (
     <Popover position="bottom-start" width={304} shadow="md" trapFocus>
       <Popover.Target>
@@ -38,7 +38,7 @@ export function SourceFilter({ chosen, onChange }: SourceFilterProps) {
           </Checkbox.Group>
         )}
         <Text size="xs" className="quiet" mt="sm">
-          A joint that is moved by hand is by hand from then on.
+          A joint that somebody moves counts as placed by hand from then on.
         </Text>
       </Popover.Dropdown>
     </Popover>

@@ -104,7 +104,7 @@ function Tables({ report }: { report: AgreementReport }) {
   const scale = Math.max(0.01, ...[...report.joints, ...report.annotators].map((one) => one.spread.std_px ?? 0));
   return (
     <div className={classes.columns} style={{ marginTop: 24 }}>
-      <Box title="Annotators" note={report.are_separable ? "The noise of each one, and where they mark against the mean of the others." : "Two cannot be told apart: each has the noise that they share."}>
+      <Box title="Annotators" note={report.are_separable ? "The noise of each one, and where they mark against the mean of the others." : "Two annotators cannot be separated: each is given the noise that they share."}>
         <Bars label="Annotator" last="Bias x, y, px" scale={scale} rows={report.annotators.map((one) => [one.name, one.spread, `${signed(one.bias_x_px)}, ${signed(one.bias_y_px)}`])} />
       </Box>
       <Box title="States" note="Joints that everybody calls visible, or occluded, and those about which they differ.">

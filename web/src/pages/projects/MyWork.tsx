@@ -38,7 +38,7 @@ export function MyWork() {
         <Text className="quiet">
           {isReviewer
             ? "Nothing waits for your review, and nothing is assigned to you. Work that somebody submits appears here."
-            : "Nothing is assigned to you. What a lead gives you to mark appears here, with the next frame to do."}
+            : "Nothing is assigned to you. What a lead assigns to you appears here, with the next frame to do."}
         </Text>
       )}
       {!isLoading && items.map((item) => <Work key={item.assignment.id} {...item} />)}

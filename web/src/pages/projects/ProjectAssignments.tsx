@@ -24,8 +24,8 @@ export function ProjectAssignments({ project, mayChange }: { project: Project; m
       {data?.length === 0 && (
         <Text className="quiet">
           {project.archived_at
-            ? "An archived project shows no assignments. Bring it back to see them."
-            : `Nobody was given frames yet. ${mayChange ? "Give somebody a range below; what they submit is locked until it is reviewed." : "A lead gives them."}`}
+            ? "An archived project shows no assignments. Restore it to see them."
+            : `No frames are assigned yet. ${mayChange ? "Assign a range below; what is submitted is locked until it is reviewed." : "A lead assigns them."}`}
         </Text>
       )}
       <Stack gap="sm">

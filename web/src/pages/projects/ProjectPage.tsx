@@ -97,7 +97,7 @@ function Head({ project, mayChange, isLead }: { project: Project; mayChange: boo
       )}
       {isLead && project.archived_at && (
         <Button loading={change.isPending} onClick={() => change.mutate({ method: "POST", path: `${path}/restore` })}>
-          Bring back
+          Restore
         </Button>
       )}
     </Group>

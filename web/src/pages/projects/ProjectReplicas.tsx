@@ -27,7 +27,7 @@ export function ProjectReplicas({ project, mayChange }: { project: Project; mayC
       {!data && <Awaited what="The blind replicas" query={query} height={80} />}
       {data?.length === 0 && (
         <Text className="quiet">
-          None yet. Give the same frames to several people, who mark them without seeing each other: how far apart they are says how good the labels are.
+          None yet. Give the same frames to several people, who mark them without seeing each other. How far apart they are shows how good the labels are.
         </Text>
       )}
       {data && data.length > 0 && (

@@ -92,7 +92,7 @@ function ProjectCard({ project, isLead }: { project: Project; isLead: boolean })
       )}
       {project.archived_at && isLead && (
         <Button size="xs" variant="default" loading={change.isPending} onClick={() => change.mutate({ method: "POST", path: `/projects/${project.id}/restore` })}>
-          Bring back
+          Restore
         </Button>
       )}
     </div>

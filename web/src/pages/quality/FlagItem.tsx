@@ -51,7 +51,7 @@ export function FlagItem({ recording, flag, isDismissed, isBusy, onJudge }: Flag
             Mend
           </Button>
           <Button size="compact-xs" variant="subtle" disabled={isBusy || picture !== "here"} onClick={onJudge}>
-            {isDismissed ? "Bring back" : "It is right"}
+            {isDismissed ? "Restore" : "It is right"}
           </Button>
           {picture === "missing" && (
             <Text size="xs" c="var(--bad-text)" role="alert">

@@ -56,7 +56,7 @@ export function FlaggedLabels({ recordingId, recording: shot, pages, kind, isDis
       {first && shot && flags.length === 0 && (
         <EmptyState
           icon={<IconChecks size={48} stroke={1.25} />}
-          title={isDismissed ? "Nothing was put away" : first.checked.labels === 0 ? "Nothing is labelled yet" : "No label looks wrong to what could be checked"}
+          title={isDismissed ? "Nothing was dismissed" : first.checked.labels === 0 ? "Nothing is labelled yet" : "No check found a wrong label"}
           action={
             <Button variant="default" component={Link} to={`/recordings/${recordingId}/annotate`}>
               Annotate
@@ -64,7 +64,7 @@ export function FlaggedLabels({ recordingId, recording: shot, pages, kind, isDis
           }
         >
           {isDismissed
-            ? "Flags that somebody looked at and found right are kept here, and can be brought back."
+            ? "Flags that somebody dismissed are kept here, and can be restored."
             : "Every label is checked whenever it changes. What looks wrong appears here, the worst first; below is what each check could look at, and what it lacks."}
         </EmptyState>
       )}

@@ -33,7 +33,7 @@ export function FramesToLookAt({ recording }: { recording: Recording }) {
     return (
       <EmptyState
         icon={<IconEyeCheck size={48} stroke={1.25} />}
-        title="No frame stands in the queue"
+        title="The queue is empty"
         action={
           <Button variant="default" component={Link} to={`/recordings/${recording.id}`}>
             Track it, or find its hands
@@ -53,7 +53,7 @@ export function FramesToLookAt({ recording }: { recording: Recording }) {
       {others.length > 0 && (
         <>
           <Text size="sm" className="quiet" my="md">
-            From here on nothing looks wrong to what could be asked.
+            From here on no check finds a doubt.
           </Text>
           <Items recording={recording} items={others} label="Frames in which nothing looks wrong" />
         </>

@@ -10,7 +10,7 @@ import { RefinementTable } from "./RefinementTable";
 
 /** What to say of the newest proposal, above its table. */
 function titleOf({ state, is_current, report, changed_at }: Refinement, tracks: number): string {
-  const again = tracks > 0 ? ` Tracks made before do not follow (${formatCount(tracks, "track")} here): track again.` : "";
+  const again = tracks > 0 ? ` Earlier tracks keep the old cameras (${formatCount(tracks, "track")} here): track again.` : "";
   if (state === "taken") return `These cameras were taken ${formatAgo(changed_at ?? "")}; those of before are kept.${again}`;
   if (state === "put_back") return `The cameras of before were put back; the labels would have these.${again}`;
   if (!is_current) return "The cameras were changed since; refine them again.";
@@ -34,7 +34,7 @@ export function RefineCameras({ recording, tracks }: { recording: Recording; tra
     <Stack gap="sm" mt="md" component="section" aria-label="Refine cameras from labels">
       <Group justify="space-between">
         <Text size="sm" className="quiet" style={{ flex: "1 1 280px" }}>
-          Cameras that were knocked after they were calibrated come back by joints marked in two cameras or more.
+          Cameras that were knocked after their calibration can be corrected from joints marked in two cameras or more.
         </Text>
         <For role="lead">
           <Group gap="md">
@@ -87,7 +87,7 @@ export function RefineCameras({ recording, tracks }: { recording: Recording; tra
                   onClick={() => putBack.mutate(taken.id, { onError: tellFailure })}
                   leftSection={<IconArrowBackUp size={16} aria-hidden />}
                 >
-                  Put the cameras of before back
+                  Restore the previous cameras
                 </Button>
               )}
             </Group>

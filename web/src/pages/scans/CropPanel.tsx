@@ -19,7 +19,7 @@ export function CropPanel({ crop, revision, hasColors }: CropPanelProps) {
         Crop
       </Title>
       <Text size="xs" className="quiet" mb="sm">
-        One stroke with the knife: a closed one takes what it encloses, an open one what lies beyond it. What it takes is shown red and dim; the file stays whole.
+        A stroke with the knife: a closed one removes what it encloses, an open one what lies beyond it. Removed points are red and dim; the file is not changed.
       </Text>
       <Text size="sm" mb="sm" data-testid="crop-share">
         {draft.cuts.length === 0 && crop.share === 0 ? "Nothing is left out." : `${formatCount(draft.cuts.length, "stroke")}; ${(100 * crop.share).toFixed(1)} % of the points are left out.`}

@@ -17,8 +17,8 @@ interface RegisterDialogProps {
 }
 
 const ONLY = [
-  { value: "new", label: "Those that this model has not registered as they are cropped now" },
-  { value: "not_accepted", label: "Those whose newest registration nobody has accepted" },
+  { value: "new", label: "Scans that this model has not registered with their present crop" },
+  { value: "not_accepted", label: "Scans whose newest registration nobody has accepted" },
   { value: "all", label: "All, again" },
 ] as const;
 
@@ -41,7 +41,7 @@ export function RegisterDialog({ isOpen, onClose, scanIds, collection, modelId }
   return (
     <FormDialog title="Register scans" size={560} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Register" isBusy={start.isPending} isReady={mayStart(check)} check={check.data} failure={start.error}>
       <Text size="sm" className="quiet">
-        The template of a hand model is brought onto every scan, without a start by hand. The program judges each result; then people accept or reject it.
+        The template of a hand model is fitted to every scan, without a manual start. The program judges each result; then people accept or reject it.
       </Text>
       <Select
         label="Hand model"

@@ -240,7 +240,7 @@ function OpenScan({ scan }: { scan: Scan }) {
       <div className={frame.middle}>
         <HandRail scope="scan" control={control} hasMesh={Boolean(geometry.data?.mesh)}>
           <Tool label="Knife: the next stroke cuts" action="scan.cut" icon={<IconScissors size={18} />} isOn={isCutting} isDisabled={!crop.isReady} onClick={() => setCutting(!isCutting)} />
-          <Tool label="Take the last stroke back" action="scan.uncut" icon={<IconArrowBackUp size={18} />} isDisabled={crop.draft.cuts.length === 0} onClick={crop.undo} />
+          <Tool label="Undo the last stroke" action="scan.uncut" icon={<IconArrowBackUp size={18} />} isDisabled={crop.draft.cuts.length === 0} onClick={crop.undo} />
           <Tool label="Take the other side of the last line" action="scan.flip" icon={<IconFlipHorizontal size={18} />} isDisabled={!crop.canFlip} onClick={crop.flip} />
           <span className={viewClasses.line} aria-hidden />
         </HandRail>
@@ -309,7 +309,7 @@ function OpenScan({ scan }: { scan: Scan }) {
           </span>
         ))}
         <Text size="xs" span ml="auto" role="status">
-          {isCutting ? "The next stroke cuts" : hasFingers ? "Drag to turn, pinch to come nearer, two fingers to move" : "Drag to turn, wheel to come nearer, right drag to move"}
+          {isCutting ? "The next stroke cuts" : hasFingers ? "Drag to turn, pinch to zoom, two fingers to move" : "Drag to turn, wheel to zoom, right drag to move"}
         </Text>
       </div>
       <RegisterDialog isOpen={isRegistering} onClose={registering.close} scanIds={[scan.id]} />

@@ -54,7 +54,7 @@ function State({ scan }: { scan: Scan }) {
 function Length({ scan }: { scan: Scan }) {
   const length = scan.size_m[0] ?? 0;
   const { state, text } = judgeSize(length);
-  const told = [text, scan.is_unit_guessed ? "Nobody said the unit: it was guessed from the size." : ""].filter(Boolean).join(" ");
+  const told = [text, scan.is_unit_guessed ? "The unit was not given; it was guessed from the size." : ""].filter(Boolean).join(" ");
   const shown = (
     <Text size="sm" span c={state === "bad" ? "var(--bad-text)" : state === "crop" ? "var(--warn-text)" : undefined} tabIndex={told ? 0 : undefined}>
       {(100 * length).toFixed(length < 1 ? 1 : 0)} cm{told ? " ?" : ""}
@@ -106,7 +106,7 @@ export default function ScansPage() {
         <ScanDrops />
         <UploadDialog />
         <EmptyState icon={<IconScan size={56} stroke={1.25} />} title="No scans yet" action={<AddScansButton label="Add the first scans" />}>
-          Drop PLY, OBJ or STL files, a folder of them or a .zip anywhere on this page. Then register them: a hand model is brought onto each, you accept or reject, and what you accept trains a better model.
+          Drop PLY, OBJ or STL files, a folder of them or a .zip anywhere on this page. Then register them: a hand model is fitted to each, you accept or reject, and what you accept trains a better model.
         </EmptyState>
       </>
     );
@@ -208,14 +208,14 @@ export default function ScansPage() {
       {data && scans.length === 0 && (
         <EmptyState
           icon={<IconFilterOff size={40} stroke={1.25} />}
-          title="No scan is like that"
+          title="No scan matches"
           action={
             <Button variant="default" onClick={() => (setSearch(""), setFilters({ collection: undefined, subject: undefined, side: undefined, state: undefined, search: undefined }))}>
               Show all
             </Button>
           }
         >
-          Loosen the filters above.
+          Change the filters above.
         </EmptyState>
       )}
       {scans.length > 0 && (

@@ -63,7 +63,7 @@ export function SizeCheck({ measured, answers, shown, isOnlyThis, isConfirmed, o
         )}
       </div>
       {isListed ? (
-        <Text size="sm">The unit of this scan is said by its scans.json, which wins.</Text>
+        <Text size="sm">The unit of this scan comes from its scans.json.</Text>
       ) : (
         <UnitField key={isOnlyThis ? one.file : ""} value={unit} units={one.size_units[0] ?? null} onChange={change} />
       )}

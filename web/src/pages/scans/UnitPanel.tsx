@@ -48,7 +48,7 @@ export function UnitPanel({ scan, hasUnsavedCrop }: { scan: Scan; hasUnsavedCrop
             <UnitField value={draft ?? scan.metres_per_unit} units={units} onChange={setDraft} />
             {scan.registration && (
               <Text size="xs" className="quiet">
-                Its registrations were made at this size. With another unit they no longer count, and it is to be registered again.
+                Its registrations were made at this size. With another unit they no longer count, and the scan must be registered again.
               </Text>
             )}
             {hasUnsavedCrop && (

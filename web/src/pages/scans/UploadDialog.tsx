@@ -20,7 +20,7 @@ function findFault(measured: ScansMeasured | null, answers: UnitAnswers, isConfi
   if (measured.files.length === 0) return "None of these files is a scan.";
   const units = measured.files.map((one) => unitOf(one, answers));
   const unknown = units.filter((unit) => unit === null).length;
-  if (unknown > 0) return `${formatCount(unknown, "scan")} without a unit: say it.`;
+  if (unknown > 0) return `${formatCount(unknown, "scan")} without a unit: choose one.`;
   const bad = measured.files.filter((one, index) => judgeSize((units[index] ?? 0) * (one.size_units[0] ?? 0), limitsOf(measured)).state === "bad").length;
   if (bad > 0) return `${formatCount(bad, "scan has a size", "scans have a size")} that no hand has: correct the unit.`;
   if (!isConfirmed && measured.files.some((one) => isGuess(one, answers))) return "Confirm the guessed size, or choose the unit.";

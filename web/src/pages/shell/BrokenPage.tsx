@@ -7,7 +7,7 @@ export function BrokenPage() {
   const error = useRouteError();
   return (
     <Failure
-      what="This page has broken"
+      what="This page failed"
       error={error}
       safe="Nothing that was saved is affected, and annotations that were still waiting are kept in this browser."
       onRetry={() => window.location.reload()}

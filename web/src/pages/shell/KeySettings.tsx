@@ -79,8 +79,8 @@ function Row({ binding }: { binding: KeyBinding }) {
         {binding.keys.map((chord) => (
           <span key={chord} className={classes.key}>
             <Keys chord={chord} />
-            <Tooltip label="Take this key away">
-              <ActionIcon size={24} aria-label={`Take ${chord} away from ${name}`} onClick={() => bindKeys(binding.id, binding.keys.filter((key) => key !== chord))}>
+            <Tooltip label="Remove this key">
+              <ActionIcon size={24} aria-label={`Remove ${chord} from ${name}`} onClick={() => bindKeys(binding.id, binding.keys.filter((key) => key !== chord))}>
                 <IconX size={12} />
               </ActionIcon>
             </Tooltip>
@@ -154,7 +154,7 @@ export function KeySettings({ isOpen, onClose }: { isOpen: boolean; onClose: () 
         </Button>
       </Group>
       <Text size="xs" className="quiet" mb="sm">
-        What you change holds at once and goes with your account. Gestures of the mouse stay as they are.
+        Changes apply at once and are kept with your account. Mouse gestures cannot be changed.
       </Text>
       <Stack gap="lg">
         {groups.map((group) => (

@@ -15,7 +15,7 @@ const MOUSE: readonly (readonly [string, string])[] = [
   ["Alt + Shift + wheel", "Make the whole hand larger or smaller"],
   ["Right click on a joint", "Visible, occluded, outside"],
   ["Wheel", "Zoom at the cursor"],
-  ["Drag the ground, Ctrl + drag, or Space + drag", "Pan"],
+  ["Drag the background, Ctrl + drag, or Space + drag", "Pan"],
   ["Double click beside the image", "Fit the image"],
 ];
 

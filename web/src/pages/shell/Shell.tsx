@@ -67,7 +67,7 @@ export function Shell() {
         {isNarrow ? <span className={`${classes.where} one-line`}>{nameOfRoom(room)}</span> : <Rooms room={room} running={running} />}
         <Group gap={4} ml="auto" wrap="nowrap" miw={0}>
           {!isLinked && (
-            <Tooltip label="No live connection to the studio's server; trying again by itself">
+            <Tooltip label="No live connection to the studio's server; reconnecting">
               <Group gap={6} px="sm" c="var(--bad-text)" role="status" wrap="nowrap">
                 <IconPlugConnectedX size={16} aria-hidden />
                 <span className={classes.away}>Server away</span>

@@ -47,7 +47,7 @@ export function CameraPlots({ track, frames, lost, frame, camera, onCamera, onSe
               <Table.Th ta="right" title="From where the detector saw the joints to the fitted joints">
                 Fit, px
               </Table.Th>
-              <Table.Th ta="right" title="From where the detector saw the joints to what the other cameras’ detections make of them: large in a camera that moved, lags behind or sees wrongly">
+              <Table.Th ta="right" title="From the detected joints to the points that the other cameras’ detections give: large in a camera that moved, is out of step or detects wrongly">
                 Others, px
               </Table.Th>
               <Table.Th ta="right" title="How much the camera’s joints count in the fit, 0 to 1">

@@ -75,7 +75,7 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onC
             : evaluation && evaluation.evaluated > 0
               ? `${formatMeasure(evaluation.joint_error_px.mean, "px")} mean error in ${evaluation.evaluated} annotated${leftOut}`
               : leftOut
-                ? `nothing judges${leftOut}`
+                ? `no joint counts${leftOut}`
                 : "annotate frames for an error in px"}
         </Text>
       </Tabs.List>

@@ -73,7 +73,7 @@ def make_sample(studio: OpenStudio) -> None:
     """Import the samples, and queue jobs that track the first and register the scans, unless that was done before."""
     from server.access.models import LOCAL_ACCOUNT_ID
     from server.jobs.create_jobs import make_register_job
-    from server.jobs.schemas import RegisterCreate
+    from server.jobs.register_schemas import RegisterCreate
     from server.jobs.service import check_track_params, create_job
 
     marker = studio.storage.root / MARKER

@@ -14,8 +14,8 @@ from server.access.service import find_names
 from server.database.paging import fetch_page
 from server.errors import InvalidError, NotFoundError, StudioError
 from server.jobs import service
+from server.jobs.batch_schemas import BatchOut, BulkRefusal
 from server.jobs.models import ENDED_STATES, STATES, JobRow
-from server.jobs.schemas import BatchOut, BulkRefusal
 
 MOST_JOBS = 500
 """Of one batch, and of one act on several jobs."""

@@ -11,10 +11,12 @@ from sqlalchemy.orm import Session
 
 from server.hand_models.storing import resolve_model
 from server.jobs import service
+from server.jobs.loop_schemas import LoopCreate
 from server.jobs.models import JobRow, JobScanRow
 from server.jobs.obstacles import find_register_obstacles, refuse_at
+from server.jobs.register_schemas import RegisterCreate
 from server.jobs.scan_choice import choose_scans, list_loop_scans
-from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate
+from server.jobs.train_schemas import TrainCreate
 from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles, list_test_subjects
 from server.registrations.training_set_schemas import TrainingRule
 from server.registrations.training_sets import create_training_set, get_training_set

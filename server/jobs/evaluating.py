@@ -16,7 +16,7 @@ from server.jobs.held_out import choose_held_out, make_rule
 from server.jobs.progress import JobProgress
 from server.jobs.restarting import read_loop
 from server.jobs.scan_run import ScanRun, Span
-from server.jobs.schemas import TrainingParams
+from server.jobs.train_schemas import TrainingParams
 from server.registrations import service as registrations
 from server.registrations.training_set_schemas import TrainingRule
 from server.registrations.training_sets import get_training_set

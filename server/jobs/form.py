@@ -10,8 +10,8 @@ from sqlalchemy.orm import Session
 
 from server.detectors.models import DetectorRow
 from server.hand_models.models import HandModelRow
-from server.jobs.schemas import JobForm, JobFormField, JobPreset
 from server.jobs.service import DETECTOR, HAND_MODEL
+from server.jobs.track_schemas import JobForm, JobFormField, JobPreset
 
 TYPE_NAMES: dict[type, Literal["integer", "number", "boolean", "text"]] = {
     int: "integer",

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from sqlalchemy.orm import Session
 
-from server.jobs.schemas import LoopCreate
+from server.jobs.loop_schemas import LoopCreate
 from server.registrations.training_set_schemas import TrainingRule
 from server.registrations.training_sets import Chosen, choose_registrations
 

@@ -9,19 +9,17 @@ from sqlalchemy.orm import Session
 from server.access.audit import record_act
 from server.calibrations.service import get_calibration
 from server.jobs import service
+from server.jobs.calibrate_schemas import CalibrateCreate
 from server.jobs.calibrating import find_calibrate_obstacles, make_calibrate_job
 from server.jobs.create_jobs import make_loop_job, make_register_job, make_train_job
+from server.jobs.detect_schemas import DetectCreate
+from server.jobs.loop_schemas import LoopCreate
 from server.jobs.models import JobRow
 from server.jobs.obstacles import find_detect_obstacles, find_register_obstacles, find_track_obstacles
+from server.jobs.register_schemas import RegisterCreate
 from server.jobs.scan_choice import list_loop_scans
-from server.jobs.schemas import (
-    CalibrateCreate,
-    DetectCreate,
-    JobCreate,
-    LoopCreate,
-    RegisterCreate,
-    TrainCreate,
-)
+from server.jobs.track_schemas import JobCreate
+from server.jobs.train_schemas import TrainCreate
 from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles
 from server.storage import Storage
 

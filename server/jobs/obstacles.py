@@ -13,8 +13,9 @@ from server.errors import StudioError
 from server.hand_models.service import get_hand_model
 from server.hand_models.storing import UNTRAINED_ID, UNTRAINED_NAME, find_file
 from server.jobs import service, workers
+from server.jobs.register_schemas import RegisterCreate
 from server.jobs.scan_choice import AT_ONCE, choose_scans
-from server.jobs.schemas import JobCheck, RegisterCreate
+from server.jobs.schemas import JobCheck
 from server.scans.models import ScanRow
 from server.scans.units import find_rows_out_of_size
 from server.storage import Storage

@@ -8,18 +8,15 @@ from server.access.service import ReviewerAccount
 from server.database import SessionDep
 from server.deprecation import deprecated
 from server.errors import error_responses
+from server.jobs.calibrate_schemas import CalibrateCreate
 from server.jobs.describe import describe_job
+from server.jobs.detect_schemas import DetectCreate
 from server.jobs.job_kinds import OneKindCreate, find_obstacles, start_job
+from server.jobs.loop_schemas import LoopCreate
 from server.jobs.obstacles import make_check
-from server.jobs.schemas import (
-    CalibrateCreate,
-    DetectCreate,
-    JobCheck,
-    JobOut,
-    LoopCreate,
-    RegisterCreate,
-    TrainCreate,
-)
+from server.jobs.register_schemas import RegisterCreate
+from server.jobs.schemas import JobCheck, JobOut
+from server.jobs.train_schemas import TrainCreate
 from server.storage import StorageDep
 
 router = APIRouter(prefix="/jobs", tags=["jobs"], responses=error_responses())

@@ -9,9 +9,11 @@ from sqlalchemy.orm import Session
 from server.jobs.calibrating import KIND, find_calibrate_obstacles, read_calibration_id
 from server.jobs.create_jobs import list_job_scans
 from server.jobs.files import JobFiles
+from server.jobs.loop_schemas import LoopCreate
 from server.jobs.models import JobRow
 from server.jobs.obstacles import find_detect_obstacles, find_model_obstacles, find_track_obstacles, make_check
-from server.jobs.schemas import LoopCreate, RestartCheck, TrainCreate
+from server.jobs.schemas import RestartCheck
+from server.jobs.train_schemas import TrainCreate
 from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles
 from server.storage import Storage
 from tracker import say_count

@@ -16,8 +16,10 @@ from server.database import DatabaseDep, SessionDep
 from server.database.paging import Cursor, Limit, Page
 from server.errors import StudioError, error_responses
 from server.jobs import batches, create_jobs, events, restarting, service, workers
+from server.jobs.batch_schemas import BatchCheck, BatchCreate, BatchMade, BatchOut, BulkAct, BulkDone, BulkRefusal
 from server.jobs.calibrating import KIND as CALIBRATE
 from server.jobs.calibrating import follow_job
+from server.jobs.create_schemas import AnyJobCreate
 from server.jobs.describe import describe_job, describe_jobs
 from server.jobs.form import track_form
 from server.jobs.job_kinds import find_obstacles, start_job
@@ -26,24 +28,8 @@ from server.jobs.obstacles import (
     make_check,
     refuse_at,
 )
-from server.jobs.schemas import (
-    AnyJobCreate,
-    BatchCheck,
-    BatchCreate,
-    BatchMade,
-    BatchOut,
-    BulkAct,
-    BulkDone,
-    BulkRefusal,
-    JobCheck,
-    JobForm,
-    JobKind,
-    JobLog,
-    JobOut,
-    JobState,
-    RestartCheck,
-    WorkerOut,
-)
+from server.jobs.schemas import JobCheck, JobKind, JobLog, JobOut, JobState, RestartCheck, WorkerOut
+from server.jobs.track_schemas import JobForm
 from server.storage import Storage, StorageDep
 
 router = APIRouter(tags=["jobs"], responses=error_responses())

@@ -9,7 +9,8 @@ from sqlalchemy.orm import Session
 
 from server.errors import NotFoundError
 from server.hand_models.storing import UNTRAINED_ID
-from server.jobs.schemas import LoopCreate, RegisterCreate
+from server.jobs.loop_schemas import LoopCreate
+from server.jobs.register_schemas import RegisterCreate
 from server.registrations.models import RegistrationRow
 from server.scans.models import ScanRow
 

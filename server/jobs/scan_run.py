@@ -26,7 +26,7 @@ from server.jobs.failure import hide_paths
 from server.jobs.held_out import make_rule
 from server.jobs.restarting import read_loop
 from server.jobs.run import JobRun, WorkerContext
-from server.jobs.schemas import TrainingParams
+from server.jobs.train_schemas import TrainingParams
 from server.registrations import service as registrations
 from server.registrations import training_sets
 from server.registrations.models import RegistrationRow

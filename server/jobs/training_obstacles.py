@@ -13,8 +13,9 @@ from sqlalchemy.orm import Session
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID
 from server.jobs.held_out import choose_held_out, make_rule
+from server.jobs.loop_schemas import LoopCreate
 from server.jobs.obstacles import find_model_obstacles, find_size_obstacles
-from server.jobs.schemas import LoopCreate, TrainCreate
+from server.jobs.train_schemas import TrainCreate
 from server.registrations import service as registrations
 from server.registrations.training_set_schemas import TrainingRule
 from server.registrations.training_sets import Chosen, choose_members, choose_registrations, get_training_set, preview

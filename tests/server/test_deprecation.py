@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
+import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
 from server.deprecation import SINCE, deprecated
 from tests.server.api_document import read_document
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def list_operations(*, is_deprecated: bool) -> set[str]:
@@ -44,3 +48,11 @@ def test_every_deprecated_operation_names_one_that_is_not() -> None:
         successor = read_document()["paths"][f"/api/v1{path}"][method.lower()]["x-successor"]
         pattern = re.sub(r"\{\w+\}", "*", f"{method} {re.sub('/bin/[a-z_]+/', '/bin/{kind}/', successor)}")
         assert pattern in kept, operation
+
+
+@pytest.mark.parametrize("path", sorted({operation.split()[1] for operation in list_operations(is_deprecated=True)}))
+def test_the_browser_app_the_client_and_the_examples_call_nothing_deprecated(path: str) -> None:
+    asked = re.compile(r"\{[^{}]+\}".join(re.escape(part) + r"\$?" for part in re.split(r"\{\w+\}", path)) + "[`'\"?]")
+    files = [*ROOT.glob("web/src/**/*.ts*"), *ROOT.glob("server/c*/**/*.py"), *ROOT.glob("examples/**/*.py")]
+    assert len(files) > 200
+    assert [file.name for file in files if file.name != "schema.ts" and asked.search(file.read_text())] == []

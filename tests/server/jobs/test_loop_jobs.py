@@ -11,7 +11,9 @@ from server.access.models import LOCAL_ACCOUNT_ID
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID, add_uploaded
 from server.jobs import create_jobs
-from server.jobs.schemas import LoopCreate, RegisterCreate, TrainingParams
+from server.jobs.loop_schemas import LoopCreate
+from server.jobs.register_schemas import RegisterCreate
+from server.jobs.train_schemas import TrainingParams
 from server.registrations.models import RegistrationRow
 from server.registrations.training_set_models import TrainingMemberRow
 from server.scans.models import ScanRow

@@ -17,9 +17,11 @@ from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID, find_file
 from server.jobs import create_jobs, service
 from server.jobs.files import JobFiles
+from server.jobs.loop_schemas import LoopCreate
+from server.jobs.register_schemas import RegisterCreate
 from server.jobs.scan_workflow import plan_loop
-from server.jobs.schemas import LoopCreate, RegisterCreate, TrainCreate, TrainingParams
 from server.jobs.tracking import TrackingJob
+from server.jobs.train_schemas import TrainCreate, TrainingParams
 from server.registrations.models import RegistrationRow
 from server.registrations.training_set_schemas import TrainingRule
 from server.registrations.training_sets import create_training_set

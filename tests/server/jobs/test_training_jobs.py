@@ -15,9 +15,10 @@ from server.errors import InvalidError
 from server.hand_models.storing import UNTRAINED_ID, find_file
 from server.jobs import create_jobs, service
 from server.jobs.evaluating import evaluate_model
+from server.jobs.loop_schemas import LoopCreate
 from server.jobs.run import WorkerContext
 from server.jobs.scan_run import ModelCache, ScanRun
-from server.jobs.schemas import LoopCreate, TrainCreate, TrainingParams
+from server.jobs.train_schemas import TrainCreate, TrainingParams
 from server.registrations.models import RegistrationRow
 from server.registrations.training_set_schemas import TrainingRule
 from server.registrations.training_sets import create_training_set

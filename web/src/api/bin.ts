@@ -18,10 +18,11 @@ export const useBin = (kind: string | null) =>
     getNextPageParam: (page) => page.next_cursor,
   });
 
+/** Bring things back, one or several of a kind. */
 export function useRestore() {
   const client = useQueryClient();
   return useMutation({
-    mutationFn: ({ kind, id }: Pick<BinItem, "kind" | "id">) => request("POST", `/bin/${kind}/${id}/restore`),
+    mutationFn: ({ kind, ids }: { kind: BinItem["kind"]; ids: readonly string[] }) => Promise.all(ids.map((id) => request("POST", `/bin/${kind}/${id}/restore`))),
     onSettled: () => client.invalidateQueries(), // whatever lists it anywhere
   });
 }

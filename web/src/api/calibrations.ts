@@ -3,10 +3,8 @@
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { API, fetchBytes, request, upload } from "./client";
 import type { DroppedFile } from "./imports";
-import { jobKeys } from "./jobs";
 import { fetchAll } from "./recordings";
 import type { components } from "./schema";
-import type { Job } from "./types";
 
 type Schemas = components["schemas"];
 export type BoardOptions = Required<Schemas["BoardOptions"]>;
@@ -114,16 +112,4 @@ function useChange<Subject, Result>(act: (subject: Subject) => Promise<Result>) 
 export const useCheckFilms = (id: string) =>
   useChange((options: CalibrationOptions) => request<Calibration>("POST", `/calibrations/${id}/check`, { body: { options } }));
 
-export function useStartCalibrating(id: string) {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: () => request<Job>("POST", "/jobs/calibrate", { body: { calibration_id: id } }),
-    onSuccess: async () => {
-      await client.invalidateQueries({ queryKey: KEY });
-      await client.invalidateQueries({ queryKey: jobKeys.all });
-    },
-  });
-}
-
-export const useRemoveCalibration = () =>
-  useChange(({ id, isBack }: { id: string; isBack: boolean }) => (isBack ? request("POST", `/bin/calibration/${id}/restore`) : request("DELETE", `/calibrations/${id}`)));
+export const useRemoveCalibration = () => useChange((id: string) => request("DELETE", `/calibrations/${id}`));

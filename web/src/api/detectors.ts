@@ -29,5 +29,4 @@ export const useUploadDetector = () =>
     return upload<Detector>("/detectors", form, () => undefined, new AbortController().signal);
   });
 
-export const useRemoveDetector = () =>
-  useChange(({ id, isBack }: { id: string; isBack: boolean }) => (isBack ? request("POST", `/bin/detector/${id}/restore`) : request("DELETE", `/detectors/${id}`)));
+export const useRemoveDetector = () => useChange((id: string) => request("DELETE", `/detectors/${id}`));

@@ -1,15 +1,12 @@
-/** Hand models, the training sets they learn from, where each thing comes from, and the jobs that make them. */
+/** Hand models, the training sets they learn from, and where each thing comes from. */
 
 import { useMutation, useQuery, useQueryClient, type QueryClient } from "@tanstack/react-query";
 import { patternOf, type Pattern } from "../model/upright";
 import { refreshAfterDelete } from "./afterDelete";
 import { API, fetchBytes, request } from "./client";
 import { readGeometry } from "./geometryFile";
-import { jobKeys } from "./jobs";
 import { fetchAll } from "./recordings";
-import { registrationKeys } from "./registrations";
 import type { components } from "./schema";
-import type { Job } from "./types";
 
 type Schemas = components["schemas"];
 export type HandModel = Schemas["HandModelOut"];
@@ -20,42 +17,8 @@ export type Lineage = Schemas["Lineage"];
 export type LineageItem = Schemas["LineageItem"];
 export type LineageKind = LineageItem["kind"];
 
-/** Scans to register; what is left out is as the server has it. */
-export interface RegisterWish {
-  scan_ids?: readonly string[];
-  collection?: string;
-  only?: "new" | "not_accepted" | "all";
-  model_id?: string;
-}
-
 /** How thoroughly a model is judged on people kept for testing. */
 export type Evaluate = Schemas["TrainCreate"]["evaluate"];
-
-/** How to train, where it is not as usual. */
-export type TrainingWish = Partial<Schemas["TrainingParams"]>;
-
-export interface TrainWish {
-  /** Registrations to learn from, or else the rule that chooses them now. */
-  training_set_id?: string;
-  rule?: TrainingRule;
-  name: string;
-  model_id?: string;
-  options?: TrainingWish;
-  evaluate?: Evaluate;
-  test_subjects?: readonly string[];
-}
-
-/** Register, choose, train, register again. */
-export interface LoopWish {
-  name: string;
-  collection?: string;
-  model_id?: string;
-  by?: "verdict" | "decisions";
-  rounds?: number;
-  leave_out_subjects?: readonly string[];
-  options?: TrainingWish;
-  evaluate?: Evaluate;
-}
 
 export const modelKeys = { all: ["hand-models"] as const, sets: ["training-sets"] as const };
 
@@ -133,24 +96,10 @@ export async function fetchPattern(client: QueryClient, modelId: string): Promis
   return pattern;
 }
 
-/** Start a job about scans and models; the lists that it changes are loaded again. */
-function useStart<Body>(path: string) {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: (body: Body) => request<Job>("POST", path, { body }),
-    onSuccess: () =>
-      Promise.all([jobKeys.all, registrationKeys.all, modelKeys.all].map((queryKey) => client.invalidateQueries({ queryKey }))),
-  });
-}
-
-export const useStartRegistering = () => useStart<RegisterWish>("/jobs/register");
-export const useStartTraining = () => useStart<TrainWish>("/jobs/train");
-export const useStartLoop = () => useStart<LoopWish>("/jobs/loop");
-
 export function useHideModel() {
   const client = useQueryClient();
   return useMutation({
-    mutationFn: ({ id, isBack }: { id: string; isBack: boolean }) => request(isBack ? "POST" : "DELETE", `/hand-models/${id}${isBack ? "/restore" : ""}`),
-    onSuccess: (_, { id, isBack }) => (isBack ? client.invalidateQueries({ queryKey: modelKeys.all }) : refreshAfterDelete(client, modelKeys.all, id)),
+    mutationFn: (id: string) => request("DELETE", `/hand-models/${id}`),
+    onSuccess: (_, id) => refreshAfterDelete(client, modelKeys.all, id),
   });
 }

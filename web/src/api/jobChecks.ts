@@ -4,6 +4,7 @@ import { request } from "./client";
 import type { components } from "./schema";
 import type { Job } from "./types";
 import { jobKeys } from "./jobs";
+import type { JobWish } from "./startJob";
 
 type Schemas = components["schemas"];
 export type JobCheck = Schemas["JobCheck"];
@@ -16,13 +17,13 @@ const SETTLED_MS = 200;
 /** Recordings that one request may ask about. */
 const AT_ONCE = 500;
 
-/** Whether a job can be started: the server answers with the code that starts it. `path` is where the job is asked for. */
-export function useJobCheck(path: string, body: unknown, isWanted: boolean) {
-  const asked = JSON.stringify(body);
+/** Whether a job can be started: the server answers with the code that starts it. */
+export function useJobCheck(wish: JobWish, isWanted: boolean) {
+  const asked = JSON.stringify(wish);
   const [settled] = useDebouncedValue(asked, SETTLED_MS);
   return useQuery({
-    queryKey: [...jobKeys.checks, path, settled],
-    queryFn: () => request<JobCheck>("POST", `${path}/check`, { body: JSON.parse(settled) as unknown }),
+    queryKey: [...jobKeys.checks, settled],
+    queryFn: () => request<JobCheck>("POST", "/jobs/check", { body: JSON.parse(settled) as unknown }),
     enabled: isWanted && settled === asked, // what was asked before the page knew its recording is asked of nobody
     placeholderData: (seen) => seen,
     staleTime: 0,

@@ -104,7 +104,7 @@ export const useJob = (id: string) =>
 const put = (jobs: Job[] | undefined, job: Job): Job[] | undefined => jobs && [job, ...jobs.filter((other) => other.id !== job.id)].sort(newestFirst);
 
 /** Take a job as the server says it is now into everything that shows it. */
-function takeIn(client: QueryClient, job: Job): void {
+export function takeIn(client: QueryClient, job: Job): void {
   const before = client.getQueryData<Job>(jobKeys.one(job.id));
   if (before && before.version > job.version) return;
   client.setQueryData(jobKeys.one(job.id), job);
@@ -165,24 +165,6 @@ export const useJobForm = (isWanted: boolean) =>
     enabled: isWanted,
     staleTime: 0, // a hand model that was trained since is among its choices
   });
-
-export function useStartTracking() {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: ({ sequenceId, params }: { sequenceId: string; params: Record<string, unknown> }) =>
-      request<Job>("POST", "/jobs", { body: { kind: "track", sequence_id: sequenceId, params } }),
-    onSuccess: (job) => takeIn(client, job),
-  });
-}
-
-/** Have the hand detector look through a whole recording. */
-export function useStartDetecting() {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: (recording: string) => request<Job>("POST", "/jobs/detect", { body: { sequence_id: recording } }),
-    onSuccess: (job) => takeIn(client, job),
-  });
-}
 
 export function useJobAction(action: "cancel" | "retry" | "resume") {
   const client = useQueryClient();

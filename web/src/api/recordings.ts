@@ -54,14 +54,6 @@ export function useDeleteRecording() {
   });
 }
 
-export function useRestoreRecording() {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: (id: string) => request<Recording>("POST", `/sequences/${id}/restore`),
-    onSuccess: () => refresh(client),
-  });
-}
-
 const framePath = (recording: Recording, camera: string, frame: number): string =>
   `${API}/sequences/${recording.id}/${recording.content_key}/cameras/${encodeURIComponent(camera)}/frames/${frame}`;
 

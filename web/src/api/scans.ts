@@ -103,8 +103,7 @@ export function useChangeUnits() {
 export function useDeleteScans() {
   const client = useQueryClient();
   return useMutation({
-    mutationFn: ({ ids, isBack }: { ids: readonly string[]; isBack: boolean }) =>
-      Promise.all(ids.map((id) => request(isBack ? "POST" : "DELETE", `/scans/${id}${isBack ? "/restore" : ""}`))),
+    mutationFn: (ids: readonly string[]) => Promise.all(ids.map((id) => request("DELETE", `/scans/${id}`))),
     onSettled: () => client.invalidateQueries({ queryKey: scanKeys.all }),
   });
 }

@@ -90,14 +90,6 @@ export function useDeleteTrack() {
   });
 }
 
-export function useRestoreTrack() {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: (id: string) => request("POST", `/tracks/${id}/restore`),
-    onSuccess: () => client.invalidateQueries({ queryKey: trackKeys.all }),
-  });
-}
-
 /** Layers of the 3D viewer that are on or off. */
 export const LAYERS = ["cloud", "mesh", "skeleton", "correspondences", "detections", "collisions", "contacts", "unknown", "distances", "cameras"] as const;
 export type Layer = (typeof LAYERS)[number];

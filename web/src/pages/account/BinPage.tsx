@@ -80,8 +80,8 @@ export default function BinPage() {
                           size="compact-xs"
                           variant="default"
                           aria-label={`Restore ${item.name}`}
-                          loading={restore.isPending && restore.variables?.id === item.id}
-                          onClick={() => restore.mutate(item, { onSuccess: () => notifications.show({ message: `${item.name} is back.` }), onError: tellFailure })}
+                          loading={restore.isPending && restore.variables?.ids[0] === item.id}
+                          onClick={() => restore.mutate({ kind: item.kind, ids: [item.id] }, { onSuccess: () => notifications.show({ message: `${item.name} is back.` }), onError: tellFailure })}
                         >
                           Restore
                         </Button>

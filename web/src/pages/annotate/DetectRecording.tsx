@@ -1,5 +1,6 @@
 import { Button, Group, Progress, Stack, Text } from "@mantine/core";
-import { isActive, useRecordingJobs, useStartDetecting } from "../../api/jobs";
+import { isActive, useRecordingJobs } from "../../api/jobs";
+import { useStartJob } from "../../api/startJob";
 import type { Job } from "../../api/types";
 import { formatAgo } from "../../model/format";
 import { For } from "../parts/For";
@@ -25,7 +26,7 @@ export function useDetectJobs(recording: string): DetectJobs {
 
 /** Have the hand detector look through the whole recording: where that stands, and what one can do about it. */
 export function DetectRecording({ recording, jobs: { last, found, error } }: { recording: string; jobs: DetectJobs }) {
-  const start = useStartDetecting();
+  const start = useStartJob();
   const isWaiting = last !== undefined && isActive(last);
   const hasStopped = last?.state === "failed" || last?.state === "cancelled";
   return (
@@ -58,7 +59,7 @@ export function DetectRecording({ recording, jobs: { last, found, error } }: { r
       ) : (
         <For role="reviewer">
           <Group>
-            <Button size="compact-xs" variant="light" color="violet" loading={start.isPending} onClick={() => start.mutate(recording)}>
+            <Button size="compact-xs" variant="light" color="violet" loading={start.isPending} onClick={() => start.mutate({ kind: "detect", sequence_id: recording })}>
               {found ? "Look through it again" : "Look through the whole recording"}
             </Button>
           </Group>

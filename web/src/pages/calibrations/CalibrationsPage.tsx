@@ -1,6 +1,7 @@
 import { ActionIcon, Button, Group, Skeleton, Table, Text, Title, Tooltip } from "@mantine/core";
 import { IconCamera, IconTrash } from "@tabler/icons-react";
 import { Link } from "react-router";
+import { useRestore } from "../../api/bin";
 import { useCalibrations, useRemoveCalibration, type Calibration } from "../../api/calibrations";
 import { formatAgo, formatCount, formatNumber } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
@@ -29,6 +30,7 @@ export default function CalibrationsPage() {
   useTitle("Calibrated cameras");
   const { data, error, refetch } = useCalibrations();
   const removing = useRemoveCalibration();
+  const restore = useRestore();
   if (error && !data) return <Failure what="The calibrations could not be loaded" error={error} safe="They are untouched on the server's disk." onRetry={() => void refetch()} />;
   if (data?.length === 0)
     return (
@@ -37,7 +39,7 @@ export default function CalibrationsPage() {
       </EmptyState>
     );
   const remove = ({ id, name }: Calibration): void =>
-    removing.mutate({ id, isBack: false }, intoBin(`“${name}”`, () => removing.mutateAsync({ id, isBack: true })));
+    removing.mutate(id, intoBin(`“${name}”`, () => restore.mutateAsync({ kind: "calibration", ids: [id] })));
   return (
     <div className="page">
       <Group mb="lg" justify="space-between">

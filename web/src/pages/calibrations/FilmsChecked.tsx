@@ -1,7 +1,8 @@
 import { Button, Group, Stack, Table, Text, Title } from "@mantine/core";
 import { useState } from "react";
-import { useCalibrationForm, useCheckFilms, useStartCalibrating, type Calibration, type FilmReport } from "../../api/calibrations";
+import { useCalibrationForm, useCheckFilms, type Calibration, type FilmReport } from "../../api/calibrations";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
+import { useStartJob } from "../../api/startJob";
 import { formatNumber } from "../../model/format";
 import { hasRole, useMe } from "../../state/me";
 import { Awaited } from "../parts/Awaited";
@@ -54,12 +55,13 @@ export function FilmsChecked({ calibration }: { calibration: Calibration }) {
   const form = query.data;
   const [draft, setDraft] = useState(calibration.options);
   const check = useCheckFilms(calibration.id);
-  const start = useStartCalibrating(calibration.id);
+  const start = useStartJob();
   const { report } = calibration;
   const me = useMe();
   const isLead = hasRole(me, "lead");
   const isChanged = JSON.stringify(draft) !== JSON.stringify(calibration.options);
-  const obstacles = useJobCheck("/jobs/calibrate", { calibration_id: calibration.id }, report.problems.length === 0 && hasRole(me, "reviewer"));
+  const wish = { kind: "calibrate" as const, calibration_id: calibration.id };
+  const obstacles = useJobCheck(wish, report.problems.length === 0 && hasRole(me, "reviewer"));
   const count = report.problems.length;
   return (
     <div className={classes.columns}>
@@ -99,7 +101,7 @@ export function FilmsChecked({ calibration }: { calibration: Calibration }) {
             </Button>
           </For>
           <For role="reviewer">
-            <Button loading={start.isPending} disabled={isChanged || count > 0 || !mayStart(obstacles)} onClick={() => start.mutate()}>
+            <Button loading={start.isPending} disabled={isChanged || count > 0 || !mayStart(obstacles)} onClick={() => start.mutate(wish)}>
               Calibrate
             </Button>
           </For>

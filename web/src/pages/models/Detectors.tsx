@@ -1,6 +1,7 @@
 import { ActionIcon, Button, FileButton, Group, Text, Title, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { IconDownload, IconTrash, IconUpload } from "@tabler/icons-react";
+import { useRestore } from "../../api/bin";
 import { detectorFileUrl, useDetectors, useRemoveDetector, useUploadDetector, type Detector } from "../../api/detectors";
 import { formatBytes } from "../../model/format";
 import { For } from "../parts/For";
@@ -18,6 +19,7 @@ export function Detectors() {
   const { data: detectors, error } = useDetectors();
   const adding = useUploadDetector();
   const removing = useRemoveDetector();
+  const restore = useRestore();
   const add = (file: File | null): void => {
     if (!file) return;
     adding.mutate(file, {
@@ -27,8 +29,8 @@ export function Detectors() {
   };
   const remove = ({ id, name }: Detector): void =>
     removing.mutate(
-      { id, isBack: false },
-      intoBin(`“${name}”`, () => removing.mutateAsync({ id, isBack: true })),
+      id,
+      intoBin(`“${name}”`, () => restore.mutateAsync({ kind: "detector", ids: [id] })),
     );
   return (
     <section aria-label="Fingertip detectors">

@@ -2,8 +2,9 @@ import { Group, NumberInput, Radio, Select, Stack, Text, TextInput } from "@mant
 import { FormDialog } from "../parts/Dialog";
 import { useState } from "react";
 import { useNavigate } from "react-router";
-import { useStartLoop, type Evaluate, type HandModel, type LoopWish } from "../../api/handModels";
+import type { Evaluate, HandModel } from "../../api/handModels";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
+import { useStartJob, type LoopWish } from "../../api/startJob";
 import { useScanCollections } from "../../api/scans";
 import { EvaluateChoice } from "./EvaluateChoice";
 import { LeaveOut } from "./LeaveOut";
@@ -15,7 +16,7 @@ const EVERY = "";
 /** The loop of the paper as one button: register, choose, train, register again. */
 export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClose: () => void; model?: HandModel | undefined }) {
   const collections = useScanCollections().data ?? [];
-  const start = useStartLoop();
+  const start = useStartJob();
   const navigate = useNavigate();
   const [name, setName] = useState(model?.name ?? "");
   const [by, setBy] = useState<"verdict" | "decisions">("verdict");
@@ -25,6 +26,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
   const [evaluate, setEvaluate] = useState<Evaluate>("quick");
   const [hasLocalShapes, setHasLocalShapes] = useState(false);
   const wish: LoopWish = {
+    kind: "loop",
     name: name.trim() || "Hand model",
     by,
     rounds: by === "decisions" ? 1 : rounds,
@@ -34,7 +36,7 @@ export function LoopDialog({ isOpen, onClose, model }: { isOpen: boolean; onClos
     ...(collection ? { collection } : {}),
     ...(model ? { model_id: model.id } : {}),
   };
-  const check = useJobCheck("/jobs/loop", wish, isOpen);
+  const check = useJobCheck(wish, isOpen);
   const submit = (): void => start.mutate(wish, { onSuccess: (job) => void navigate(`/jobs/${job.id}`) });
   return (
     <FormDialog title="Register, train, register again" size={600} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Start" isBusy={start.isPending} isReady={mayStart(check)} check={check.data} failure={start.error} help={by === "decisions" ? <ToCurate collection={collection} /> : undefined}>

@@ -3,6 +3,7 @@ import { useDisclosure } from "@mantine/hooks";
 import { IconChevronDown, IconRefresh, IconTrash } from "@tabler/icons-react";
 import { useMemo } from "react";
 import { Link, useNavigate, useParams } from "react-router";
+import { useRestore } from "../../api/bin";
 import { useHandModel, useHandModels, useHideModel, useModelReport } from "../../api/handModels";
 import { formatAgo, formatName, formatNumber } from "../../model/format";
 import { readReport } from "../../model/trainingReport";
@@ -32,6 +33,7 @@ export default function ModelPage() {
   const raw = useModelReport(model);
   const report = useMemo(() => raw.data && readReport(raw.data), [raw.data]);
   const hide = useHideModel();
+  const restore = useRestore();
   const navigate = useNavigate();
   const [isRegistering, registering] = useDisclosure(false);
   const [isTraining, training] = useDisclosure(false);
@@ -49,8 +51,8 @@ export default function ModelPage() {
   if (!model) return <PageSkeleton />;
   const remove = (): void =>
     hide.mutate(
-      { id: model.id, isBack: false },
-      intoBin(model.name, () => hide.mutateAsync({ id: model.id, isBack: true }), () => void navigate("/models")),
+      model.id,
+      intoBin(model.name, () => restore.mutateAsync({ kind: "hand_model", ids: [model.id] }), () => void navigate("/models")),
     );
   return (
     <div className="page">

@@ -3,8 +3,9 @@ import { FormDialog } from "../parts/Dialog";
 import { useDebouncedValue } from "@mantine/hooks";
 import { useState } from "react";
 import { useNavigate } from "react-router";
-import { useHandModels, useStartTraining, useTrainingPreview, type Evaluate, type TrainingRule, type TrainWish } from "../../api/handModels";
+import { useHandModels, useTrainingPreview, type Evaluate, type TrainingRule } from "../../api/handModels";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
+import { useStartJob, type TrainWish } from "../../api/startJob";
 import { useScanCollections } from "../../api/scans";
 import { formatCount } from "../../model/format";
 import { EvaluateChoice } from "./EvaluateChoice";
@@ -25,7 +26,7 @@ interface TrainDialogProps {
 export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
   const collections = useScanCollections().data ?? [];
   const models = useHandModels().data ?? [];
-  const train = useStartTraining();
+  const train = useStartJob();
   const navigate = useNavigate();
   const [name, setName] = useState("");
   const [by, setBy] = useState<"decisions" | "verdict">("decisions");
@@ -46,13 +47,14 @@ export function TrainDialog({ isOpen, onClose, modelId }: TrainDialogProps) {
   const preview = useTrainingPreview(settled, isOpen);
   const model = models.find((one) => one.id === modelId);
   const wish: TrainWish = {
+    kind: "train",
     rule,
     name: name.trim() || "Hand model",
     ...(hasLocalShapes ? { options: { num_local_shapes: LOCAL_SHAPES } } : {}),
     ...(leaveOut.length > 0 ? { evaluate, test_subjects: leaveOut } : {}),
     ...(modelId ? { model_id: modelId } : {}),
   };
-  const check = useJobCheck("/jobs/train", wish, isOpen);
+  const check = useJobCheck(wish, isOpen);
   const submit = (): void => train.mutate(wish, { onSuccess: (job) => void navigate(`/jobs/${job.id}`) });
   return (
     <FormDialog title="Train a hand model" size={600} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Train" isBusy={train.isPending} isReady={mayStart(check)} check={check.data} failure={train.error} help={by === "decisions" ? <ToCurate collection={collection} /> : undefined}>

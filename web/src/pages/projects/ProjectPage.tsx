@@ -48,7 +48,7 @@ function Head({ project, mayChange, isLead }: { project: Project; mayChange: boo
     await change.mutateAsync({ method: "DELETE", path });
     await navigate("/projects");
     offerUndo(`${project.name} was archived; it is in the bin too.`, async () => {
-      await change.mutateAsync({ method: "POST", path: `${path}/restore` });
+      await change.mutateAsync({ method: "POST", path: `/bin/project/${project.id}/restore` });
       await navigate(path);
     });
   };
@@ -96,7 +96,7 @@ function Head({ project, mayChange, isLead }: { project: Project; mayChange: boo
         </Button>
       )}
       {isLead && project.archived_at && (
-        <Button loading={change.isPending} onClick={() => change.mutate({ method: "POST", path: `${path}/restore` })}>
+        <Button loading={change.isPending} onClick={() => change.mutate({ method: "POST", path: `/bin/project/${project.id}/restore` })}>
           Restore
         </Button>
       )}

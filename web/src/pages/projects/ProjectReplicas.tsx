@@ -17,7 +17,7 @@ export function ProjectReplicas({ project, mayChange }: { project: Project; mayC
   const change = useTeamChange();
   const withdraw = async (one: ReplicaSet): Promise<void> => {
     await change.mutateAsync({ method: "DELETE", path: `/replica-sets/${one.id}` });
-    offerUndo(`${one.name} was withdrawn; what was marked stays stored.`, () => change.mutateAsync({ method: "POST", path: `/replica-sets/${one.id}/restore` }));
+    offerUndo(`${one.name} was withdrawn; what was marked stays stored.`, () => change.mutateAsync({ method: "POST", path: `/bin/replica_set/${one.id}/restore` }));
   };
   return (
     <section className={classes.section} aria-label="Blind replicas">

@@ -91,7 +91,7 @@ function ProjectCard({ project, isLead }: { project: Project; isLead: boolean })
         </Stack>
       )}
       {project.archived_at && isLead && (
-        <Button size="xs" variant="default" loading={change.isPending} onClick={() => change.mutate({ method: "POST", path: `/projects/${project.id}/restore` })}>
+        <Button size="xs" variant="default" loading={change.isPending} onClick={() => change.mutate({ method: "POST", path: `/bin/project/${project.id}/restore` })}>
           Restore
         </Button>
       )}

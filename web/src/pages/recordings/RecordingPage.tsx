@@ -3,10 +3,11 @@ import { useDisclosure } from "@mantine/hooks";
 import { IconChartBar, IconDots, IconDownload, IconFileReport, IconFlag, IconPencil, IconPlayerPlay, IconTransfer, IconTrash } from "@tabler/icons-react";
 import { useMemo } from "react";
 import { Link, useNavigate, useParams } from "react-router";
+import { useRestore } from "../../api/bin";
 import { useAnnotations } from "../../api/annotations";
 import { API } from "../../api/client";
 import { useRecordingJobs } from "../../api/jobs";
-import { useDeleteRecording, useRecording, useRestoreRecording } from "../../api/recordings";
+import { useDeleteRecording, useRecording } from "../../api/recordings";
 import { useTracks } from "../../api/tracks";
 import type { Recording } from "../../api/types";
 import { FrameStrip } from "../../canvas/FrameStrip";
@@ -71,7 +72,7 @@ export function RecordingPage() {
   const tracks = useTracks(recordingId);
   const jobs = useRecordingJobs(recordingId).data ?? [];
   const remove = useDeleteRecording();
-  const restore = useRestoreRecording();
+  const restore = useRestore();
   const navigate = useNavigate();
   const [isTracking, tracking] = useDisclosure(false);
   const obstacles = useTrackObstacles(recording);
@@ -98,7 +99,7 @@ export function RecordingPage() {
   const drop = (): void =>
     remove.mutate(
       recording,
-      intoBin(recording.name, () => restore.mutateAsync(recording.id), () => void navigate("/recordings")),
+      intoBin(recording.name, () => restore.mutateAsync({ kind: "recording", ids: [recording.id] }), () => void navigate("/recordings")),
     );
   const openFrame = (frame: number): void => void navigate(`/recordings/${recording.id}/annotate?frame=${frame}`);
 

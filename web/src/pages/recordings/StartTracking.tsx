@@ -1,8 +1,8 @@
 import { Text } from "@mantine/core";
 import { FormDialog } from "../parts/Dialog";
 import { useNavigate } from "react-router";
-import { useStartTracking } from "../../api/jobs";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
+import { useStartJob } from "../../api/startJob";
 import type { Recording } from "../../api/types";
 import { TrackingForm, useTrackingOptions } from "../parts/TrackingForm";
 
@@ -19,21 +19,19 @@ export const whereItStarts = (recording: Recording): string =>
 /** Start a tracking job: the fields, defaults and help come from the server. */
 export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps) {
   const options = useTrackingOptions(isOpen);
-  const start = useStartTracking();
+  const start = useStartJob();
   const navigate = useNavigate();
-  const check = useJobCheck("/jobs", { sequence_id: recording.id, params: options.changed }, isOpen);
+  const wish = { kind: "track" as const, sequence_id: recording.id, params: options.changed };
+  const check = useJobCheck(wish, isOpen);
 
   const submit = (): void =>
-    start.mutate(
-      { sequenceId: recording.id, params: options.changed },
-      {
-        onSuccess: (job) => {
-          onClose();
-          options.setTouched(null);
-          void navigate(`/jobs/${job.id}`);
-        },
+    start.mutate(wish, {
+      onSuccess: (job) => {
+        onClose();
+        options.setTouched(null);
+        void navigate(`/jobs/${job.id}`);
       },
-    );
+    });
   return (
     <FormDialog title={`Track ${recording.name}`} size={760} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Start tracking" isFocused isBusy={start.isPending} isReady={mayStart(check)} check={check.data} failure={start.error}>
       <Text size="sm" className="quiet">

@@ -2,8 +2,9 @@ import { Radio, Select, Stack, Text } from "@mantine/core";
 import { FormDialog } from "../parts/Dialog";
 import { useState } from "react";
 import { useNavigate } from "react-router";
-import { useHandModels, useStartRegistering } from "../../api/handModels";
+import { useHandModels } from "../../api/handModels";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
+import { useStartJob, type RegisterWish } from "../../api/startJob";
 import { formatCount } from "../../model/format";
 
 interface RegisterDialogProps {
@@ -25,18 +26,19 @@ const ONLY = [
 /** Start registering: which scans, by which model. */
 export function RegisterDialog({ isOpen, onClose, scanIds, collection, modelId }: RegisterDialogProps) {
   const models = (useHandModels().data ?? []).filter((model) => model.registers);
-  const start = useStartRegistering();
+  const start = useStartJob();
   const navigate = useNavigate();
   const [model, setModel] = useState<string | null>(null);
   const [only, setOnly] = useState<string>("new");
   const newest = models.filter((one) => one.kind === "trained").sort((a, b) => (b.created_at ?? "").localeCompare(a.created_at ?? ""))[0];
   const chosen = model ?? modelId ?? newest?.id ?? models[0]?.id ?? "";
-  const wish = {
-    ...(scanIds.length > 0 ? { scan_ids: [...scanIds], only: "all" as const } : { only: only as "new" }),
+  const wish: RegisterWish = {
+    kind: "register",
+    ...(scanIds.length > 0 ? { scan_ids: [...scanIds], only: "all" } : { only: only as "new" }),
     ...(scanIds.length === 0 && collection ? { collection } : {}),
     ...(chosen ? { model_id: chosen } : {}),
   };
-  const check = useJobCheck("/jobs/register", wish, isOpen && chosen !== "");
+  const check = useJobCheck(wish, isOpen && chosen !== "");
   const submit = (): void => start.mutate(wish, { onSuccess: (job) => void navigate(`/jobs/${job.id}`) });
   return (
     <FormDialog title="Register scans" size={560} isOpen={isOpen} onClose={onClose} onSubmit={submit} verb="Register" isBusy={start.isPending} isReady={mayStart(check)} check={check.data} failure={start.error}>

@@ -3,6 +3,7 @@ import { useDebouncedCallback, useDisclosure } from "@mantine/hooks";
 import { IconChecks, IconFilterOff, IconScan, IconSearch, IconTrash } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link } from "react-router";
+import { useRestore } from "../../api/bin";
 import { useDeleteScans, useScanCollections, useScanList, type Scan, scanThumbnailUrl } from "../../api/scans";
 import { formatAgo, formatCount } from "../../model/format";
 import { judgeSize } from "../../model/scanUnit";
@@ -82,6 +83,7 @@ export default function ScansPage() {
   const [isRegistering, registering] = useDisclosure(false);
   const [isChangingUnits, units] = useDisclosure(false);
   const remove = useDeleteScans();
+  const restore = useRestore();
   const scans = data?.pages.flatMap((page) => page.items) ?? [];
   const selected = scans.filter((scan) => chosen.has(scan.id));
   const isNarrowed = Object.values(filters).some(Boolean);
@@ -94,8 +96,8 @@ export default function ScansPage() {
   const hide = (): void => {
     const ids = selected.map((scan) => scan.id);
     remove.mutate(
-      { ids, isBack: false },
-      intoBin(formatCount(ids.length, "scan"), () => remove.mutateAsync({ ids, isBack: true }), () => setChosen(new Set())),
+      ids,
+      intoBin(formatCount(ids.length, "scan"), () => restore.mutateAsync({ kind: "scan", ids }), () => setChosen(new Set())),
     );
   };
 

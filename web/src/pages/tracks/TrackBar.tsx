@@ -16,7 +16,8 @@ import {
   IconTrash,
 } from "@tabler/icons-react";
 import { Link, useNavigate } from "react-router";
-import { EXPORTS, exportUrl, trackFileUrl, useDeleteTrack, useRestoreTrack } from "../../api/tracks";
+import { useRestore } from "../../api/bin";
+import { EXPORTS, exportUrl, trackFileUrl, useDeleteTrack } from "../../api/tracks";
 import type { Recording, Track } from "../../api/types";
 import { useHint } from "../../state/keys";
 import classes from "./TrackReview.module.css";
@@ -47,13 +48,13 @@ export function TrackBar(props: TrackBarProps) {
   const { track, recording, frame, status, isPlaying, hasLost, camera, all, onCamera, onPlay, onStep, onBad, onAnnotate } = props;
   const hint = useHint();
   const remove = useDeleteTrack();
-  const restore = useRestoreTrack();
+  const restore = useRestore();
   const navigate = useNavigate();
   const StatusIcon = STATUS_ICONS[status as keyof typeof STATUS_ICONS];
   const drop = (): void =>
     remove.mutate(
       track.id,
-      intoBin(track.name, () => restore.mutateAsync(track.id), () => void navigate("/tracks")),
+      intoBin(track.name, () => restore.mutateAsync({ kind: "track", ids: [track.id] }), () => void navigate("/tracks")),
     );
 
   return (

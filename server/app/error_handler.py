@@ -56,19 +56,19 @@ def answer_error(request: Request, error: Exception) -> Response:
         return _answer(error.status_code, name, detail, dict(error.headers or {}))
     if isinstance(error, ClientDisconnect):
         log.info("%s %s: the client has gone", request.method, request.url.path)
-        return _answer(400, "ClientGoneError", "The request did not arrive whole.")
+        return _answer(400, "ClientGoneError", "The request did not arrive completely.")
     if isinstance(error, OperationalError) and _is_disk_full(error):
         log.error("%s %s: the disk is full", request.method, request.url.path)
-        detail = (
-            "The disk of the studio is full; nothing was stored of this, what was stored before is safe. Make room."
-        )
+        detail = "The disk of the studio is full; this was not stored; what was stored before is safe. Free some space."
         return _answer(507, "DiskFullError", detail, {"Retry-After": "5"})
     if isinstance(error, OperationalError):
         log.warning("%s %s: the database does not answer", request.method, request.url.path, exc_info=error)
-        detail = "The database is busy or out of reach; nothing was stored. Try again."
+        detail = "The database is busy or cannot be reached; nothing was stored. Try again."
         return _answer(503, "DatabaseUnavailableError", detail, {"Retry-After": "1"})
     log.error("%s %s failed", request.method, request.url.path, exc_info=error)
-    return _answer(500, "InternalError", "The studio failed at this; its log says why. What was saved before is safe.")
+    return _answer(
+        500, "InternalError", "The studio failed to do this; its log says why. What was saved before is safe."
+    )
 
 
 def _is_disk_full(error: OperationalError) -> bool:

@@ -157,7 +157,7 @@ def _find_binned(session: Session, name: str, id_: uuid.UUID) -> BinKind:
 
 def _find_obstacle(session: Session, kind: BinKind, reach: Reach) -> str | None:
     if kind.area is None:
-        return f"a {kind.word} holds no files, and its labels belong to recordings: it stays in the bin"
+        return f"a {kind.word} holds no files, and its labels belong to recordings, so it stays in the bin"
     for why, table, condition in reach.needed:
         if _count(session, table, condition):
             return why.format(word="a registration")
@@ -169,7 +169,7 @@ def _find_obstacle(session: Session, kind: BinKind, reach: Reach) -> str | None:
     if listed in reach.going:
         touched.append(jobs.c.id.in_(select(listed.c.job_id).where(or_(*reach.going[listed]))))
     if touched and _count(session, jobs, or_(*touched) & jobs.c.state.in_(("queued", "running"))):
-        return "a job that uses it waits or is at work: cancel it, or wait for it"
+        return "a job that uses it is queued or running: cancel it, or wait for it"
     return None
 
 

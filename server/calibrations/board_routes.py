@@ -23,7 +23,7 @@ MARGIN = 0.04
 BOARDS = (
     BoardChoice(
         label="ChArUco",
-        about="The one to take: it may be seen in part, and its corners are found to 0.1 px.",
+        about="Recommended: it may be seen in part, and its corners are found to 0.1 px.",
         board=BoardOptions(),
     ),
     BoardChoice(

@@ -21,7 +21,7 @@ from server.errors import ConflictError, NotFoundError
 from server.storage import Storage
 from server.storage.upload import Upload
 
-GONE = "Its films were removed, as they are when nobody has used them for long. Upload them again."
+GONE = "Its films were removed because nobody had used them for long. Upload them again."
 
 
 def list_calibrations(session: Session, cursor: str | None, limit: int) -> tuple[Sequence[CalibrationRow], str | None]:

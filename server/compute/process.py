@@ -152,7 +152,7 @@ class ComputeProcess:
                     log.warning("the process that computes has ended (%s: %s)", type(error).__name__, error)
                 self._drop(running)
                 if running is not None and limit.is_over:
-                    log.warning("%s took longer than %g s and was ended", work.__name__, limit_seconds)
+                    log.warning("%s took longer than %g s and was stopped", work.__name__, limit_seconds)
                     raise ComputeTooLongError(
                         f"This took longer than {limit_seconds:g} s and was stopped. Ask for less, or try again later; "
                         "if it happens again, the log of the studio says what was computed."

@@ -26,7 +26,7 @@ class UnknownCursorError(NotFoundError):
 
     def __init__(self, cursor: str) -> None:
         super().__init__(
-            f"The cursor {cursor[:80]!r} is none of ours. Give the `next_cursor` of a page, or none for the first page."
+            f"The cursor {cursor[:80]!r} is not valid. Give the `next_cursor` of a page, or none for the first page."
         )
 
 

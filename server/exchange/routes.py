@@ -47,7 +47,7 @@ _IMPORT_BODY = describe_upload_body(
     _FILES,
     options=_OPTIONS,
     check={"type": "string", "description": "`check` of the report that is confirmed."},
-    policy={"type": "string", "enum": ["keep", "replace"], "description": "Of hands that are labelled otherwise."},
+    policy={"type": "string", "enum": ["keep", "replace"], "description": "Of hands that have other labels."},
 )
 FormatQuery = Annotated[str, Query(alias="format", max_length=40, description="One of `/label-formats`.")]
 SnapshotQuery = Annotated[uuid.UUID | None, Query(description="Labels of this snapshot instead of those of now.")]

@@ -12,7 +12,7 @@ from server.database.texts import Name
 
 State = Literal["checked", "refused", "confirmed"]
 Options = dict[str, Any]
-OPTIONS_HELP = "What the files do not tell; `/imports/form` lists them. `format` is one of its formats."
+OPTIONS_HELP = "What the files do not say; `/imports/form` lists them. `format` is one of its formats."
 
 
 class ImportOut(BaseModel):

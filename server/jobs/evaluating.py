@@ -47,7 +47,7 @@ def evaluate_model(run: ScanRun, attempt: int, model_id: UUID, parent_id: UUID, 
     chosen = STUDY_LEVELS[level]
     held_out = _gather_held_out(run, row, parent_id, number, chosen.hands, progress)
     if held_out is None:
-        progress.log("warning", "nobody who was kept for testing has a registration that counts: not evaluated")
+        progress.log("warning", "nobody kept for testing has a registration that counts: not evaluated")
         return False
     learned = run.cache.get(model_id)[1]
     _, parent = run.cache.get(parent_id)

@@ -90,7 +90,7 @@ def find_size_obstacles(session: Session, scans: Sequence[uuid.UUID]) -> list[st
     more = f"; and {len(faults) - 5} others" if len(faults) > 5 else ""
     return [
         f"{len(faults)} of {len(scans)} scans have a size that no hand has ({told}{more}); needed {SIZES_NEEDED}. "
-        "Correct their unit, crop what is no hand, or choose other scans."
+        "Correct their unit, crop what is not a hand, or choose other scans."
     ]
 
 

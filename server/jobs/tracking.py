@@ -141,7 +141,9 @@ class TrackingJob:
                 self.files.write(self.files.state(0), lambda path, source=state: shutil.copyfile(source, path))
             except (OSError, StudioError):  # that job goes on meanwhile, and its files went with its end
                 continue
-            progress.log("info", f"the start and the hands' shape are taken over from {name}: all was the same there")
+            progress.log(
+                "info", f"the start and the hands' shape are reused from {name}, which has the same parameters"
+            )
             described = {name: value for name, value in manifest.items() if name != "files"}
             return self.files.write_manifest("start", [self.files.setup, self.files.state(0)], described)
         return None

@@ -74,7 +74,7 @@ def check_finger_order(labels: Sequence[Label], looked: Looked) -> Iterator[Find
                     "finger_order",
                     5 * back / spread,
                     joints,
-                    f"The knuckles of {pair} do not stand in order: are these fingers swapped?",
+                    f"The knuckles of {pair} are not in order: are these fingers swapped?",
                 )
 
 

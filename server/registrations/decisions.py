@@ -111,7 +111,7 @@ def _add(
 
 def _reused(operation_id: uuid.UUID) -> InvalidError:
     return InvalidError(
-        f"The operation {operation_id} was another decision before; nothing was stored. Make a new operation_id for "
+        f"The operation {operation_id} belongs to another decision; nothing was stored. Make a new operation_id for "
         "each decision."
     )
 

@@ -63,7 +63,7 @@ def parse_options(text: str) -> ScanOptions:
 
 def make_options(options: dict[str, Any]) -> ScanOptions:
     """Options that somebody gave; raises for what they cannot be."""
-    with reading_json("What was said of the scans", "options that fit them"):
+    with reading_json("What was given for the scans", "options that fit them"):
         return ScanOptions.model_validate(options)
 
 
@@ -108,8 +108,8 @@ def _compare_unit(name: str, row: ScanRow, wanted: float | None) -> str | None:
         return None
     assert row.metres_per_unit is not None
     return (
-        f"{name} is there already as {row.name}, with 1 unit = {1e3 * row.metres_per_unit:.6g} mm. It keeps that; its "
-        "page changes it."
+        f"{name} is there already as {row.name}, with 1 unit = {1e3 * row.metres_per_unit:.6g} mm. It keeps "
+        "that unit, which can be changed on its page."
     )
 
 

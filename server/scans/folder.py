@@ -63,7 +63,7 @@ class FoundScans:
                 f"{missing[0][:200]!r}."
             )
         if self.others:
-            notes.append(f"{say_count(self.others, 'other file was', 'other files were')} left aside.")
+            notes.append(f"{say_count(self.others, 'other file was', 'other files were')} ignored.")
         return notes
 
     def hide_root(self, text: str) -> str:

@@ -296,7 +296,9 @@ def write_html(report: AgreementReport) -> str:
         for p in report.worst
     )
     waiting = f" Not submitted yet: {', '.join(map(escape, report.waiting))}." if report.waiting else ""
-    shared = "" if report.are_separable else " Two annotators cannot be told apart: each has the noise they share."
+    shared = (
+        "" if report.are_separable else " Two annotators cannot be separated: each is given the noise that they share."
+    )
     count = f"{len(report.annotators)} annotators · {report.made_at:%Y-%m-%d %H:%M} UTC."
     pair_head = "<th></th><th class=n>mean distance, px</th><th class=n>OKS</th><th class=n>state differs</th>"
     return f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>Agreement: {escape(report.name)}</title>

@@ -109,7 +109,7 @@ def get_assignment(
         query = query.with_for_update().execution_options(populate_existing=True)
     row = session.scalars(query).one_or_none()
     if row is None or (row.deleted_at is not None and not deleted_too):
-        gone = "was withdrawn; a lead can bring it back" if row is not None else "does not exist"
+        gone = "was withdrawn; a lead can restore it" if row is not None else "does not exist"
         raise NotFoundError(f"The assignment {id_} {gone}.")
     if expected is not None and row.revision != expected:
         raise StaleAssignmentError(row)

@@ -86,7 +86,7 @@ def test_a_studio_whose_disk_is_full_is_named_and_gets_the_gesture_when_there_is
 
     page = open_page()
     picture = annotator(page, picture_of, recording)
-    full = {"error": "DiskFullError", "detail": "The disk of the studio is full; nothing was stored of this."}
+    full = {"error": "DiskFullError", "detail": "The disk of the studio is full; this was not stored."}
     page.route(
         SAVES,
         lambda route: route.fulfill(status=507, json=full) if route.request.method == "PUT" else route.continue_(),

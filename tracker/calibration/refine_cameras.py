@@ -96,7 +96,7 @@ def refine_cameras(cameras: Sequence[Camera], annotations: Annotations, lenses: 
     refusal = _refuse(described, out_before, out_after)
     kept = (
         f"{before[0].id} stands still, and {before[fitting.far].id} stays {1000 * fitting.baseline:.0f} mm from it: "
-        "labels tell no scale."
+        "labels give no scale."
     )
     return Refinement(tuple(refined), tuple(described), len(frames) - len(left_out), len(left_out), kept, refusal)
 
@@ -229,7 +229,7 @@ def _refuse(described: Sequence[RefinedCamera], before: Array, after: Array) -> 
     if not cost_after < (1 - LEAST_GAIN) * cost_before:
         return (
             f"On the labels that were left out the cameras would be no better ({cost_before:.2f} px before, "
-            f"{cost_after:.2f} px after). They agree with them as well as labels can tell; nothing is to be gained."
+            f"{cost_after:.2f} px after). They already agree as well as labels can show."
         )
     return ""
 

@@ -57,7 +57,7 @@ def extract_archive(archive: Path | str, folder: Path | str, limits: ArchiveLimi
     limits = limits or ArchiveLimits()
     if folder.is_symlink() or (folder.exists() and (not folder.is_dir() or any(folder.iterdir()))):
         raise ImportRefusedError(f"{folder}: something is there already.")
-    with reading(ImportRefusedError, archive.name, "a sound zip archive; pack it again"):
+    with reading(ImportRefusedError, archive.name, "a valid zip archive; pack it again"):
         try:
             _check_directory_size(archive, limits)
             with zipfile.ZipFile(archive) as file:

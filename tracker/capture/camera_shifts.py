@@ -76,7 +76,7 @@ def shift_plan(plan: ImportPlan, shifts: dict[str, int]) -> ImportPlan:
     if plan.frame_count is not None and plan.frame_count <= high - low:
         apart = f"The cameras would be {say_count(high - low, 'frame')} apart"
         raise ImportRefusedError(f"{apart}, and the recording has {plan.frame_count}: no moment is left.")
-    warnings = [f"Shifted as told: {', '.join(f'{name} by {each[name]:+d} frames' for name in known if each[name])}."]
+    warnings = [f"Shifted as given: {', '.join(f'{name} by {each[name]:+d} frames' for name in known if each[name])}."]
     count = None if plan.frame_count is None else plan.frame_count - (high - low)
     annotations = None
     if plan.annotations is not None and count is not None:
@@ -85,9 +85,9 @@ def shift_plan(plan: ImportPlan, shifts: dict[str, int]) -> ImportPlan:
             are = say_count(gone, "label is", "labels are")
             warnings.append(f"{are} left out, with the pictures that not all cameras have a moment for.")
     if any(item.T_world_object is not None or item.joints for item in plan.objects):
-        warnings.append("Where objects were placed in the first frame is left out: another frame is the first one now.")
+        warnings.append("The places of objects in the first frame are left out, because another frame is first now.")
     if TRUTH_FILE in plan.files:
-        warnings.append(f"{TRUTH_FILE} is left out: it is of the moments as they were.")
+        warnings.append(f"{TRUTH_FILE} is left out, because it belongs to the old frames.")
     return replace(
         plan,
         cameras=tuple(_shift_camera(camera, each[camera.id] - low, high - each[camera.id]) for camera in plan.cameras),

@@ -98,7 +98,7 @@ def examine(
         are = say_count(len(files.refused), "name in the folder is", "names in the folder are")
         problems.append(f"{are} not safe: {shown}.")
     if options.hands is None and plan.format != OWN_FORMAT:
-        warnings.append("Which hands are seen was not told; a right hand is assumed.")
+        warnings.append("Which hands the recording shows was not given; a right hand is assumed.")
         questions.append(_ask_hands())
     objects, measured = ObjectCheck(problems, warnings, questions), tuple(ObjectReport(o.name) for o in plan.objects)
     if measure is not None:

@@ -182,5 +182,5 @@ def _summarise(report: ImportReport) -> list[str]:
     what = [*(f"{hand} hand" for hand in report.hands), *report.objects]
     sentences.append(f"Seen: {', '.join(what)}." if what else "No hands or objects are named.")
     if report.annotations:
-        sentences.append(f"{say_count(report.annotations, 'annotated hand comes', 'annotated hands come')} along.")
+        sentences.append(f"{say_count(report.annotations, 'annotated hand is', 'annotated hands are')} along.")
     return sentences

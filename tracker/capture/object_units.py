@@ -108,12 +108,14 @@ class ObjectCheck:
         )
         if unit is None:
             across = " x ".join(f"{side:.4g}" for side in mesh.sides)
-            problem = f"{item.model}: {across} units large; that is a thing to hold in no usual unit. Say its unit."
+            problem = (
+                f"{item.model}: {across} units large; no usual unit gives a size that a hand can hold. Give its unit."
+            )
         elif fault := mesh.find_fault(unit):
-            problem = f"{item.model}: with a unit of {unit:g} m {fault}. Say another unit."
+            problem = f"{item.model}: with a unit of {unit:g} m {fault}. Give another unit."
         elif is_guessed:
             said = write_size(mesh.sides, unit)
-            text = f"The file of {item.name} does not say its unit. It is taken for {said} large: is that right?"
+            text = f"The file of {item.name} does not say its unit. It is assumed to be {said} large: is that right?"
             self.warnings.append(text)
             self.questions.append(make_question(FIELD, text, choices=choices, proposal=unit))
             return

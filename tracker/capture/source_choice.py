@@ -94,7 +94,7 @@ def say_left_out(counts: Iterable[tuple[str, int]]) -> str:
     if not counts:
         return ""
     parts = ", ".join(f"{count} {words}" for words, count in counts)
-    return f"{sum(count for _, count in counts)} joints are left out because of where they came from: {parts}."
+    return f"{sum(count for _, count in counts)} joints are left out because of their source: {parts}."
 
 
 def choose_sources(text: str) -> tuple[str, ...]:

@@ -166,10 +166,10 @@ def _refuse(num_marks: int, has_ray: Mask, angle_deg: float, distances: Array) -
     if num_marks < 2:
         return f"Marked in {num_marks} of the views; two are needed."
     if has_ray.sum() < 2:
-        return "A mark lies where the camera's lens, as calibrated, lets nothing be seen. Move it into the image."
+        return "A mark lies outside what the camera's calibrated lens can show. Move it into the image."
     if angle_deg < MIN_ANGLE_DEG:
         return (
-            f"The rays are nearly parallel ({angle_deg:.2f}°, needed {MIN_ANGLE_DEG:g}°), so they tell no depth. "
+            f"The rays are nearly parallel ({angle_deg:.2f}°, needed {MIN_ANGLE_DEG:g}°), so they give no depth. "
             "Mark the joint in a camera that looks from elsewhere."
         )
     if not np.isfinite(distances).all():

@@ -55,7 +55,7 @@ def show(result: dict[str, Any]) -> str:
     if result["change"] == "put back":
         return f"{result['recording']} has the cameras it had before the last change."
     if result["change"] == "taken":
-        end = "The recording has these cameras now. --put-back gives it those it had. Track again: tracks don't follow."
+        end = "The recording has these cameras now; --put-back restores the old ones. Old tracks stay: track again."
     else:
         end = "" if result["refusal"] else "Nothing was changed. --take gives the recording these cameras."
     return f"{result['text']}\n{end}".rstrip()

@@ -125,5 +125,5 @@ def _check_tree(path: Path, number: int, nodes: npt.NDArray[np.int64], leaves: i
         raise ModelFileError(
             path,
             f"tree {number} with an impossible node {nodes[bad[0]].tolist()}",
-            "tests within a patch, sound children",
+            "tests within a patch, valid children",
         )

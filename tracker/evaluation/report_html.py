@@ -90,7 +90,7 @@ def _left_out(tracks: Sequence[Document], names: Mapping[str, str]) -> str:
         judged = ", ".join(f"{one['joints']} {one['words']}" for one in track["sources"] if one["is_counted"])
         said.append(f"<li>{escape(names[track['key']])}: judged by {escape(judged or 'no joint')}. {escape(told)}</li>")
     return (
-        "<p class=quiet>What a track had a part in does not judge a track, unless that was asked for.</p>"
+        "<p class=quiet>Joints that a track had a part in do not judge a track, unless they were asked for.</p>"
         f"<ul class=quiet>{''.join(said)}</ul>"
     )
 

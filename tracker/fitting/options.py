@@ -87,7 +87,7 @@ class TrackOptions:
     )
     calibrate: bool = _option(True, "Fit the hand's size and shape to the first second.", label="Fit the hand's shape")
     use_skin: bool = _option(
-        True, "Tell hand from other things by skin colour, where there is colour.", label="Use skin colour"
+        True, "Use skin colour to distinguish hands from other things, where there is colour.", label="Use skin colour"
     )
     use_detector: bool = _option(
         True,
@@ -106,7 +106,7 @@ class TrackOptions:
     )
     stop_below_mm: float = _option(
         0.0,
-        "Stop iterating when the mean joint moves less than this; 0 never does.",
+        "Stop iterating when the mean joint moves less than this; 0: never.",
         label="Stop below",
         low=0.0,
         high=100.0,
@@ -115,14 +115,14 @@ class TrackOptions:
     )
     camera: str = _option(
         "",
-        "Depth camera to track in; empty takes the first that has depth.",
+        "Depth camera to track in; empty: the first that has depth.",
         label="Camera",
         is_advanced=True,
         about="recording",
     )
     cameras: str = _option(
         "",
-        "Cameras to track in together, ids with commas between them; empty takes the depth camera, without one all.",
+        "Cameras to track in together, ids separated by commas; empty takes the depth camera, without one all.",
         label="Several cameras",
         is_advanced=True,
         about="recording",

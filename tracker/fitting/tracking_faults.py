@@ -71,9 +71,9 @@ def _find_view_faults(depth_cameras: Sequence[str], color_cameras: Sequence[str]
             "hands best."
         )
     if not options.use_detector:
-        faults.append("In colour images hands are found by the hand detector alone. Switch it on.")
+        faults.append("In colour images only the hand detector finds hands. Switch it on.")
     if options.is_as_written:
-        faults.append("The method T16 as written needs one depth camera. Choose Handloom's.")
+        faults.append("The method of T16 needs one depth camera. Choose Handloom's method.")
     return faults
 
 
@@ -96,13 +96,13 @@ def find_detector_faults(
     faults = []
     if depth_camera is None and finds != "nails":
         return [
-            "A fingertip detector finds points in space with the help of depth, and colour cameras alone are tracked "
+            "A fingertip detector finds points in space with the help of depth, but only colour cameras are tracked "
             "in. Choose a detector of nails (`handloom train-detector --what nails`), or none of your own; the hand "
             "detector looks at every view."
         ]
     if depth_camera is not None and finds == "nails":
         return [
-            "It finds finger nails, which are looked for in colour views, and a depth camera is tracked in. Choose "
+            "It finds finger nails in colour views, but a depth camera is tracked in. Choose "
             "colour cameras (`--cameras`), or a detector of fingertips."
         ]
     if "S" not in options.term_letters:

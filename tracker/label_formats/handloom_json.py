@@ -23,7 +23,7 @@ def write_handloom(sets: list[LabelSet]) -> ExportedLabels:
 
 
 def read_handloom(files: dict[str, bytes], sets: list[LabelSet], hints: ImportHints) -> ImportedLabels:
-    """What the file holds, places that the recording has not being a problem."""
+    """What the file holds, places that the recording does not have being a problem."""
     (only,) = sets
     if hints.pixel_centre not in (None, 0.0):
         raise AnnotationError(
@@ -34,7 +34,9 @@ def read_handloom(files: dict[str, bytes], sets: list[LabelSet], hints: ImportHi
     for item in parse_annotations(find_json(files, ".json")).items:
         if item.camera not in cameras or item.frame >= only.sequence.frame_count:
             place = f"frame {item.frame} of {item.camera}"
-            collector.problems.add("{n} [hand is in an image|hands are in images] that the recording has not", place)
+            collector.problems.add(
+                "{n} [hand is in an image|hands are in images] that the recording does not have", place
+            )
         else:
             collector.add(only.key, item)
     return collector.finish()

@@ -101,7 +101,9 @@ def read_t16(files: dict[str, bytes], sets: list[LabelSet], hints: ImportHints) 
         camera = _find_camera(match[1], only, hints)
         frame = int(match[2])
         if frame >= only.sequence.frame_count:
-            collector.problems.add("{n} [file is of a frame|files are of frames] that the recording has not", name)
+            collector.problems.add(
+                "{n} [file is of a frame|files are of frames] that the recording does not have", name
+            )
             continue
         for hand, points in _read_frame(name, files[name], slots[folder]).items():
             collector.add(only.key, Annotation(frame, camera, hand, points))

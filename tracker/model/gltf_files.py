@@ -28,7 +28,7 @@ HAND_LENGTH = (0.08, 0.40)
 Joints = dict[tuple[str, str], int]
 
 
-@reads(ModelFileError, "a sound glTF 2.0 file with a skin")
+@reads(ModelFileError, "a valid glTF 2.0 file with a skin")
 def load_gltf_model(path: Path, max_faces: int | None = 1500) -> ArticulatedModel:
     """A hand from a skinned glTF, in the frame of the default hand (wrist at the origin, x forward, z out of its back).
 

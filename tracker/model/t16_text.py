@@ -44,7 +44,7 @@ def read_text(path: Path) -> list[str]:
     return [line.strip() for line in data.decode("utf-8", errors="replace").splitlines()]
 
 
-@reads(ModelFileError, "a sound OFF file of a T16 model")
+@reads(ModelFileError, "a valid OFF file of a T16 model")
 def read_off(path: Path) -> tuple[Array, npt.NDArray[np.int64]]:
     """Vertices (V, 3), mm, and triangles (F, 3) of an ASCII OFF mesh; larger polygons are fanned."""
     lines = [line.split("#")[0].strip() for line in read_text(path)]
@@ -79,7 +79,7 @@ def read_off(path: Path) -> tuple[Array, npt.NDArray[np.int64]]:
     return vertices, triangles
 
 
-@reads(ModelFileError, "a sound SKEL file of a T16 model")
+@reads(ModelFileError, "a valid SKEL file of a T16 model")
 def read_skel(path: Path) -> tuple[tuple[str, ...], npt.NDArray[np.int64], Array]:
     """Names (B), parents (B,) with -1 for the root, and lengths (B,), mm, of the bones."""
     lines = [line for line in read_text(path)[1:] if line]
@@ -99,7 +99,7 @@ def read_skel(path: Path) -> tuple[tuple[str, ...], npt.NDArray[np.int64], Array
     return names, parents, lengths
 
 
-@reads(ModelFileError, "a sound SKIN file of a T16 model")
+@reads(ModelFileError, "a valid SKIN file of a T16 model")
 def read_skin(path: Path, bone_names: tuple[str, ...], num_vertices: int) -> Array:
     """Blend weights (V, B), rows summing to one, columns in the order of `bone_names`."""
     lines = [line for line in read_text(path) if line]
@@ -122,7 +122,7 @@ def read_skin(path: Path, bone_names: tuple[str, ...], num_vertices: int) -> Arr
     return weights / weights.sum(axis=1, keepdims=True)
 
 
-@reads(ModelFileError, "a sound LIMITS file of a T16 model")
+@reads(ModelFileError, "a valid LIMITS file of a T16 model")
 def read_limits(path: Path) -> tuple[BoneLimits, ...]:
     """Degrees of freedom of each bone."""
     lines = [line for line in read_text(path) if line]
@@ -137,7 +137,7 @@ def read_limits(path: Path) -> tuple[BoneLimits, ...]:
     return tuple(bones)
 
 
-@reads(ModelFileError, "a sound VOI file of a T16 model")
+@reads(ModelFileError, "a valid VOI file of a T16 model")
 def read_voi(path: Path, num_vertices: int) -> npt.NDArray[np.int64]:
     """Vertices of interest (3, 5): fingertip, nail side, pad; little to thumb."""
     values = [int(value) for line in read_text(path) if line for value in _integers(path, line, "a vertex")]
@@ -146,7 +146,7 @@ def read_voi(path: Path, num_vertices: int) -> npt.NDArray[np.int64]:
     return np.array(values, dtype=np.int64).reshape(3, 5)
 
 
-@reads(ModelFileError, "a sound MOTION file of a T16 model")
+@reads(ModelFileError, "a valid MOTION file of a T16 model")
 def read_motion(path: Path) -> tuple[tuple[str, ...], Array]:
     """Bone names and their poses (1 + T, B, 4, 4), mm; row 0 is the bind pose."""
     names: list[str] = []

@@ -22,7 +22,7 @@ def find_physics_fault() -> str | None:
         return None
     return (
         f"The physics term (P) needs pybullet, which is not installed for this Python {platform.python_version()}; "
-        "use Python 3.11, for which it comes along, or terms without P, such as LO+SC."
+        "use Python 3.11, for which it is available, or terms without P, such as LO+SC."
     )
 
 

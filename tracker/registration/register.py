@@ -243,9 +243,7 @@ def _find_fault(scan: Scan, keep: npt.NDArray[np.bool_]) -> str | None:
     if count < MIN_POINTS:
         return f"{count} of {len(keep)} points may be a hand's; needed at least {MIN_POINTS}"
     if fault := find_size_fault(float(measure_size(scan.points[keep])[0])):
-        return (
-            f"the scan {fault}; needed {SIZES_NEEDED}: say the scan's unit (metres per unit), or crop what is no hand"
-        )
+        return f"the scan {fault}; needed {SIZES_NEEDED}: give its unit (metres per unit), or crop what is not a hand"
     return None
 
 

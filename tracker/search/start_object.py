@@ -74,7 +74,7 @@ def start_object(
         if guess is not found:
             log.warning("%s: frame %d shows it too badly: %s", item.name, looked_at[0], _describe(guess))
         return guess.pose
-    best = "nothing is there that could be one" if guess is None else f"at best {_describe(guess)}"
+    best = "nothing there could be the object" if guess is None else f"at best {_describe(guess)}"
     raise TrackingError(
         f"{item.name}: not found in frames {', '.join(map(str, looked_at))}: {best}. Needed: a first second that shows "
         "most of it, its mesh in the right unit, or `initial.T_world_object` in sequence.json."

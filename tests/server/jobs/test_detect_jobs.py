@@ -45,7 +45,7 @@ def test_a_job_that_fails_at_a_damaged_image_goes_on_there_when_it_is_mended(ben
     image.write_bytes(b"no image")
     disturbed = queue(bench)
     failed = wait_for_failure(bench, disturbed)
-    assert failed.error is not None and image.name in failed.error and "nobody foresaw" not in failed.error
+    assert failed.error is not None and image.name in failed.error and "unexpected error" not in failed.error
     assert list_kept(bench.storage, failed) == ["frames 0 to 19"]
     with bench.database.reading() as session:
         assert find_detections(session, bench.sequence_id) == undisturbed, "half a job is not used"

@@ -48,7 +48,7 @@ def test_a_recording_that_cannot_be_tracked_is_not_queued(client: TestClient, ad
     flat = add_recording("colour only", depth=False)
     deep = add_recording("with depth")
     for recording, params, told in (
-        (flat, {"use_detector": False}, "In colour images hands are found by the hand detector alone"),
+        (flat, {"use_detector": False}, "In colour images only the hand detector finds hands"),
         (flat, {"cameras": "cam0,cam9"}, "cam9 is no camera with colour images of this recording. Choose among cam0."),
         (deep, {"camera": "cam7"}, "Camera cam7 has no depth images. Choose cam0."),
         (deep, {"last_frame": 999}, f"the recording has 0 to {deep['frame_count'] - 1}"),

@@ -232,7 +232,7 @@ def test_a_job_that_fails_says_why_in_plain_words_and_its_traceback_is_in_the_lo
     assert job.error in bench.log(job_id)
     with TestClient(create_app(bench.settings), base_url=BASE_URL) as client:
         shown = client.get(f"/api/v1/jobs/{job_id}").text + client.get(f"/api/v1/jobs/{job_id}/log").text
-    assert "nobody foresaw" in shown
+    assert "unexpected error" in shown
     for never in ("Traceback", 'File "', "site-packages", ".py", str(bench.settings.data_dir), "/tmp", "Errno"):
         assert never not in shown, shown
     number = re.findall(r"error ([0-9a-f]{8})", job.error or "")
@@ -246,7 +246,7 @@ def test_what_is_known_to_be_wrong_is_named_without_the_folders_of_the_machine(b
     bench.start_worker()
     job = wait_for_failure(bench, job_id)
     assert job.error is not None and "sequence.json" in job.error and job.error in bench.log(job_id)
-    assert str(bench.settings.data_dir) not in job.error and "nobody foresaw" not in job.error
+    assert str(bench.settings.data_dir) not in job.error and "unexpected error" not in job.error
     assert str(bench.sequence_id) not in job.error, "people know the recording by its name, and the job has that"
 
 
@@ -275,7 +275,7 @@ def test_progress_never_goes_back_and_a_fitted_shape_is_not_lost_with_a_cancelle
     second = bench.queue(**wanted)
     bench.wait(second, lambda job: job.frames_done >= 3)
     log = bench.log(second)
-    assert any("taken over from the job that was cancelled" in line for line in log), log
+    assert any("are reused from the job that was cancelled" in line for line in log), log
     assert not any("fitting the shape" in line for line in log)
     with bench.database.writing() as session:
         service.cancel_job(session, second)
@@ -292,7 +292,7 @@ def test_progress_never_goes_back_and_a_fitted_shape_is_not_lost_with_a_cancelle
     assert_same(bench.arrays(first), bench.arrays(second))
     other = bench.queue(**wanted | {"iterations": 3})
     bench.wait(other, lambda job: job.stage.startswith("following"))
-    assert not any("taken over" in line for line in bench.log(other)), "its parameters are others"
+    assert not any("are reused" in line for line in bench.log(other)), "its parameters are others"
     with bench.database.reading() as session:
         track = session.get_one(TrackRow, bench.job(first).track_id)
     assert track.error_px is not None and 0.0 < track.error_px < 10.0, "judged as soon as it is there"

@@ -93,7 +93,7 @@ def test_a_proposal_of_earlier_cameras_is_not_taken(client, recording_id) -> Non
 def test_cameras_that_get_no_better_cannot_be_taken(client, recording_id) -> None:
     client.post(f"/api/v1/refinements/{propose(client, recording_id)['id']}/take")
     again = propose(client, recording_id)
-    assert "nothing is to be gained" in again["report"]["refusal"]
+    assert "already agree as well as labels" in again["report"]["refusal"]
     refused = client.post(f"/api/v1/refinements/{again['id']}/take")
     assert refused.status_code == 422 and refused.json()["detail"].startswith("The cameras stay as they are.")
 

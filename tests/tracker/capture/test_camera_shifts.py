@@ -74,7 +74,7 @@ def test_the_old_recording_stays_and_every_frame_tells_its_original(folder: Path
     report = run_import(folder, tmp_path / "new", options=ImportOptions(camera_shifts="cam1=+3"))
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
     assert '"cam1/000003.png"' in (tmp_path / "new" / "sources.json").read_text()
-    assert "Shifted as told: cam1 by +3 frames." in report.warnings
+    assert "Shifted as given: cam1 by +3 frames." in report.warnings
     assert "9 labels are left out, with the pictures that not all cameras have a moment for." in report.warnings
 
 
@@ -91,7 +91,7 @@ def test_what_is_known_of_other_moments_is_left_out(folder: Path, tmp_path: Path
     np.savez(folder / "truth.npz", joints_3d=np.zeros((FRAMES, 21, 3)))
     report = run_import(folder, tmp_path / "new", options=ImportOptions(camera_shifts="cam1=+3"))
     assert not (tmp_path / "new" / "truth.npz").exists()
-    assert "truth.npz is left out: it is of the moments as they were." in report.warnings
+    assert "truth.npz is left out, because it belongs to the old frames." in report.warnings
 
 
 @pytest.mark.parametrize(

@@ -156,7 +156,7 @@ def test_a_mark_where_the_lens_lets_nothing_be_seen_is_refused():
     marks = see(cameras, np.zeros((1, 3)))
     marks[0, 1] = [10_000.0, 10_000.0]
     found = triangulate(cameras, marks)
-    assert "lets nothing be seen" in found.refusals[0]
+    assert "calibrated lens" in found.refusals[0]
 
 
 def test_no_points_are_no_trouble():

@@ -82,7 +82,7 @@ def test_a_fingertip_detector_needs_the_images_that_it_looks_at():
     assert "no colour images" in find_detector_faults("color", "d0", ("c0",), with_tips)[0]
     for looks_at in ("depth", "color"):
         (fault,) = find_detector_faults(looks_at, None, ("c0",), with_tips)
-        assert "colour cameras alone" in fault
+        assert "only colour cameras" in fault
 
 
 def test_a_nail_detector_serves_colour_views_and_no_depth_camera():

@@ -142,8 +142,8 @@ def test_what_is_no_hand_is_never_called_good_and_takes_at_most_eight_times_as_l
 @pytest.mark.parametrize(
     ("scan", "told"),
     [
-        (make_sphere(10.0), "say the scan's unit"),
-        (make_sphere(0.001), "say the scan's unit"),
+        (make_sphere(10.0), "give its unit"),
+        (make_sphere(0.001), "give its unit"),
         (Scan(np.full((100, 3), np.nan), np.zeros((100, 3))), "0 of 100 points"),
         (Scan(np.zeros((0, 3)), np.zeros((0, 3))), "0 of 0 points"),
         (make_sphere(0.08, 20), "20 of 20 points"),

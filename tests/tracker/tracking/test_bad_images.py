@@ -109,7 +109,7 @@ def test_without_colour_detecting_is_refused_and_without_depth_nothing_is_no_han
     grey: Draw = lambda frame: np.full((48, 64, 3), 90, dtype=np.uint8)  # noqa: E731
     flat = write(tmp_path / "flat", (64, 48), 1, grey, None)
     said = refusal(capsys, "track", str(flat), "--no-detector", "--out", str(tmp_path / "track"))
-    assert "hand detector alone" in said
+    assert "hand detector" in said
     assert track(flat)["status"].tolist() == ["lost"]
     capsys.readouterr()
     assert detect(flat, capsys) == 0

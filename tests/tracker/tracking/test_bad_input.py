@@ -74,7 +74,7 @@ def refusal(capsys) -> str:
 def test_a_recording_without_depth_needs_the_hand_detector(recording, capsys):
     change(recording, lambda document: document["cameras"][0].pop("depth"))
     assert track(recording, "--no-detector") == BAD_INPUT
-    assert "In colour images hands are found by the hand detector alone" in refusal(capsys)
+    assert "In colour images only the hand detector finds hands" in refusal(capsys)
 
 
 @pytest.mark.parametrize(

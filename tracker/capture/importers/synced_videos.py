@@ -87,7 +87,7 @@ class SyncedVideos:
         if len({i.casefold() for i in ids}) != len(ids):
             cameras = tuple(_rename(camera, f"cam{i}") for i, camera in enumerate(cameras))
             warnings.append(
-                "Videos have like names; the cameras are called cam0, cam1, ... in the order of their names."
+                "The videos have similar names; the cameras are called cam0, cam1, ... in the order of their names."
             )
         return ImportPlan(
             format=self.format,
@@ -123,7 +123,9 @@ def _propose_shifts(
         return
     found = f"The calibration found videos out of step: a moment is later in {', '.join(told)}."
     if options.camera_shifts is None:
-        warnings.append(f"{found} They come in as they are unless they are shifted: camera_shifts {','.join(shifts)}.")
+        warnings.append(
+            f"{found} They are imported as they are unless they are shifted: camera_shifts {','.join(shifts)}."
+        )
     choices = (
         ImportChoice(",".join(shifts), f"Shift by whole frames: {', '.join(shifts)}"),
         ImportChoice(NO_SHIFT, "Leave the videos as they are"),
@@ -131,7 +133,7 @@ def _propose_shifts(
     questions.append(
         make_question(
             "camera_shifts",
-            f"{found} That holds here only if the cameras started as they did for the board; else leave them.",
+            f"{found} This applies only if the cameras started in the same way as for the board; otherwise leave them.",
             proposal=choices[0].value,
             proposed_by="found by the calibration of these cameras",
             choices=choices,

@@ -6149,7 +6149,7 @@ export interface components {
         ImportCheck: {
             /**
              * Options
-             * @description What the files do not tell; `/imports/form` lists them. `format` is one of its formats.
+             * @description What the files do not say; `/imports/form` lists them. `format` is one of its formats.
              */
             options: {
                 [key: string]: unknown;
@@ -16301,7 +16301,7 @@ export interface operations {
                 "multipart/form-data": {
                     /** @description The recording's files, each file name its relative path; or one .zip. */
                     files: string[];
-                    /** @description JSON. What the files do not tell; `/imports/form` lists them. `format` is one of its formats. */
+                    /** @description JSON. What the files do not say; `/imports/form` lists them. `format` is one of its formats. */
                     options?: string;
                 };
             };
@@ -19707,7 +19707,7 @@ export interface operations {
                     /** @description LabelImportOptions as JSON: what the files do not say. */
                     options?: string;
                     /**
-                     * @description Of hands that are labelled otherwise.
+                     * @description Of hands that have other labels.
                      * @enum {string}
                      */
                     policy?: "keep" | "replace";
@@ -26319,7 +26319,7 @@ export interface operations {
                     /** @description LabelImportOptions as JSON: what the files do not say. */
                     options?: string;
                     /**
-                     * @description Of hands that are labelled otherwise.
+                     * @description Of hands that have other labels.
                      * @enum {string}
                      */
                     policy?: "keep" | "replace";

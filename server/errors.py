@@ -45,7 +45,7 @@ class LoginNeededError(StudioError):
 
 
 class OtherAccountError(LoginNeededError):
-    """Somebody else is logged in by now than when the page was opened."""
+    """Somebody else is logged in than when the page was opened."""
 
 
 class ForbiddenError(StudioError):

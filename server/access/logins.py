@@ -169,7 +169,7 @@ def redeem_code(
 
 
 def count_admins_who_can_log_in(session: Session) -> int:
-    """Admins with a password who are not disabled: without one nobody could let anybody in."""
+    """Admins with a password who are not disabled: without one nobody could manage accounts."""
     query = select(func.count()).select_from(Account)
     return session.scalar(
         query.where(Account.role == "admin", Account.password_hash.is_not(None), Account.disabled_at.is_(None))

@@ -46,7 +46,7 @@ def hash_password(password: str) -> str:
 
 
 def verify_password(password: str, password_hash: str | None) -> tuple[bool, str | None]:
-    """Whether a password is right, and its new hash when it should be kept in a stronger way by now.
+    """Whether a password is right, and its new hash when it should be stored with stronger settings.
 
     Takes as long for an account that has no password, or for none at all: nobody learns who has an account here.
     """

@@ -115,7 +115,7 @@ def set_disabled(session: Session, actor_id: uuid.UUID | None, account: Account,
 
 
 def check_an_admin_is_left(session: Session) -> None:
-    """Raise when nobody could let anybody in any more; the transaction must then not be committed."""
+    """Raise when no admin could log in any more; the transaction must then not be committed."""
     if count_admins_who_can_log_in(session) == 0:
         raise ConflictError("This is the last admin who can log in. Make somebody else admin first.")
 

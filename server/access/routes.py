@@ -48,7 +48,7 @@ def put_preferences(
     response: Response,
     if_match: IfMatch = None,
 ) -> MyAccount:
-    """Replace my preferences. With `If-Match` only if nobody did so before; without, the last one counts."""
+    """Replace my preferences. With `If-Match` only if they have not changed; without it the last one counts."""
     expected = None if if_match is None else read_if_match(if_match)
     account = store_preferences(session, user.account_id, body, expected)
     return describe_me(account, user, request, response)

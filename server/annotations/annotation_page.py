@@ -1,4 +1,4 @@
-"""A page of a recording's annotations, made where it takes nobody's time."""
+"""A page of a recording's annotations, made in the process for long computations."""
 
 from __future__ import annotations
 

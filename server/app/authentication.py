@@ -1,4 +1,4 @@
-"""Authentication: nobody gets to the API or the viewer unknown. What is open to all is listed here and nowhere else."""
+"""Authentication: only known people reach the API and the viewer. What is open to all is listed here only."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ RECHECK_SECONDS = 5.0
 
 
 class Authentication:
-    """Finds out who makes a request, and lets nobody in who is not known."""
+    """Finds out who makes a request, and refuses those who are not known."""
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self.app = app

@@ -27,7 +27,7 @@ _NAMES = {404: "NotFoundError", 405: "MethodNotAllowedError", 413: "TooLargeErro
 
 
 def install_error_handler(app: FastAPI) -> None:
-    """Have the app answer errors by `answer_error`; those that nobody foresaw reach it from `RequestChecks`."""
+    """Have the app answer errors by `answer_error`; unexpected ones reach it from `RequestChecks`."""
     for kind in (StudioError, TrackerError, RequestValidationError, HTTPException):
         app.add_exception_handler(kind, answer_error)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 
 class Failure:
-    """Carries an error through pickle. By itself pickle makes an error anew from its message alone, which fails for
+    """Carries an error through pickle. By itself pickle makes an error again from its message alone, which fails for
     errors of ours whose classes take other arguments. SQLAlchemy's errors and OSError know how to be pickled.
 
     Args:

@@ -35,7 +35,7 @@ StopFlag = Callable[[], bool]
 
 
 class Feed(Protocol):
-    """What a listener is told; `server/live/feed.py` has another one."""
+    """What a listener is sent; `server/live/feed.py` has another one."""
 
     has_ended: bool
 

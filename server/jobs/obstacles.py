@@ -77,7 +77,7 @@ def find_register_obstacles(session: Session, storage: Storage, asked: RegisterC
 
 
 def find_size_obstacles(session: Session, scans: Sequence[uuid.UUID]) -> list[str]:
-    """Which of these scans have a size that no hand has, so that to register them is in vain."""
+    """Which of these scans have a size that no hand has, so that registering them would fail."""
     from tracker.capture import SIZES_NEEDED
 
     faults: dict[str, str] = {}

@@ -12,7 +12,7 @@ LEAST_SHARE, LEAST_SECONDS = 0.03, 3.0
 """Of the bar that has gone by, and of time, before anything is said."""
 
 WINDOW_SECONDS, WINDOW_SHARE = 20.0, 0.3
-"""The pace is that of so many last seconds, or of this share of the time so far, whichever is longer."""
+"""The pace is that of this many last seconds, or of this share of the time so far, whichever is longer."""
 
 SETTLING_SECONDS = 15.0
 """Of the difference between what was said before and what is found now, two thirds are made up in this time."""

@@ -167,7 +167,7 @@ def _check_hand_model(session: Session, value: Any) -> dict[str, str]:
 
 
 def _find_detector(session: Session, value: Any) -> DetectorRow | None:
-    """A stored fingertip detector by its id as a param; None for the one that comes along."""
+    """A stored fingertip detector by its id as a param; None for the bundled one."""
     if value in ("", None):
         return None
     return get_detector(session, _read_id(DETECTOR, value, "a fingertip detector's id, or nothing"))

@@ -186,5 +186,5 @@ class TrackingJob:
 
 
 def _find_beginning(start: dict[str, Any]) -> float:
-    """Share of the bar when tracking begins; jobs of before it was noted have 0.1."""
+    """Share of the bar when tracking begins; jobs from before it was recorded have 0.1."""
     return start.get("begins", 0.1)

@@ -1,4 +1,4 @@
-"""A page of a recording's flags, made where it takes nobody's time."""
+"""A page of a recording's flags, made in the process for long computations."""
 
 from __future__ import annotations
 

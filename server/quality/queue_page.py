@@ -1,4 +1,4 @@
-"""A page of the queue of hands to look at, made where it takes nobody's time."""
+"""A page of the queue of hands to look at, made in the process for long computations."""
 
 from __future__ import annotations
 

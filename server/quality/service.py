@@ -234,7 +234,7 @@ def dismiss(session: Session, place: Place, kind: str, revision: int, account_id
 
 
 def restore(session: Session, place: Place, kind: str, revision: int) -> None:
-    """Take that back; nothing happens when nobody said it."""
+    """Undo the dismissal; nothing happens without one."""
     row = get_annotation(session, place)
     session.execute(
         delete(DismissalRow).where(

@@ -60,7 +60,7 @@ def find_rows_out_of_size(rows: Sequence[ScanRow]) -> dict[str, str]:
 
 
 def scale_strokes(strokes: Sequence[Stroke], factor: float) -> list[Stroke]:
-    """The strokes of a crop for the scan so many times as large: they take the same points."""
+    """The strokes of a crop for the scan scaled by a factor: they take the same points."""
     scaled: list[Stroke] = []
     for stroke in strokes:
         if isinstance(stroke, PlaneStroke):

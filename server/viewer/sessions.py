@@ -110,7 +110,7 @@ class ViewerSessions:
         self._link.stop()
 
     def close_idle(self) -> None:
-        """Close what nobody uses."""
+        """Close sessions that are not used."""
         now = time.monotonic()
         with self._lock:
             idle = [s for s in self._sessions.values() if s.pages == 0 and now - s.last_used > IDLE_SECONDS]

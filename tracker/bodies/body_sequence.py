@@ -32,7 +32,7 @@ TEMPLATE, SETTINGS, SUMMARY, MOTION = "template.npz", "settings.json", "summary.
 FRAMES, TEMPLATES, JOINED = "frames", "template", "joined.json"
 
 AGREES_MM, AGREED = 0.5, 2
-"""Two chains of frames have met when so many frames in a row differ by less than this, over all vertices' mean."""
+"""Two chains of frames have met when this many frames in a row differ by less than this, over all vertices' mean."""
 
 Progress = Callable[[float, str], None]
 

@@ -28,12 +28,12 @@ ICP_ROUNDS = 6
 FAR = 0.25
 """Distances beyond this count as this, m."""
 FOLLOWED, FINISHED, SEARCHED = 8, 3, 2
-"""So many of the stiff bodies are fitted, so many of these more closely, and of so many arms and legs begun anew."""
+"""How many rigid bodies are fitted, how many of these more closely, and of how many arms and legs are restarted."""
 NEAR, SETTLED = 0.025, 0.02
-"""No limb is begun anew where less than this share of the scan is this far from the body, m, and of the body twice as
+"""No limb is restarted where less than this share of the scan is this far from the body, m, and of the body twice as
 far from the scan."""
 LIMB_POINTS = 3000
-"""Of the whole scan, when limbs are begun anew."""
+"""Of the whole scan, when limbs are restarted."""
 APART = np.radians(50.0)
 """Stiff bodies that are turned less against one another are followed only once."""
 

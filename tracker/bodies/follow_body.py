@@ -21,7 +21,7 @@ from tracker.registration.model_fit import FitSettings
 Array = npt.NDArray[np.float64]
 
 LOST_MM, MOST_LOST = 4.0, 0.10
-"""A hand is searched anew when so much of its points (share) is so far from it."""
+"""A hand is searched again when this share of its points is this far from it."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class BodyFollower:
         return state, (shown[0] and found[0], shown[1] and found[1])
 
     def _search(self, scan: Scan, state: BodyState, sides: tuple[int, ...]) -> tuple[BodyState, tuple[bool, bool]]:
-        """The state with these hands (0 left, 1 right) searched anew, and whether the scan shows them after all."""
+        """The state with these hands (0 left, 1 right) searched again, and whether the scan shows them after all."""
         registrar, space = self.registrar, self.registrar.fine.space
         near = points_near_hands(scan, state, registrar.model, registrar.options.max_points)
         found = registrar.hands.find(state, near, sides)

@@ -1,4 +1,4 @@
-"""Arms and legs begun anew where the fit of the whole body may have left them in a wrong place."""
+"""Arms and legs are restarted where the fit of the whole body may have left them in a wrong place."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Limb:
 
 
 class LimbSearch:
-    """Begins the limbs of one model anew.
+    """Restarts the limbs of one model.
 
     Args:
         model: The body.

@@ -86,7 +86,7 @@ class Board:
 
     @cached_property
     def markers(self) -> cv2.aruco.Dictionary:
-        """Those of the family that are on the board: the fewer there are, the faster and surer they are told apart."""
+        """Those of the family that are on the board: fewer are distinguished faster and more surely."""
         family = _load_family(self.dictionary)
         own = family.bytesList[: self.marker_count]
         return cv2.aruco.Dictionary(own, family.markerSize, family.maxCorrectionBits)

@@ -31,7 +31,7 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 FIRST_MOMENTS = 150
-"""Of the first two rounds of bundle adjustment, and so many are judged; the last round takes more, from nearly the
+"""Moments that the first two rounds of bundle adjustment fit and judge; the last round takes more, from nearly the
 right place. After each round the corners are read again at the time offsets that were found."""
 
 

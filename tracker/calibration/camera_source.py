@@ -95,7 +95,7 @@ def find_sources(paths: list[Path], fps: float | None = None) -> list[CameraSour
 
 
 def find_count_fault(names: Sequence[str]) -> str:
-    """Why so many cameras cannot be calibrated together; empty when they can."""
+    """Why this many cameras cannot be calibrated together; empty when they can."""
     if 2 <= len(names) <= MAX_CAMERAS:
         return ""
     shown = f" ({', '.join(names[:4])}{', ...' if len(names) > 4 else ''})" if names else ""

@@ -26,7 +26,7 @@ PARTS = 6
 """Of the recording, each of which tells its own shift: how far they scatter is how sure the shift of all is."""
 
 MOST_SCATTER = 1.0
-"""Frames, standard deviation of the parts' shifts about that of all, beyond which no shift is told."""
+"""Frames, standard deviation of the parts' shifts about that of all, beyond which no shift is reported."""
 
 MIN_SHARED = 30
 """Frames with a hand in both cameras at a shift, or it is not tried: a second of video."""

@@ -28,7 +28,7 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LEFT_OUT_EVERY = 5
-"""Of the labelled frames one in so many is left out, as the board's calibration leaves out a fifth of the time."""
+"""One labelled frame in this many is left out, as the board's calibration leaves out a fifth of the time."""
 
 MIN_JOINTS = 20
 """That a camera must share with others: about one hand. Fewer say hardly more than the five numbers between two

@@ -57,7 +57,7 @@ class Annotation:
         return document | self.describe_sources("sources")
 
     def describe_sources(self, member: str) -> dict:
-        """A member of a JSON object that says where each joint came from; none where nobody noted it."""
+        """A member of a JSON object that says where each joint came from; none where it is unknown."""
         if self.sources is None:
             return {}
         return {member: [None if source is None else source.to_json() for source in self.sources]}

@@ -71,7 +71,7 @@ def report_camera(
 
 
 def pick_pictures(name_of: Callable[[int], str], count: int) -> tuple[str, ...]:
-    """Names of the first, the middle and the last of so many images."""
+    """Names of the first, the middle and the last image."""
     return tuple(name_of(index) for index in sorted({0, count // 2, count - 1})) if count else ()
 
 

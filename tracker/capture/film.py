@@ -18,7 +18,7 @@ FAR = 24
 """Frames that are decoded to get forward rather than jumped over: about as many as lie between two key frames."""
 
 SAMPLED_ROWS = 16
-"""Of the rows of a frame one in so many is summed up to know the frame again."""
+"""One row of a frame in this many is summed up, to recognise the frame later."""
 
 UNKNOWN = -1
 

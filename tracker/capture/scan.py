@@ -71,7 +71,7 @@ class Scan:
         return replace(self, points=self.points[keep], normals=self.normals[keep], faces=faces, colors=colors)
 
     def scaled(self, factor: float) -> Scan:
-        """The scan so many times as large, from its origin."""
+        """The scan scaled by a factor, from its origin."""
         return replace(self, points=self.points * factor)
 
     def mirrored(self) -> Scan:

@@ -30,12 +30,12 @@ def measure_size(points: Array) -> Array:
 
 
 def find_possible_units(length: float) -> dict[str, float]:
-    """The usual units, by name and in m, in which a longest side of so many units is that of a hand."""
+    """The usual units, by name and in m, in which a longest side of this many units is that of a hand."""
     return {name: metres for name, metres in UNITS.items() if HAND_LENGTHS[0] <= length * metres <= HAND_LENGTHS[1]}
 
 
 def is_certain(length: float) -> bool:
-    """Whether only one usual unit makes a hand of a longest side of so many units, and it is metres or millimetres."""
+    """Whether only one usual unit makes a hand of this longest side, and it is metres or millimetres."""
     possible = find_possible_units(length)
     return len(possible) == 1 and not possible.keys().isdisjoint(CERTAIN)
 

@@ -24,13 +24,13 @@ Origin = TypeVar("Origin", str, tuple[str, str])
 
 INDEPENDENT, ALL = "independent", "all"
 ORIGINS = ("hand", "unknown", *SOURCE_KINDS)
-"""Where a joint may have come from; `unknown`: nobody noted it."""
+"""Where a joint may have come from; `unknown`: it was not recorded."""
 SOURCE_CHOICES = (INDEPENDENT, ALL, *ORIGINS)
 """What can be chosen; of several, a joint counts that is among any."""
 MADE = ("track", "fit", "detector")
 """Kinds that the tracker itself, or what guides it, has a part in."""
 JUDGING = (INDEPENDENT,)
-"""What judges when nobody chose."""
+"""The default of what judges."""
 
 ORIGIN_WORDS = {
     "hand": "placed by hand",

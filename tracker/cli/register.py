@@ -219,7 +219,7 @@ def _find_row(path: Path) -> dict[str, Any]:
 
 
 def _read_unit(path: Path, row: dict[str, Any], given: float | None) -> float | None:
-    """Metres per unit as the row of a scan says it, else as the command does; None when nobody does."""
+    """Metres per unit from the row of a scan, else from the command; None when neither gives it."""
     said = row.get("metres_per_unit")
     if said is None:
         return given
@@ -255,7 +255,7 @@ def show(results: list[dict[str, Any]]) -> str:
 
 
 def _write_size(result: dict[str, Any]) -> str:
-    """How long a scan is, and that nobody said its unit, where that is so."""
+    """How long a scan is, and whether its unit is a guess."""
     if "longest_m" not in result:
         return ""
     guessed = " (its unit is a guess; --metres-per-unit says it)" if result["is_unit_guessed"] else ""

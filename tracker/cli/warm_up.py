@@ -1,4 +1,4 @@
-"""`handloom warm-up`: compile every kernel now, so that nobody waits later."""
+"""`handloom warm-up`: compile every kernel now, so that later runs do not wait."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from numba import njit
 BINS = 9
 CHANNELS = 2 + BINS
 CELL = 5
-"""Minimum and maximum, and the sums of gradients, are taken over so many px, [T16] §3.2.5."""
+"""Window of minimum, maximum and sums of gradients, px, [T16] §3.2.5."""
 
 STEEP = 60
 """Differences across a pixel beyond this many levels count as this many: all outlines are equally strong."""

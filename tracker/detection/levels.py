@@ -25,7 +25,7 @@ DEPTH_STEP = 0.002
 """Depth between two grey levels, m."""
 
 MIN_SPACING = 0.5
-"""Where a level's pixel is narrower than so many px of the image, a fingertip is too small to be found."""
+"""Where a level's pixel is narrower than this many px of the image, a fingertip is too small to be found."""
 
 NOTHING = 255
 """Grey level where there is no depth: farther than everything."""

@@ -12,7 +12,7 @@ from tracker.detection.forest_files import load_forest
 
 @dataclass(frozen=True)
 class OwnDetector:
-    """What `handloom train-detector` wrote, given to a run in place of the detector that comes along.
+    """What `handloom train-detector` wrote, given to a run in place of the bundled detector.
 
     Attributes:
         forest: Finds fingertips.
@@ -30,7 +30,7 @@ class OwnDetector:
 
 
 def load_detector(path: Path, name: str | None = None) -> OwnDetector:
-    """A detector from a file; it is called as the file is where nobody names it.
+    """A detector from a file; without a name it has the file's.
 
     Raises:
         ModelFileError: It is no detector, or a damaged one.

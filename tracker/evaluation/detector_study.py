@@ -13,7 +13,7 @@ from tracker.detection.suppression import compute_overlaps
 from tracker.evaluation.detections import JudgedImage, PrecisionRecall, compute_precision_recall, judge_boxes
 
 ANY_CONFIDENCE = DetectOptions(min_confidence=0.05, stride=1)
-"""A curve needs the detections that nobody would use, too."""
+"""A curve also needs detections of low confidence."""
 
 
 def judge_detector(

@@ -97,7 +97,7 @@ def compare_paired(pairs: Sequence[tuple[Evaluation, Evaluation]]) -> PairedDiff
 
 
 def _resample(sums: Array, counts: Array) -> tuple[float, float]:
-    """The interval of the mean when F frames are drawn anew from F, each with its joints."""
+    """The interval of the mean by a bootstrap: F frames are drawn from F with replacement, each with its joints."""
     rng = np.random.default_rng(SEED)
     frames = len(sums)
     means = np.empty(RESAMPLES)

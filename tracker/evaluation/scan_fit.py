@@ -164,7 +164,7 @@ def _cost_to_vertices(fit: HandFit, vertices: Array) -> float:
 
 
 def _step(here: HandFit, H: Array, g: Array, damping: float, num_components: int | None = None) -> HandFit:
-    """Where a damped step leads; with `num_components`, within so many components of the pose space."""
+    """Where a damped step leads; with `num_components`, within that many components of the pose space."""
     model = here.posed.model
     first = 3 + 3 * model.num_bones
     H, g = H.copy(), g.copy()

@@ -32,7 +32,7 @@ FINGER_ROUNDS = 2
 """Searches of single fingers, each with fits after it; a finger that is in another's place must wait for that one."""
 
 SCORED_PIXELS = 1500
-"""About so many hand pixels are enough to compare bends of a finger by."""
+"""About this many hand pixels are enough to compare bends of a finger."""
 
 FAR_REACH, WIDE_REACH = 0.040, 0.025
 """Greatest distance of a correspondence, m: where a hand's place is in doubt, and where only its fingers are."""
@@ -47,7 +47,7 @@ DISTANCE_LOSS = 0.5
 """Worth lost by a hand none of whose joints is where the detector saw it, half of it by its worst finger."""
 
 LOST_LOSS = 0.1
-"""Worth lost by a hand that nobody should believe. With 0 a sixth of the frames of `d405_take001` that show the hand
+"""Worth lost by a hand that should not be believed. With 0 a sixth of the frames of `d405_take001` that show the hand
 whole are lost, with this a tenth; if it weighed more than all else a twentieth, but of the 8 marked frames 2 instead of
 1 would then be called `ok` with a fingertip in a wrong place."""
 
@@ -85,7 +85,7 @@ class Attempt:
 
     @property
     def lost(self) -> tuple[int, ...]:
-        """Hands that nobody should believe: those, and those of which some finger is elsewhere."""
+        """Hands that should not be believed: those, and those of which some finger is elsewhere."""
         return tuple(hand for hand, quality in self.qualities.items() if quality.is_lost)
 
     @property

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 PLENTY = 6
-"""Of so many views or more every second one looks for the hands in a frame, the others in the next: half of them still
-have three views of a hand, by which a false joint is outvoted."""
+"""With this many views or more, every second one looks for the hands in a frame, the others in the next. Half of them
+are still three views of a hand, by which a false joint is outvoted."""
 
 
 def choose_views(count: int, frame: int) -> range:
-    """Which of so many views a hand that is followed is looked for in: of many every other one, in turn."""
+    """Which views a hand that is followed is looked for in: of many every other one, in turn."""
     return range(count) if count < PLENTY else range(frame % 2, count, 2)

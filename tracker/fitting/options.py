@@ -159,7 +159,7 @@ class TrackOptions:
 
     @property
     def view_ids(self) -> tuple[str, ...]:
-        """The cameras that were chosen to be tracked in together, by id; none where nobody chose any."""
+        """The cameras that were chosen to be tracked in together, by id; none where none were chosen."""
         return tuple(name for name in (part.strip() for part in self.cameras.split(",")) if name)
 
     @property
@@ -174,7 +174,7 @@ class TrackOptions:
 
     @property
     def max_faces(self) -> int | None:
-        """Heavier meshes are decimated to so many faces when they are loaded; None keeps them, as the paper does."""
+        """Meshes are decimated to at most this many faces when they are loaded; None keeps them, as the paper does."""
         return None if self.is_as_written else MAX_FACES
 
     def to_json(self) -> dict[str, Any]:
@@ -195,7 +195,7 @@ class TrackOptions:
         return cls(**values)
 
     def frame_range(self, frame_count: int) -> range:
-        """The frames to track of a recording of so many frames."""
+        """The frames to track of a recording of this length."""
         last = frame_count - 1 if self.last_frame < 0 else self.last_frame
         if self.first_frame > last or last >= frame_count:
             raise TrackingError(

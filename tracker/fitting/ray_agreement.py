@@ -13,7 +13,7 @@ MEETS = 0.015
 """m; a ray so near to a place agrees with it, as `view_hands.REACH`."""
 
 ENOUGH = 3
-"""So many rays that agree are believed against others; of two that cross nobody knows which are right."""
+"""This many rays that agree are believed against others; of two that cross it is unknown which are right."""
 
 PARALLEL = 1e-4
 """Squared sine of the angle below which two rays tell no place."""

@@ -25,13 +25,13 @@ REACH = 15.0
 """mm; a joint that far from the detector's place has a quarter of its pull, as with depth (`sighting.REACH`)."""
 
 SUPPORTED = 11
-"""Where four views or more make sure of so many joints of a hand, these alone pull from afar."""
+"""Where four views or more confirm this many joints of a hand, only these pull from afar."""
 
 HOLDS = 0.5
 """A view holds a hand whose joints lie so near to where it was seen there, `ViewHands.measure`."""
 
 FOLLOWS = 0.8
-"""A hand that nobody should believe is still followed from where it is while one view sees it so near."""
+"""A hand that is called lost is still followed from where it is while one view sees it this near."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class ViewHands:
         return replace(self, hands=tuple(kept))
 
     def without_jumps(self, posed: PosedScene, followed: Mapping[int, str], fps: float) -> ViewHands:
-        """The same without joints that are told too far from where they are expected (`find_jumps`).
+        """The same without joints that are detected too far from where they are expected (`find_jumps`).
 
         Args:
             posed: Where they are expected.

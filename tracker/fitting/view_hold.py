@@ -1,4 +1,4 @@
-"""How a fit in several views holds the hands: by joints where most are told, else by contours and the frame before."""
+"""How a fit in several views holds the hands: by joints where most are detected, else contours and the frame before."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class ViewHold:
 
 
 BY_JOINTS = ViewHold(REACH, 4, Regularization.weight)
-"""Contours are drawn anew in each iteration, and the joints have brought them near."""
+"""Contours are drawn again in each iteration, and the joints have brought them near."""
 
 BY_CONTOURS = ViewHold(5.0, 8, 0.1)
 """Chosen on rendered views (benchmarks/results/rendered_views.md): a hidden finger that few joints tell of must not

@@ -14,12 +14,12 @@ from tracker.model.joints import HAND_JOINTS
 Array = npt.NDArray[np.float64]
 
 FASTEST = 0.75
-"""m/s; a joint that is told so near to where it is expected did not jump. At 25 frames a second these are 30 mm; 20 mm
-did as well on rendered views. At 4.5 they are 167 mm, and nothing is called a jump that could not be one: with 30 mm
-`d405_take001` is followed in 69 frames, in two views that follow it in 102 without."""
+"""m/s; a joint that is detected nearer to where it is expected did not jump. At 25 frames a second this is 30 mm; 20 mm
+did as well on rendered views. At 4.5 it is 167 mm; with 30 mm there `d405_take001` is followed in 69 frames, in two
+views that follow it in 102 without a limit."""
 
 USUAL = 4.0
-"""A joint did not jump either that is told less than so many times as far off as half of its hand's joints are."""
+"""A joint did not jump either if it is detected less than this many times as far off as half of its hand's joints."""
 
 MEETS = 0.008
 """m; two rays that pass so near to each other tell one joint."""
@@ -37,7 +37,7 @@ NEIGHBOURS = tuple(
 def find_jumps(
     joints: Array, cameras: Sequence[Camera], hands: Sequence[DetectedHand | None], fps: float
 ) -> npt.NDArray[np.bool_]:
-    """(C, 21) which joints are told far from where they are expected, and are borne out by nothing.
+    """(C, 21) which joints are detected far from where they are expected, with nothing to confirm them.
 
     A finger that moves fast takes its joints along: where a joint beside it in the finger went about the same way in
     the same view, or a second view tells the joint far off too and both rays meet, it moved.

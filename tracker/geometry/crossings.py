@@ -13,7 +13,7 @@ MAX_STACK = 128
 
 @njit(cache=True, nogil=True)
 def _do_boxes_meet(boxes, a, others, b):
-    """Without branches, which nobody could foresee: three times as fast as with `and`."""
+    """Without branches, which cannot be predicted: three times as fast as with `and`."""
     return (
         (boxes[a, 0] <= others[b, 3])
         & (others[b, 0] <= boxes[a, 3])

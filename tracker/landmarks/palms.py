@@ -35,7 +35,7 @@ def load_palm_network(threads: int = 1) -> Run:
 
 
 def find_palms(network: Run, image: npt.NDArray[np.uint8], turn: int = 0) -> list[Square]:
-    """Squares around the hands of an image (H, W, 3), seen turned by so many quarters; the most certain first."""
+    """Squares around the hands of an image (H, W, 3), seen turned by this many quarters; the most certain first."""
     height, width = image.shape[:2]
     whole = Square(np.array([0.5 * (width - 1), 0.5 * (height - 1)]), float(max(height, width)), 0.5 * np.pi * turn)
     told = network(whole.cut(image, PIXELS))

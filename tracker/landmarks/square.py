@@ -57,7 +57,7 @@ class Square:
         return np.asarray(crop.transpose(2, 0, 1)[None], dtype=np.float32) / np.float32(255.0)
 
     def to_image(self, points: Array, pixels: int) -> Array:
-        """(N, 2) px of the image of points (N, 2) px of a crop with so many pixels a side."""
+        """(N, 2) px of the image, of points (N, 2) px of a crop with this many pixels a side."""
         return self.center + (points + 0.5 - 0.5 * pixels) * (self.size / pixels) @ _turn(self.angle).T
 
     def turn_back(self, points: Array) -> Array:

@@ -34,7 +34,7 @@ class Population:
     factor: Array
 
     def draw(self, rng: np.random.Generator, count: int) -> Array:
-        """(count, S) coefficients of so many people."""
+        """(count, S) shape coefficients, one row for each person."""
         return self.mean + rng.standard_normal((count, len(self.mean))) @ self.factor.T
 
 

@@ -27,7 +27,7 @@ KINDS = (
 )
 
 TRACKED = ManoConvention(tips="manopth", fix_left_shape=True)
-"""How a MANO file is read for tracking: nobody's coefficients are compared, so the left hand's fault is mended."""
+"""How a MANO file is read for tracking: no coefficients are compared, so the fault of the left hand is corrected."""
 
 
 def load_model(path: Path, max_faces: int | None = MAX_FACES, metres_per_unit: float | None = None) -> ArticulatedModel:

@@ -59,7 +59,7 @@ THUMB_ROLL_DEG = 60.0
 """How far the thumb is rolled about itself against the fingers, so that it bends across the palm."""
 
 STRAIGHT_TRUST = 0.35
-"""A finger bent by so many radians at rest tells as much about its own plane of bending as the palm does."""
+"""A finger bent by this angle at rest, rad, says as much about its own plane of bending as the palm does."""
 
 
 @dataclass(frozen=True)

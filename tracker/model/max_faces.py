@@ -3,4 +3,4 @@
 from __future__ import annotations
 
 MAX_FACES = 1500
-"""Heavier meshes are decimated to so many faces when they are loaded for tracking."""
+"""Meshes with more faces are decimated to this number when they are loaded for tracking."""

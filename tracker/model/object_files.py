@@ -36,7 +36,7 @@ MAX_FILE_FACES = 1_000_000
 MAX_OBJECT_FACES = 1500
 
 UNITS: tuple[tuple[str, float], ...] = (("metres", 1.0), ("millimetres", 1e-3), ("centimetres", 1e-2))
-"""Tried in this order when nobody says which it is: 10 to 1500 units across are read as mm, as most files are."""
+"""Tried in this order when the unit is not given: 10 to 1500 units across are read as mm, as most files are."""
 
 SIZES = (0.010, 1.5)
 """m; diagonal of the box around an object that hands handle: the first unit that gives one within is taken."""

@@ -20,7 +20,7 @@ ALIKE = 12.0
 wrong can agree there and back too."""
 
 AROUND = 7
-"""Of so many pixels a side."""
+"""Side of a window, px."""
 
 
 @dataclass(frozen=True)

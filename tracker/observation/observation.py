@@ -20,8 +20,8 @@ HAND, OTHER = 1, 2
 """Bits of a pixel's label: may be hand, may be something else. Without colour a pixel is both."""
 
 SHADOW = 15
-"""A pattern camera sees no depth beside a nearer surface, so many px wide: 75 mm between projector and camera, 525 px
-of focal length, a step of 10 cm at half a metre make 13."""
+"""Width in px of the strip beside a nearer surface in which a pattern camera sees no depth. 75 mm between projector and
+camera, 525 px of focal length and a step of 10 cm at half a metre give 13."""
 
 
 @dataclass(frozen=True)

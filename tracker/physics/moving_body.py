@@ -15,7 +15,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MovingBody:
-    """What Bullet is told of the object.
+    """What Bullet is given for the object.
 
     Hulls that nothing is near to cannot collide; together they are a base without a shape, of their mass and inertia.
     So a rope of 36 bones that is held at four of them is a body of five parts.

@@ -58,7 +58,7 @@ class Protocol:
 
     @property
     def spinning_friction(self) -> float:
-        """What Bullet is told of hands and object, m.
+        """Margins that Bullet is given for hands and object, m.
 
         A patch of radius r that is pressed with N resists a torque of 2/3 r μ N (a soft finger, pressed evenly), μ the
         friction between the two, here the square of each one's. Bullet adds each body's value times the other's

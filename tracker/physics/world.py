@@ -30,7 +30,7 @@ CHECKED = 5
 """Steps between two looks at where the object is."""
 
 CAUTION = 3.0
-"""The object is taken to be at rest if it would stay where it should even at so many times its present speed."""
+"""The object counts as at rest if it would stay where it should even at this many times its present speed."""
 
 
 @dataclass(frozen=True)

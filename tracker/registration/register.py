@@ -35,7 +35,7 @@ Progress = Callable[[str, float], None]
 MIN_POINTS = 50
 
 NEARLY, MOST_AGAIN = 1.03, 3
-"""When a registration is not good, so many starts that cost this much at most, against the best, are followed up."""
+"""When a registration is not good: how many further starts are fitted, and their highest cost relative to the best."""
 
 
 _TURN = Rotation.from_rotvec([0.5, -0.7, 0.4]).as_matrix()
@@ -215,7 +215,7 @@ class Registrar:
         return found[0].evaluation, found[0].side, scans
 
     def _measure(self, vertices: Array, scan: Scan, keep: npt.NDArray[np.bool_], flip: Array) -> Array:
-        """(N,) distance of every point to the surface, m; NaN for what is no part of the hand."""
+        """(N,) distance of every point to the surface, m; NaN for points that are not part of the hand."""
         distances = np.full(len(scan.points), np.nan)
         ids = np.flatnonzero(keep)[:MAX_POINTS]
         points = np.ascontiguousarray(scan.points[ids] * flip)

@@ -152,7 +152,7 @@ class StartSearch:
         return Start(judged.cost / len(self.fit.model.template), side, judged)
 
     def _try_fingers(self, scan: ScanPoints, best: Start) -> Start:
-        """The best state after each finger was started anew in several curls, and the thumb in several turns.
+        """The best state after each finger was restarted in several curls, and the thumb in several turns.
 
         As long as that helps, up to ROUNDS times: with one finger in its place, another may find its own.
         """

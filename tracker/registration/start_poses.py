@@ -56,7 +56,7 @@ def make_start_pose(limits: BlendLimits, number: int) -> Array:
 
 
 def curl_finger(limits: BlendLimits, pose: Array, finger: str, curl: Curl) -> Array:
-    """The pose with a finger curled anew; its abduction and twist become the prior's."""
+    """The pose with another curl of a finger; its abduction and twist become the prior's."""
     first, pose = CHAINS[finger], pose.copy()
     for number, degrees in enumerate(curl):
         angles = limits.mean[first - 1 + number].copy()
@@ -66,7 +66,7 @@ def curl_finger(limits: BlendLimits, pose: Array, finger: str, curl: Curl) -> Ar
 
 
 def turn_thumb(limits: BlendLimits, pose: Array, turn: tuple[float, float, float, float]) -> Array:
-    """The pose with the thumb set anew."""
+    """The pose with another turn of the thumb."""
     first, pose = CHAINS["thumb"], pose.copy()
     flexion, abduction, second, third = np.radians(turn)
     axes = limits.axes[first - 1 : first + 2]

@@ -34,7 +34,7 @@ LIMITS = {
 """A registration is good when every measure is below its limit, see docs/scans.md."""
 
 BAD = 1.6
-"""A measure so many times its limit makes it bad."""
+"""A registration is bad when a measure is this many times its limit."""
 
 LEAST_COVERED = 0.35
 

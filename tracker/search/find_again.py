@@ -24,7 +24,7 @@ from tracker.search.tools import Tools
 Array = npt.NDArray[np.float64]
 
 COARSE = 4
-"""Every so many pixels are looked at to see whether there is anything left to search."""
+"""Step in px of the pixels that are examined for anything left to search."""
 
 STEPS = 8
 """Frames that share a search of the whole image."""

@@ -11,8 +11,8 @@ from tracker.errors import TrackingError
 from tracker.landmarks import HandDetector
 
 FIRST, LOOKED_AT, ENOUGH = 60, 8, 4
-"""Of the first frames so many are looked at in each view, and in so many it must see the hand for anything to be said
-of it."""
+"""Length of the beginning, how many of its frames are examined in each view, and in how many a view must see the hand
+before it is judged."""
 
 SURE = 0.8
 """A view sees the other hand where the detector is so sure of it in nearly every frame, and of the recording's hand in

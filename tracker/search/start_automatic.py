@@ -31,7 +31,7 @@ MIN_PIXELS = 50
 """Fewer hand pixels than this are no hand."""
 
 SCORED_PIXELS = 1200
-"""About so many hand pixels are enough to compare bends of a finger by."""
+"""About this many hand pixels are enough to compare bends of a finger."""
 
 EDGE_ON = 1.0 - 1e-9
 """Cosine above which a surface faces aside, and turns of a palm on it are counted from the image's other axis."""
@@ -71,7 +71,7 @@ class Search:
     openness: float = 0.2
 
     def stride(self, camera: Camera) -> int:
-        """Every so many pixels of a camera are of the coarse image."""
+        """Step in px between the pixels of the coarse image."""
         return max(1, camera.width // self.width)
 
 

@@ -18,7 +18,7 @@ from tracker.synthesis.shading import AMBIENT, BACKGROUND, SENSOR_STD, encode
 Array = npt.NDArray[np.float64]
 
 CELLS = 32
-"""The volume of noise repeats after so many cells."""
+"""Cells after which the volume of noise repeats."""
 
 OCTAVES = 4
 

@@ -1,4 +1,4 @@
-"""Twins: the motions that T16's authors found in their recordings, on their models, rendered anew.
+"""Twins: the motions that T16's authors found in their recordings, on their models, rendered again.
 
 Their recordings have no exact truth and these have; the motion is the same, real one.
 """

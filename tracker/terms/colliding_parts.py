@@ -22,7 +22,7 @@ SAME_SKIN = 0.010
 """A triangle does not collide with a part that is so near along the skin, m: there it only folds."""
 
 USUAL_PAIRS = 4096
-"""Room for so many crossing pairs at first; a fist has some hundreds."""
+"""Room for this many crossing pairs at first; a fist has some hundreds."""
 
 
 class CollidingParts(NamedTuple):

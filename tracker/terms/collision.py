@@ -17,10 +17,10 @@ from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
 
 REACH = 4.0
-"""A field ends so many circumradii from its triangle; two crossing triangles of about one size are within three."""
+"""A field ends this many circumradii from its triangle; two crossing triangles of about one size are within three."""
 
 WIDEST = 3.0
-"""A cone stops widening at so many circumradii."""
+"""A cone stops widening at this many circumradii."""
 
 
 @dataclass(frozen=True)

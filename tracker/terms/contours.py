@@ -27,7 +27,7 @@ DRAWN = 0.001
 keep the resolution of the image."""
 
 SAMPLED = 16
-"""Of the vertices one in so many tells how far the scene is."""
+"""One vertex in this many is used to measure how far the scene is."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Contours:
     this pair brought the joints of five marked real views nearest to their marks (docs/cameras.md)."""
 
     stride: int = 2
-    """Of the contours' pixels one in so many is matched."""
+    """One contour pixel in this many is matched."""
 
     jump: float = 0.008
     """Depth step of a contour within the model, m."""

@@ -55,7 +55,7 @@ class DataToModel:
     coarser than pixels."""
 
     stride: int = 2
-    """Every so many discontinuities one is matched: they lie pixel by pixel along a contour."""
+    """One discontinuity in this many is matched: they lie pixel by pixel along a contour."""
 
     jump: float = 0.015
     """Depth step of a discontinuity, m."""

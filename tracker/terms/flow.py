@@ -21,7 +21,7 @@ from tracker.terms.residual import FrameContext
 Array = npt.NDArray[np.float64]
 
 STRIDE = 8
-"""Of the drawn pixels' rows and columns one in so many has a flow that is used."""
+"""Flow is used in one of this many rows and columns of the drawn pixels."""
 
 RIM = 4
 """Pixels so near to a contour of the drawing are left out: the flow there may be of what lies behind, px."""

@@ -40,7 +40,7 @@ class ModelToData:
     """Point-to-plane (Eq. 7) or point-to-point (Eq. 6)."""
 
     stride: int = 1
-    """Every so many vertices."""
+    """One vertex in this many is matched."""
 
     visible_within: float = 0.003
     """A vertex is visible when it is at most this far behind the rendered surface, m."""

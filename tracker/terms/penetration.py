@@ -16,7 +16,7 @@ Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 
 TRIES = 3
-"""A region with so many vertices that are outside is outside."""
+"""A region is outside when this many of its vertices are."""
 
 
 class Swallowed(NamedTuple):

@@ -127,7 +127,7 @@ def _tells_shape(result: FrameResult) -> bool:
 
 
 def _choose(setup: TrackSetup, poses: dict[int, Array], count: int) -> list[int]:
-    """At most so many places, in order: the earliest, and always the one that is least like those already chosen."""
+    """At most this many places, in order: the earliest, and always the one that is least like those already chosen."""
     places = sorted(poses)
     if not places:
         return []

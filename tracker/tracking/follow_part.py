@@ -25,12 +25,12 @@ WORTH_GAIN = 0.02
 """A search was worth it if it raised the worth by this."""
 
 FINGER_REST, TIP_REST, SEEN_REST = (4, 64), (2, 16), (2, 8)
-"""Frames to wait after a second try in vain, the first time and at most: after a search of fingers in the depth image,
-after a finger was taken to a tip that shows, and after fits from detected joints, which a lost hand does not wait for.
-Meanwhile these joints are in the first fit: on `d405_take001` a frame takes half the time."""
+"""Frames to wait after a second try that failed, the first time and at most: after a search of fingers in the depth
+image, after a finger was moved to a visible tip, and after fits from detected joints, which a lost hand does not wait
+for. Meanwhile these joints are in the first fit: on `d405_take001` a frame takes half the time."""
 
 SEEN_ITERATIONS = 1.5
-"""Fits from the detector's joints take so many times the iterations of others: they start farther off."""
+"""Fits from the detector's joints take this many times the iterations of others: they start farther off."""
 
 SETTLED = 2e-4
 """They stop when the mean joint moves less, m; [T16] §4.1.1."""

@@ -1,4 +1,4 @@
-"""Go from frame to frame in colour views: find the hands in every image, fit, judge, place anew what was lost."""
+"""Go from frame to frame in colour views: find the hands in every image, fit, judge, and place what was lost again."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ class PartFits:
         )
 
     def predict(self) -> Array:
-        """(d,) where the part should be by now."""
+        """(d,) where the part should be in this frame."""
         earlier = self.part.take(self.state.earlier_pose)
         return replace(self.state, pose=self.previous, earlier_pose=earlier).predict(self.setup.scene)
 

@@ -1,4 +1,4 @@
-"""How long not to search again for what was searched in vain."""
+"""How long to wait before a failed search is repeated."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Patience:
-    """Frames to wait before the next search; the wait doubles with each search in vain.
+    """Frames to wait before the next search; the wait doubles with each search that fails.
 
     Attributes:
         wait: Frames until the next search.

@@ -20,7 +20,7 @@ from tracker.tracking.patience import Patience
 Array = npt.NDArray[np.float64]
 
 PATIENCE = ("second_try", "tips")
-"""When what was tried in vain may be tried again; a state that was stored before one of them was kept tries at once."""
+"""When a try that failed may be repeated; a state that was stored before one of them was kept tries at once."""
 
 
 @dataclass(frozen=True)

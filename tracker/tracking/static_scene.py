@@ -15,7 +15,7 @@ from tracker.physics import StaticScene, choose_down, find_plane
 Array = npt.NDArray[np.float64]
 
 STRIDE = 6
-"""Every so many pixels of the depth image are looked at."""
+"""Step in px of the pixels of the depth image that are examined."""
 
 FARTHEST = 3.0
 """m; beyond it depth cameras are too noisy."""

@@ -1,4 +1,4 @@
-"""Where the finished stages of a training are kept, so that one that was interrupted goes on and does not begin anew.
+"""Where the finished stages of a training are kept, so that an interrupted one continues instead of starting over.
 
 What is kept are the exact bits, and training always goes on from what would be kept: whether it was interrupted, and
 how often, changes nothing of the result.

@@ -19,7 +19,7 @@ Array = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
 MOST_BONES = 4
-"""A vertex follows at most so many bones, as game engines and glTF want it."""
+"""Most bones that a vertex follows, as game engines and glTF need it."""
 
 
 class SparseSkinning(NamedTuple):

@@ -71,7 +71,7 @@ def _count(number: int, one: str, many: str = "") -> str:
 
 
 def find_bend_fault(turns: npt.NDArray[np.float64]) -> str | None:
-    """Why nobody can learn from these poses how fingers bend; None when one can.
+    """Why the bending of fingers cannot be learnt from these poses; None when it can.
 
     Args:
         turns: (N, B, 3) axis-angle of each registration's joints, without the root.

@@ -62,7 +62,7 @@ def test_a_recording_that_cannot_be_tracked_is_not_queued(client: TestClient, ad
     ids = [flat["id"], deep["id"]]
     params = {"use_detector": False}
     found = client.post(f"{API}/jobs/batch/check", json={"sequence_ids": ids, "params": params}).json()["refused"]
-    assert [one["id"] for one in found] == [flat["id"]] and "hand detector alone" in found[0]["detail"]
+    assert [one["id"] for one in found] == [flat["id"]] and "only the hand detector" in found[0]["detail"]
     may_start(client, "", {"sequence_id": deep["id"]})
 
 

@@ -20,7 +20,7 @@ ROLL = {"proximal": 0.8e-3, "middle": 0.6e-3, "distal": 0.4e-3}
 """How far towards the palm a phalanx's centre of rotation has moved when it is bent by 90 degrees, m."""
 
 MOST_SWELLING = 2.5
-"""The pads swell by so many times their usual amount at most to keep the volume of the hand."""
+"""Most that the pads swell, in multiples of the usual amount, to keep the volume of the hand."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ DATA = Path(__file__).parent / "data" / "subjects.npz"
 TRAIN_SUBJECTS = tuple(range(1, 32))
 TEST_SUBJECTS = tuple(range(32, 38))
 MEAN_SUBJECT = 0
-"""The mean adult, whom nobody scans: the untrained hand's vertices are tied to its surface."""
+"""The mean adult, who is not scanned: the untrained hand's vertices are tied to its surface."""
 
 MAX_INFLUENCES = 8
 

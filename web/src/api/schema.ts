@@ -94,7 +94,7 @@ export interface paths {
         get?: never;
         /**
          * Put Preferences
-         * @description Replace my preferences. With `If-Match` only if nobody did so before; without, the last one counts.
+         * @description Replace my preferences. With `If-Match` only if they have not changed; without it the last one counts.
          */
         put: operations["put_preferences"];
         post?: never;

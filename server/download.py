@@ -1,4 +1,4 @@
-"""Names of files that people download: what they are of comes first, and no system chokes on them."""
+"""Names of files that people download: what they are of comes first, and every system accepts them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The worker process: `handloom worker`. It may be killed at any moment; whoever starts next goes on where it was."""
+"""The worker process: `handloom worker`. It may be killed at any moment; the next one continues where it was."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the app is put together from. A new room adds its router here, and what it starts and stops with the app."""
+"""The parts of the app. A new package adds its router here, and what it starts and stops with the app."""
 
 from __future__ import annotations
 

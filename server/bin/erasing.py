@@ -1,4 +1,4 @@
-"""Deleting for good: what hangs on a thing goes with it, and what others still need keeps it.
+"""Deleting for good: what depends on a thing is deleted too; what others still need prevents it.
 
 What hangs on what is read from the foreign keys of all tables; rooms above this one are known by their tables' names.
 """

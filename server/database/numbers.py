@@ -1,4 +1,4 @@
-"""Numbers in the JSON that people send, in one way for all rooms: true is no 1, and "5" is no 5."""
+"""Numbers in the JSON that people send, in one way everywhere: true is not 1, and "5" is not 5."""
 
 from __future__ import annotations
 

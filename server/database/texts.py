@@ -1,4 +1,4 @@
-"""Names and other short texts that people give, in one way for all rooms; the OpenAPI document says the same."""
+"""Names and other short texts that people give, in one way everywhere; the OpenAPI document says the same."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The labels that judge: those of now, or a snapshot that never changes."""
+"""The labels that judge: the current ones, or a snapshot that never changes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Labels out of files into the studio: looked at first, then taken in, all of them or none."""
+"""Labels from files into the studio: checked first, then imported, all of them or none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Hand models that learn from scans, as files: the one that nobody has trained yet, trained ones, uploaded ones."""
+"""Hand models that learn from scans, as files: the untrained one, trained ones, uploaded ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Small pictures of what an import would bring."""
+"""Small pictures of what an import would store."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Jobs that register scans and train hand models: what they are to do is settled when they are made."""
+"""Jobs that register scans and train hand models: what they do is settled when they are made."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Registrations: the template brought onto a scan, and how well that seems to have gone."""
+"""Registrations: the template fitted to a scan, and how good that fit seems."""

@@ -1,4 +1,4 @@
-"""Decisions: made, taken back, never changed. Who stands by what is counted anew from the rows at every change."""
+"""Decisions: made, undone, never changed. What counts is computed from all rows at every change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What other rooms know about scans. Those rooms stand above this one, so the app hands their answers in."""
+"""What other packages know about scans. They are above this one, so the app passes their answers in."""
 
 from __future__ import annotations
 

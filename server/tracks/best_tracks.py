@@ -1,4 +1,4 @@
-"""What tracks tell of their recordings."""
+"""What tracks say about their recordings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A body laid onto a scan of a person, and what it is worth; on the disk, too."""
+"""A body registered to a scan of a person, its verdict, and its file."""
 
 from __future__ import annotations
 

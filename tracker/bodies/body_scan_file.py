@@ -1,4 +1,4 @@
-"""A scan of a person from a file: read as scans of hands are, with a person's size to tell the unit."""
+"""A scan of a person from a file; its unit is recognised by the size of a person."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A folder of scans of one moving person, registered frame by frame; stopped anywhere, it goes on where it was."""
+"""A folder of scans of one moving person, registered frame by frame; a stopped run continues."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a body is, roughly: stiff bodies in a few poses laid onto the scan from all sides, the best then fitted."""
+"""Where a body is, roughly: rigid bodies in a few poses are placed on the scan from all sides, the best are fitted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a registration of a person is worth: something else in the scan, or half a person, is said in words."""
+"""The verdict on a registration of a person: other things in the scan, or half a person, are reported in words."""
 
 from __future__ import annotations
 

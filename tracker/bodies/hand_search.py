@@ -1,4 +1,4 @@
-"""How a body's hands are held: each begun in many poses and turns of its wrist, low-dimensional, with the body held."""
+"""How a body's hands are held: each begun in many poses and turns of its wrist, low-dimensional, the body fixed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How surely a bundle adjustment tells where cameras stand.
+"""How certain the camera positions of a bundle adjustment are.
 
 The covariance of the cameras is the inverse of the normal equations after the places are eliminated (Triggs et al.,
 "Bundle adjustment, a modern synthesis", 2000, section 9). The first camera stands still, and something tells the scale:

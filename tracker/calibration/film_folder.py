@@ -1,4 +1,4 @@
-"""What cameras filmed, in a folder that somebody handed over: a video or images for each, perhaps known lenses."""
+"""What cameras filmed, in a folder: a video or images for each, perhaps known lenses."""
 
 from __future__ import annotations
 

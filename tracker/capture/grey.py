@@ -1,4 +1,4 @@
-"""Images that tell no colours."""
+"""Images without colours."""
 
 from __future__ import annotations
 

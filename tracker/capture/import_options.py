@@ -1,4 +1,4 @@
-"""What the person who imports a recording tells about it."""
+"""What the person who imports a recording says about it."""
 
 from __future__ import annotations
 

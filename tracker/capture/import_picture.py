@@ -1,4 +1,4 @@
-"""One picture of what an import would bring, by the name that its report gives."""
+"""One picture of what an import would store, by the name that its report gives."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What has to be told about a recording before it can be imported, all of it at once."""
+"""What must be said about a recording before it can be imported, all of it at once."""
 
 from __future__ import annotations
 

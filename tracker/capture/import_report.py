@@ -1,4 +1,4 @@
-"""What an import would bring, told before anything is stored."""
+"""What an import would store, reported before anything is stored."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bring a recording in: all of it or nothing."""
+"""Import a recording: all of it or nothing."""
 
 from __future__ import annotations
 

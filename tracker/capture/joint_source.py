@@ -1,4 +1,4 @@
-"""Where a joint in an annotation came from: a person's own hand, or something that a person took over."""
+"""Where a joint in an annotation came from: placed by hand, or a suggestion that a person accepted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A camera that stopped before the others: told before a run begins, not when it comes there."""
+"""A camera that stopped before the others: reported before a run begins, not in the middle of it."""
 
 from __future__ import annotations
 

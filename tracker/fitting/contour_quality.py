@@ -1,4 +1,4 @@
-"""How well the contours of a fitted object meet edges of colour images: tells a followed object from a lost one."""
+"""How well the contours of a fitted object meet edges of colour images: is the object followed or lost."""
 
 from __future__ import annotations
 

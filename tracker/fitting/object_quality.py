@@ -1,4 +1,4 @@
-"""How well a fitted object explains what was seen: what tells a followed object from a lost one."""
+"""How well a fitted object explains what was seen: distinguishes a followed object from a lost one."""
 
 from __future__ import annotations
 

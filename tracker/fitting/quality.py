@@ -1,4 +1,4 @@
-"""How well a fitted pose explains what was seen: what tells a followed hand from a lost one."""
+"""How well a fitted pose explains what was seen: distinguishes a followed hand from a lost one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What keeps a recording from being tracked, told by facts that are known without reading a frame."""
+"""What keeps a recording from being tracked, as far as it is known without reading a frame."""
 
 from __future__ import annotations
 

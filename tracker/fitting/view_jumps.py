@@ -1,4 +1,4 @@
-"""Joints told farther from where they are expected than a hand moves, with nothing to bear them out."""
+"""Joints detected farther from where they are expected than a hand can move, with nothing to confirm them."""
 
 from __future__ import annotations
 

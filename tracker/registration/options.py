@@ -1,4 +1,4 @@
-"""What a registration may be told."""
+"""Options of a registration."""
 
 from __future__ import annotations
 

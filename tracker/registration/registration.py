@@ -1,4 +1,4 @@
-"""A hand model's mesh laid onto a scan, and what it is worth."""
+"""A hand model's mesh registered to a scan, with its verdict."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Thousands of rough ways to lay stiff hands onto a scan, each pulled to where it fits."""
+"""Thousands of rough rigid placements of hands on a scan, each refined."""
 
 from __future__ import annotations
 

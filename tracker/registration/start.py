@@ -1,4 +1,4 @@
-"""Where a hand may be in a scan, without anybody's help."""
+"""Where a hand may be in a scan, without a manual start."""
 
 from __future__ import annotations
 

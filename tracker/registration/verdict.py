@@ -1,4 +1,4 @@
-"""What a registration is worth, judged without truth."""
+"""The verdict on a registration, reached without the truth."""
 
 from __future__ import annotations
 

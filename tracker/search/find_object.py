@@ -1,4 +1,4 @@
-"""Find a rigid or articulated object in a depth image without anybody's having placed it."""
+"""Find a rigid or articulated object in a depth image without a given place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keep joints on the viewing rays of their places in an image: those that somebody marked, or that a detector tells."""
+"""Keep joints on the viewing rays of their places in an image: those that somebody marked, or that a detector found."""
 
 from __future__ import annotations
 

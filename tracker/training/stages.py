@@ -1,4 +1,4 @@
-"""What stands after a stage of a training, as arrays: every bit of it, for the next stage has nothing else."""
+"""The state after a stage of a training, as arrays: all of it, because the next stage has nothing else."""
 
 from __future__ import annotations
 

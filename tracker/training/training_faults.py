@@ -1,4 +1,4 @@
-"""What keeps a model from being trained, told by facts that are known without the registrations' files."""
+"""What keeps a model from being trained, as far as it is known without the registrations' files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One module for each kind of recording that can be imported, named after its format; a new file is found by itself."""
+"""One module for each kind of recording that can be imported, named after its format; all are found automatically."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 RESULTS = sorted((ROOT / "benchmarks" / "results").rglob("*.md"))
-"""Written by scripts; their links are tested, too."""
+"""Written by scripts, or copied from what they print; their links are tested, too."""
 
 
 def name_of(page: Path) -> str:

@@ -33,7 +33,7 @@ class TrackState:
         earlier_pose: (D,) of the frame before; equal to `pose` where there is none.
         is_lost: Whether a hand was nowhere in the last frame.
         lost_hands: Which, indices of the scene's models; none though one is lost means all.
-        second_try: When there is another second try after one in vain.
+        second_try: When there is another second try after one that failed.
         tips: When a finger may be taken to a tip that shows again.
         detected: Hands that the detector saw in the last frame, by name.
     """

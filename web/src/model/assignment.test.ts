@@ -37,7 +37,7 @@ test("a frame is done when every joint asked for is decided, and one that was on
   const replicas = { frames: [2, 5], cameras: ["cam0"], hands: ["right", "left"] } as unknown as ReplicaSet;
   expect(progressOf(given({}), replicas, poses, ["right"])).toEqual({ done: 0, total: 2, next: 2, partial: [2, 5] });
   expect(progressOf(given({}), replicas, { ...poses, [at(5, "left")]: whole }, ["right"])).toEqual({ done: 1, total: 2, next: 2, partial: [2] });
-  expect(describeUnfinished({ done: 1, total: 4, next: 2, partial: [2, 3] })).toBe("1 frame is not begun. 2 frames have undecided joints, the first is 2.");
+  expect(describeUnfinished({ done: 1, total: 4, next: 2, partial: [2, 3] })).toBe("1 frame is not begun. 2 frames have open joints, the first is 2.");
 });
 
 test("a reviewer is to review what others submitted, but no set that they mark blindly themselves", () => {

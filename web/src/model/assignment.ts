@@ -66,7 +66,7 @@ export function describeUnfinished({ done, total, partial }: AssignmentProgress)
   const untouched = total - done - partial.length;
   const parts = [
     untouched > 0 ? `${frames(untouched, "is", "are")} not begun.` : "",
-    partial.length > 0 ? `${frames(partial.length, "has", "have")} undecided joints, the first is ${partial[0]}.` : "",
+    partial.length > 0 ? `${frames(partial.length, "has", "have")} open joints, the first is ${partial[0]}.` : "",
   ];
   return parts.filter(Boolean).join(" ");
 }

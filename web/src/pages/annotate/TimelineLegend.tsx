@@ -13,7 +13,7 @@ const box = (children: ReactNode) => (
 const STATES: readonly (readonly [ReactNode, string])[] = [
   [box(null), "not marked"],
   [box(<rect x={2} y={8} width={24} height={6} fill="var(--hand-right)" opacity={0.65} />), "partly marked: as high as the share of its joints"],
-  [box(<rect x={2} width={24} height={14} fill="var(--hand-right)" />), "complete, every joint decided"],
+  [box(<rect x={2} width={24} height={14} fill="var(--hand-right)" />), "complete: every joint placed or outside"],
   [box(<path d="M14 1.5 19.5 7 14 12.5 8.5 7Z" fill="#fff" stroke="#111" strokeWidth={1.5} />), "key frame"],
   [box(<path d="M2 4H26" stroke="var(--suggestion)" strokeWidth={3} strokeDasharray="4 2" />), "suggested, not accepted yet"],
   [box(<path d="M9.5 2H18.5L14 11Z" fill="var(--bad)" />), "flagged by label QC"],

@@ -51,7 +51,7 @@ export function createAnnotating(opened: Recording, session: Session, replica: s
   const show = (change: Partial<PageState>): void => page.set({ ...page.get(), ...change }, "person");
   const refuse = (): void => show({ isRefused: true });
 
-  /** Whether these cameras' pictures of the frame are on the screen and stand still; who acts in vain is told. */
+  /** Whether these cameras' pictures of the frame are on the screen and stand still; a person whose action has no effect is told so. */
   const areSeen = (names: Iterable<string>): boolean => {
     const { frame } = session.store.get();
     const isShown = [...names].every((one) => screen.shows(one, frame));
@@ -65,7 +65,7 @@ export function createAnnotating(opened: Recording, session: Session, replica: s
     if (next === before) return false;
     const touched = camerasTouched(before, next);
     const isTaken = touched.size === 0 || (page.get().lock === null && areSeen(touched));
-    // A drag that may not end here is called off.
+    // A drag that may not end here is cancelled.
     if (isTaken || before.draft) session.store.set(isTaken ? next : { ...before, draft: null }, "person");
     return isTaken;
   };

@@ -38,7 +38,7 @@ class Settings(BaseSettings):
         default=None, description="Address of an S3-compatible store that is not Amazon's: `http://store:8333`."
     )
     store_cache_gb: float = Field(
-        default=100.0, gt=0, description="GB of files that are safe in the store and may stay in the data folder too."
+        default=100.0, gt=0, description="GB of files that may stay in the data folder although they are in the store."
     )
     worker_host: str | None = Field(
         default=None,
@@ -75,7 +75,7 @@ class Settings(BaseSettings):
     abandoned_import_hours: float = Field(
         default=24.0,
         gt=0,
-        description="Hours after which an unconfirmed upload, or films that nobody uses, are removed at the start.",
+        description="Hours after which unconfirmed uploads and unused films are removed when the studio starts.",
     )
     image_cache_mb: int = Field(
         default=256, ge=0, description="Memory in MB for images that had to be encoded for the browser."

@@ -34,7 +34,7 @@ def choose_cache_folder(root: Path) -> Path:
 
 
 def use_kernel_cache() -> None:
-    """Tell numba, before any kernel exists, to keep compiled kernels in the user's cache unless told otherwise."""
+    """Have numba keep compiled kernels in the user's cache, unless NUMBA_CACHE_DIR is set; before any kernel exists."""
     if "NUMBA_CACHE_DIR" in os.environ:
         return
     folder = str(choose_cache_folder(ROOT))

@@ -74,7 +74,7 @@ class BodyOptions:
 
 
 class Registrar:
-    """Registers scans of people with one model; what depends on the model alone is worked out once.
+    """Registers scans of people with one model; what depends on the model alone is computed once.
 
     Args:
         model: A body with SMPL-H's joints.

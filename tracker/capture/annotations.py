@@ -36,7 +36,7 @@ class Annotation:
         hand: `right` or `left`.
         points: (21, 3) float64, in the order of HAND_JOINTS, of x, y (px, pixel centres are integers)
             and v as in COCO: 0 absent, 1 occluded, 2 visible.
-        sources: Of each joint what somebody accepted there (None: placed by hand); None when nobody noted it.
+        sources: Of each joint, the source that a person accepted (None: placed by hand); None when unknown.
     """
 
     frame: int

@@ -101,7 +101,7 @@ def load_scan(path: Path | str, metres_per_unit: float | None = None) -> Scan:
 
 @reads(ScanError, "a whole scan: PLY, OBJ, STL or npz")
 def read_scan(path: Path | str) -> Scan:
-    """The same with `points` in the file's own unit, whatever that is."""
+    """A scan from a file, with `points` in the file's own unit."""
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
     if reader is None:

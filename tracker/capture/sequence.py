@@ -37,11 +37,11 @@ class Sequence:
         fps: Frames per second.
         frame_count: Frames are numbered from 0.
         cameras: At least one.
-        hands: Of `right`, `left`, those that are seen.
+        hands: Those of `right`, `left` that it shows.
         objects: Those that are handled.
         annotations: Relative path of its annotations, or None.
-        gravity: (3,) unit, which way things fall, world; None where nobody said.
-        planes: Tables, floors, walls that somebody measured.
+        gravity: (3,) unit, direction of gravity, world; None when not given.
+        planes: Tables, floors and walls that were measured.
     """
 
     folder: Path

@@ -42,7 +42,7 @@ class TrackSetup:
         options: What the user chose.
         marks: Name of a hand to its joints (21, 3) as marked in the first frame, px of an ideal lens and v.
         own_detector: Finds fingertips for the S of [T16] Eq. 5, in colour views finger nails (§3.3); None for the
-            detector that comes along, in colour views for none.
+            bundled detector, in colour views for none.
         static_scene: Planes and gravity; None where the run was begun without an object, or before they were kept.
         view_ids: The cameras that are tracked in together; none where one depth camera is.
     """
@@ -101,7 +101,7 @@ class TrackSetup:
 
     @property
     def fingertip_detector(self) -> Forest:
-        """The one that was given, or the one that comes along."""
+        """The one that was given, or the bundled one."""
         return self.own_detector.forest if self.own_detector else default_detector()
 
     @property

@@ -19,7 +19,7 @@ def find_tracking_faults(
     color_cameras: Sequence[str],
     options: TrackOptions,
 ) -> list[str]:
-    """Why a recording cannot be tracked so, in sentences for people; empty when it can be.
+    """Why a recording cannot be tracked with these options, in sentences for people; empty when it can be.
 
     Args:
         frame_count: Of the recording.

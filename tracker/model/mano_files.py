@@ -35,7 +35,7 @@ def load_mano(path: Path, side: str | None = None, convention: ManoConvention = 
 
     Args:
         path: The file. A pickle is read without running it.
-        side: "right" or "left" of a MANO file; told from the file's name when left out, as in `smplx`.
+        side: "right" or "left" of a MANO file; taken from the file's name when left out, as in `smplx`.
         convention: Of it count `flat_hand_mean` (a mean pose of zero), `tips` and `fix_left_shape`.
 
     Raises:

@@ -47,11 +47,11 @@ POSSIBLE_SIZES = (1e-3, 10.0)
 
 @dataclass(frozen=True)
 class ObjectSize:
-    """How large a mesh is, and in which units it can be a thing to hold.
+    """How large a mesh is, and in which units it has a size that a hand can hold.
 
     Attributes:
         sides: (3,) of the box around it, in the file's unit.
-        guess: m; the unit that is taken when nobody says one, or None.
+        guess: m; the unit that is assumed when none is given, or None.
         units: Usual units that make a possible size of it: what each is called, and m.
     """
 

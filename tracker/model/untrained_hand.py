@@ -14,7 +14,7 @@ DATA = Path(__file__).parent / "data" / "untrained_hand.npz"
 
 @cache
 def untrained_hand(side: str = "right") -> BlendModel:
-    """A hand with lengths and widths of its own making and no pose blend shapes; the left one is the mirror image.
+    """The hand that registration starts with, without pose blend shapes; the left one is the mirror image.
 
     Its frame is the default hand's: origin at the wrist, x towards the middle knuckle, z out of the back of the hand, y
     towards the thumb of a right hand and away from that of a left one. MANO's 16 joints; open 10 mm behind the wrist.

@@ -15,7 +15,7 @@ class RegistrationOptions:
     Attributes:
         side: "right" or "left" when known; None tries both.
         use_colors: Drop points by R17's rule for green objects.
-        max_points: So many points are fitted at most; further ones are only measured.
+        max_points: Most points that are fitted; further ones are only measured.
         model_stages: Fits of pose and shape, each with the number of points it uses.
         free_stages: Fits of the free surface.
         last_stage: Fit of the model from where the surface left it. Edges tell nothing of where the model lies, and

@@ -56,7 +56,7 @@ class _Settled:
 
 
 class Registrar:
-    """Registers scans with one model; what depends on the model alone is worked out once.
+    """Registers scans with one model; what depends on the model alone is computed once.
 
     Args:
         model: Right or left; a left scan is registered in the mirror with the right model.

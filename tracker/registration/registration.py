@@ -49,11 +49,11 @@ class Registration:
         translation: (3,) m; for a left hand of the mirrored right hand.
         side: "right" or "left", as found.
         verdict: "good", "doubtful" or "bad".
-        score: Chance that it is wrong as the program sees it, 0 to 1: what queues for people are ordered by.
+        score: Estimated chance that it is wrong, 0 to 1; queues are ordered by it.
         reasons: Why it is not good, and what was left out of the scan.
         scan_to_mesh: (N,) m, of each point of the scan to the free surface; NaN where a point counts as no part of the
             hand: an object, a loose bit, the forearm behind the rim.
-        seconds: It took.
+        seconds: Time that it took.
         timings: Seconds of processor time by stage.
         scan: The scan's name.
         scan_digest: SHA-256 of its points.

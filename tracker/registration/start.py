@@ -48,7 +48,7 @@ class Start:
 
 
 class StartSearch:
-    """Looks for a hand; what depends on the model alone is worked out once.
+    """Looks for a hand; what depends on the model alone is computed once.
 
     Args:
         fit: The right-handed model.

@@ -40,7 +40,7 @@ class Tools:
     def with_fingertips(self, seen: Observation) -> Objective:
         """The objective with the frame's fingertip detections, [T16] §3.2.5.
 
-        Differs from the paper, which has them in every frame: those of the detector that comes along are asked for
+        Differs from the paper, which has them in every frame: those of the bundled detector are asked for
         where a fit went badly, which is what they are for; a lab's own is asked in every frame. A hand that is followed
         well gains nothing from them and loses time, and where an object hides fingertips a false detection pulls
         (docs/journal.md).

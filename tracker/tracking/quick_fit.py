@@ -43,7 +43,7 @@ class QuickFit:
     Attributes:
         joints: (21, 2) px of the recorded image; NaN behind the camera.
         is_hidden: (21,) whether something of the model lies in front of the joint.
-        uses_depth: Whether a depth image had a say.
+        uses_depth: Whether a depth image was used.
     """
 
     joints: Array
@@ -58,7 +58,7 @@ def fit_marked(model: ArticulatedModel, points: Array, camera: Camera, frame: Fr
         model: The hand.
         points: (21, 3) x, y px of the recorded image and v (0: not marked yet).
         camera: The recorded one.
-        frame: As recorded, with depth; None: from the marks alone, at the distance that the hand's size tells.
+        frame: As recorded, with depth; None: from the marks alone, at the distance that follows from the hand's size.
 
     Raises:
         TrackingError: Too few joints.

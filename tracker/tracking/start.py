@@ -69,9 +69,9 @@ def start_tracking(
         options: What the user chose.
         models: Hands, `right` and `left`, to use in place of the default ones, and objects in place of the recording's.
         annotations: Only those of the first frame are looked at.
-        progress: Told the stage and the share of all that is done, 0 to 1; may raise to cancel.
-        detector: Finds fingertips in every frame, in colour views finger nails, for terms with S; None for the one that
-            comes along.
+        progress: Called with the stage and the share that is done, 0 to 1; may raise to cancel.
+        detector: Finds fingertips in every frame, in colour views finger nails, for terms with S; None for the
+            bundled one.
 
     Raises:
         TrackingError: `find_tracking_faults` or `find_detector_faults` finds some, a camera is mirrored, or an object

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from tracker.bodies.body_registration import BodyRegistration
@@ -20,7 +22,7 @@ LIMIT = 2e-3
 """m; states that were found are called right when their surface is off by less."""
 
 
-def turned(**degrees: tuple[float, float, float]) -> np.ndarray:
+def turned(**degrees: Sequence[float]) -> np.ndarray:
     """(22, 3) rad: rotation vectors of joints by name, others zero."""
     pose = np.zeros((22, 3))
     for name, turn in degrees.items():

@@ -63,7 +63,7 @@ def test_a_hinge_that_bends_the_wrong_way_costs_more_than_one_that_bends_as_far_
         turn = [0.0, 0.0, 0.0]
         turn[axis] = np.degrees(middle) + degrees
         own = PRIOR.mean.reshape(21, 3).copy()
-        own[BODY_JOINTS.index(name) - 1] = turned(**{name: tuple(turn)})[BODY_JOINTS.index(name)]
+        own[BODY_JOINTS.index(name) - 1] = turned(**{name: turn})[BODY_JOINTS.index(name)]
         return PRIOR.cost(own)
 
     assert bent(-right_way * 45.0) > 10.0 * bent(right_way * 45.0)

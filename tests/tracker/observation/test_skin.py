@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.stats import multivariate_normal
+from scipy.stats import norm
 
 from tracker.observation.skin import _OTHER, _SKIN, LEAST, LEVELS, MOST, compute_skin_log_ratio
 
@@ -12,7 +12,7 @@ from tracker.observation.skin import _OTHER, _SKIN, LEAST, LEVELS, MOST, compute
 def log_ratio(color: np.ndarray) -> float:
     """[T16] §3.2.1 by the book."""
     skin, other = (
-        sum(row[6] * multivariate_normal(row[:3], np.diag(row[3:6])).pdf(color) for row in mixture)
+        sum(row[6] * norm.pdf(color, row[:3], np.sqrt(row[3:6])).prod() for row in mixture)
         for mixture in (_SKIN, _OTHER)
     )
     return float(np.clip(np.log(max(skin, 1e-300) / max(other, 1e-300)), LEAST, MOST))

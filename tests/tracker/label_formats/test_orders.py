@@ -20,7 +20,7 @@ def test_an_order_is_the_21_joints_each_once_and_there_and_back_is_nothing(order
     values = np.random.default_rng(0).random((21, 3))
     assert np.array_equal(from_order(to_order(values, order), order), values)
     assert np.array_equal(to_order(from_order(values, order), order), values)
-    assert [HAND_JOINTS[place] for place in to_order(np.arange(21), order)] == list(JOINT_ORDERS[order])
+    assert [HAND_JOINTS[int(place)] for place in to_order(np.arange(21.0), order)] == list(JOINT_ORDERS[order])
 
 
 def test_published_orders_are_as_published() -> None:

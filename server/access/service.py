@@ -56,7 +56,6 @@ class RequireRole:
 require_lead = RequireRole("lead")
 ReviewerAccount = Annotated[Account, Depends(RequireRole("reviewer"))]
 LeadAccount = Annotated[Account, Depends(require_lead)]
-AdminAccount = Annotated[Account, Depends(RequireRole("admin"))]
 
 
 async def require_person(user: CurrentUserDep) -> CurrentUser:

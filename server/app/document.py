@@ -6,8 +6,6 @@ from typing import Any
 
 from fastapi import FastAPI
 
-PRECONDITIONS = ("if-match", "if-none-match")
-
 
 class DocumentedApp(FastAPI):
     """An app whose OpenAPI document says what its routes really take."""

@@ -17,9 +17,6 @@ from server.jobs import service
 from server.jobs.batch_schemas import BatchOut, BulkRefusal
 from server.jobs.models import ENDED_STATES, STATES, JobRow
 
-MOST_JOBS = 500
-"""Of one batch, and of one act on several jobs."""
-
 
 class RefusedBatchError(InvalidError):
     """Some of a batch cannot be started, so nothing of it was."""

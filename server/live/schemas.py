@@ -43,12 +43,6 @@ class PersonHere(BaseModel):
     hand: Hand
 
 
-class PeopleHere(BaseModel):
-    """`event: people`: everybody else who has the recording open now, by name."""
-
-    items: list[PersonHere]
-
-
 class VisitPut(BaseModel):
     """Where somebody is in a recording that they have open."""
 

@@ -72,6 +72,10 @@ class Sequence:
     def folder(self, frame: int) -> Path:
         return self.out / FRAMES / f"{frame:06d}"
 
+    def error_file(self, frame: int) -> Path:
+        """Why a frame's scan could not be read."""
+        return self.out / FRAMES / f"{frame:06d}.error"
+
     @property
     def chunks(self) -> list[range]:
         size = self.options.chunk or max(len(self), 1)
@@ -247,7 +251,7 @@ def _load(sequence: Sequence, frame: int) -> BodyRegistration | None:
 
 
 def _save(sequence: Sequence, follower: BodyFollower, frame: int, registration: BodyRegistration) -> None:
-    save_body_registration(registration, follower.registrar.model.faces, sequence.folder(frame))
+    save_body_registration(registration, follower.model.faces, sequence.folder(frame))
 
 
 def _read(sequence: Sequence, frame: int) -> Scan | None:
@@ -256,9 +260,9 @@ def _read(sequence: Sequence, frame: int) -> Scan | None:
     try:
         return load_body_scan(path, sequence.options.metres_per_unit)[0]
     except ScanError as error:
-        folder = sequence.out / FRAMES
-        folder.mkdir(parents=True, exist_ok=True)
-        write_atomically(folder / f"{frame:06d}.error", str(error).encode())
+        path = sequence.error_file(frame)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, str(error).encode())
         return None
 
 
@@ -268,22 +272,12 @@ def _write_results(sequence: Sequence, model: BlendModel) -> dict[str, Any]:
     known = [each for each in found if each is not None]
     if not known:
         raise TrackerError(f"None of {len(sequence)} scans could be registered.")
-    filled, last = [], known[0]
-    for each in found:
-        last = each or last
-        filled.append(last)
-    poses = np.array([each.state.pose for each in filled])
-    places = np.array([each.state.translation for each in filled])
-    save_body_motion(BodyMotion(poses, places, np.zeros(0), sequence.options.fps), sequence.out / MOTION)
-    errors = [
-        (sequence.out / FRAMES / f"{frame:06d}.error").read_text()
-        for frame, each in enumerate(found)
-        if each is None and (sequence.out / FRAMES / f"{frame:06d}.error").is_file()
-    ]
+    _write_motion(sequence, found, known[0])
+    unread = [sequence.error_file(frame) for frame, each in enumerate(found) if each is None]
     summary = {
         "frames": len(sequence),
         "registered": len(known),
-        "errors": errors,
+        "errors": [path.read_text() for path in unread if path.is_file()],
         "verdicts": {name: sum(each.verdict == name for each in known) for name in ("good", "doubtful", "bad")},
         "guessed": {
             side: [frame for frame, each in enumerate(found) if each is not None and not each.are_shown[k]]
@@ -295,3 +289,12 @@ def _write_results(sequence: Sequence, model: BlendModel) -> dict[str, Any]:
     }
     write_atomically(sequence.out / SUMMARY, json.dumps(summary, indent=1).encode())
     return summary
+
+
+def _write_motion(sequence: Sequence, found: list[BodyRegistration | None], first: BodyRegistration) -> None:
+    states = [first.state]
+    for each in found:
+        states.append(each.state if each else states[-1])
+    poses = np.array([state.pose for state in states[1:]])
+    places = np.array([state.translation for state in states[1:]])
+    save_body_motion(BodyMotion(poses, places, np.zeros(0), sequence.options.fps), sequence.out / MOTION)

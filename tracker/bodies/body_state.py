@@ -56,11 +56,6 @@ class HandSpace:
         """(30, 3) rotation vectors of left and right fingers from coefficients (2, C)."""
         return (self.means + np.einsum("hc,hcx->hx", hands, self.components)).reshape(-1, 3)
 
-    def coefficients_of(self, fingers: Array) -> Array:
-        """(2, C) the coefficients that come nearest to fingers (30, 3)."""
-        apart = fingers.reshape(2, -1) - self.means
-        return np.stack([np.linalg.lstsq(self.components[k].T, apart[k], rcond=None)[0] for k in range(2)])
-
     def turns_of(self, fingers: Array) -> Array:
         """(2, 45, C) turns from the left of each finger joint per unit of each coefficient, at fingers (30, 3)."""
         turns = np.linalg.inv(turn_jacobian(fingers)).reshape(2, NUM_FINGER_JOINTS, 3, 3)
@@ -92,13 +87,9 @@ def make_state(model: BlendModel, space: HandSpace, pose: Array | None = None, h
         pose: (52, 3) whose first 22 joints count, rad; zero when left out.
         hands: (2, C) or fewer columns; zero, the mean pose, when left out.
     """
-    full = np.zeros((2, space.size))
-    if hands is not None:
-        count = min(space.size, hands.shape[1])
-        full[:, :count] = hands[:, :count]
-    body = np.zeros((NUM_BODY_JOINTS, 3)) if pose is None else pose[:NUM_BODY_JOINTS]
-    whole = np.concatenate([body, space.fingers_of(full)])
-    return BodyState(whole, np.zeros(model.num_shape), np.zeros(3), full)
+    body = np.zeros((NUM_BODY_JOINTS, 3)) if pose is None else pose
+    still = BodyState(body, np.zeros(model.num_shape), np.zeros(3), np.zeros((2, 0)))
+    return with_hands(still, space, still.hands if hands is None else hands)
 
 
 def with_hands(state: BodyState, space: HandSpace, hands: Array) -> BodyState:

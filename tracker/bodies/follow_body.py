@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -66,7 +67,7 @@ def choose_mixture(prior: str) -> HandMixture | None:
 
 
 class BodyFollower:
-    """Follows one person.
+    """Follows one person; what that takes seconds to make ready is made when the first frame is registered.
 
     Args:
         model: The person's own.
@@ -74,12 +75,19 @@ class BodyFollower:
     """
 
     def __init__(self, model: BlendModel, options: FollowOptions | None = None) -> None:
+        self.model = model
         self.options = options or FollowOptions()
-        self.registrar = Registrar(model, FOLLOW_STAGES, choose_mixture(self.options.prior))
+
+    @cached_property
+    def registrar(self) -> Registrar:
+        return Registrar(self.model, FOLLOW_STAGES, choose_mixture(self.options.prior))
+
+    @cached_property
+    def body(self) -> BodyFit:
+        """Without the hands' parameters: the body is followed first, so that it is known where hands should be."""
         coarse = self.registrar.coarse
         columns = np.arange(NUM_TURNED)
-        self.body = BodyFit(model, coarse.prior, coarse.mixture, coarse.space.size, columns=columns)
-        """Without the hands' parameters: the body is followed first, so that it is known where hands should be."""
+        return BodyFit(self.model, coarse.prior, coarse.mixture, coarse.space.size, columns=columns)
 
     def begin(self, scan: Scan, start: BodyState | None = None) -> BodyRegistration:
         """The first scan; without a start the body is searched."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracker.calibration.camera_calibration import CameraCalibration
+from tracker.calibration.camera_calibration import BoardResiduals, CameraCalibration, TimeOffset
 from tracker.calibration.sightings import Sightings
 from tracker.errors import CalibrationError, say_count
 
@@ -73,49 +73,68 @@ def check_lengths(sightings: Sequence[Sightings], find_offsets: bool) -> None:
 
 def find_warnings(result: CameraCalibration, sightings: Sequence[Sightings], find_offsets: bool) -> list[str]:
     """What a person should look at before using the result."""
+    longest = max(len(seen.times) / seen.fps for seen in sightings)
     warnings = []
-    lengths = [len(seen.times) / seen.fps for seen in sightings]
     for number, seen in enumerate(sightings):
-        offset = result.offsets[number]
-        if (max(lengths) - lengths[number]) * seen.fps > FRAMES_APART:
-            warnings.append(
-                f"{seen.camera}: its video is shorter ({len(seen.times)} frames, {lengths[number]:.2f} s) than the "
-                "longest "
-                f"({max(lengths):.2f} s); only what all have can be used of a recording made like this."
-            )
-        if number and offset.is_known and abs(offset.frames) > OUT_OF_STEP:
-            later = "later" if offset.frames > 0 else "earlier"
-            warnings.append(
-                f"{seen.camera}: is out of step: it shows a moment {abs(offset.frames):.2f} frames "
-                f"({abs(1000 * offset.seconds):.1f} ms) {later} in its video than {sightings[0].camera}. Shift it by "
-                "that."
-            )
-        if number and find_offsets and not offset.is_known:
-            warnings.append(
-                f"{seen.camera}: the board moved too little, or was too seldom seen with the others, to tell a time "
-                "offset; none "
-                "is assumed. Move the board without pause to have it told."
-            )
-        own = result.left_out.choose(result.left_out.camera == number)
-        if len(own.px) == 0:
-            warnings.append(f"{seen.camera}: no board at the moments that were left out; nothing judges this camera.")
-        elif own.median > BAD_PX:
-            warnings.append(
-                f"{seen.camera}: {own.median:.1f} px (median) at moments that were left out; needed at most "
-                f"{BAD_PX:g}. Is the board "
-                "flat, its size right, the picture sharp, and did the camera stay where it was?"
-            )
-        reach = np.ptp(seen.corners.reshape(-1, 2)[np.isfinite(seen.corners[..., 0]).ravel()], axis=0)
-        if (reach < 0.5 * np.array([seen.width, seen.height])).any():
-            across, down = (round(100 * share) for share in reach / [seen.width, seen.height])
-            warnings.append(
-                f"{seen.camera}: the board covered only {across} % of the picture's width and {down} % of its height; "
-                "outside, the "
-                "lens is a guess."
-            )
+        faults = (
+            _judge_length(seen, longest),
+            _judge_offset(result.offsets[number], sightings[0].camera, find_offsets) if number else "",
+            _judge_left_out(result.left_out.choose(result.left_out.camera == number)),
+            _judge_reach(seen),
+        )
+        warnings += [f"{seen.camera}: {fault}" for fault in faults if fault]
     hidden = int((~np.isfinite(result.T_world_board[:, 0, 0])).sum())
     if hidden:
         warnings.append(
             f"{say_count(hidden, 'board')} could not be placed and {'is' if hidden == 1 else 'are'} left out."
         )
     return warnings
+
+
+def _judge_length(seen: Sightings, longest: float) -> str:
+    seconds = len(seen.times) / seen.fps
+    if (longest - seconds) * seen.fps <= FRAMES_APART:
+        return ""
+    return (
+        f"its video is shorter ({len(seen.times)} frames, {seconds:.2f} s) than the longest ({longest:.2f} s); only "
+        "what all have can be used of a recording made like this."
+    )
+
+
+def _judge_offset(offset: TimeOffset, first: str, find_offsets: bool) -> str:
+    if not offset.is_known:
+        text = (
+            "the board moved too little, or was too seldom seen with the others, to tell a time offset; none is "
+            "assumed. Move the board without pause to have it told."
+        )
+        return text if find_offsets else ""
+    if abs(offset.frames) <= OUT_OF_STEP:
+        return ""
+    later = "later" if offset.frames > 0 else "earlier"
+    return (
+        f"is out of step: it shows a moment {abs(offset.frames):.2f} frames ({abs(1000 * offset.seconds):.1f} ms) "
+        f"{later} in its video than {first}. Shift it by that."
+    )
+
+
+def _judge_left_out(own: BoardResiduals) -> str:
+    if len(own.px) == 0:
+        return "no board at the moments that were left out; nothing judges this camera."
+    if own.median <= BAD_PX:
+        return ""
+    return (
+        f"{own.median:.1f} px (median) at moments that were left out; needed at most {BAD_PX:g}. Is the board flat, "
+        "its size right, the picture sharp, and did the camera stay where it was?"
+    )
+
+
+def _judge_reach(seen: Sightings) -> str:
+    size = np.array([seen.width, seen.height])
+    reach = np.ptp(seen.corners.reshape(-1, 2)[np.isfinite(seen.corners[..., 0]).ravel()], axis=0)
+    if (reach >= 0.5 * size).all():
+        return ""
+    across, down = (round(100 * share) for share in reach / size)
+    return (
+        f"the board covered only {across} % of the picture's width and {down} % of its height; outside, the lens is a "
+        "guess."
+    )

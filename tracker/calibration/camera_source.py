@@ -83,15 +83,20 @@ def find_sources(paths: list[Path], fps: float | None = None) -> list[CameraSour
         FrameError: A video cannot be read.
     """
     if len(paths) == 1 and paths[0].is_dir() and not _list(paths[0], COLOR_SUFFIXES):
-        inside = _list(paths[0], VIDEO_SUFFIXES)
-        folders = [entry.name for entry in paths[0].iterdir() if entry.is_dir() and _list(entry, COLOR_SUFFIXES)]
-        paths = [paths[0] / name for name in sort_naturally(inside or folders)] or paths
+        paths = _list_cameras(paths[0]) or paths
     if fault := find_count_fault([path.name for path in paths]):
         raise CalibrationError(fault)
     names = [path.stem if path.is_file() else path.name for path in paths]
     if len(set(names)) < len(names):
         names = [f"cam{index}" for index in range(len(paths))]
     return [open_source(name, path, fps) for name, path in zip(names, paths, strict=True)]
+
+
+def _list_cameras(folder: Path) -> list[Path]:
+    """The videos in a folder or, where there are none, its folders of images."""
+    videos = _list(folder, VIDEO_SUFFIXES)
+    folders = [entry.name for entry in folder.iterdir() if entry.is_dir() and _list(entry, COLOR_SUFFIXES)]
+    return [folder / name for name in sort_naturally(videos or folders)]
 
 
 def find_count_fault(names: Sequence[str]) -> str:

@@ -76,18 +76,9 @@ def shift_plan(plan: ImportPlan, shifts: dict[str, int]) -> ImportPlan:
     if plan.frame_count is not None and plan.frame_count <= high - low:
         apart = f"The cameras would be {say_count(high - low, 'frame')} apart"
         raise ImportRefusedError(f"{apart}, and the recording has {plan.frame_count}: no moment is left.")
-    warnings = [f"Shifted as given: {', '.join(f'{name} by {each[name]:+d} frames' for name in known if each[name])}."]
     count = None if plan.frame_count is None else plan.frame_count - (high - low)
-    annotations = None
-    if plan.annotations is not None and count is not None:
-        annotations = _shift_labels(plan.annotations, {name: shift - low for name, shift in each.items()}, count)
-        if gone := len(plan.annotations.items) - len(annotations.items):
-            are = say_count(gone, "label is", "labels are")
-            warnings.append(f"{are} left out, with the pictures that not all cameras have a moment for.")
-    if any(item.T_world_object is not None or item.joints for item in plan.objects):
-        warnings.append("The places of objects in the first frame are left out, because another frame is first now.")
-    if TRUTH_FILE in plan.files:
-        warnings.append(f"{TRUTH_FILE} is left out, because it belongs to the old frames.")
+    annotations = _shift_labels(plan.annotations, {name: shift - low for name, shift in each.items()}, count)
+    told = f"Shifted as given: {', '.join(f'{name} by {by:+d} frames' for name, by in each.items() if by)}."
     return replace(
         plan,
         cameras=tuple(_shift_camera(camera, each[camera.id] - low, high - each[camera.id]) for camera in plan.cameras),
@@ -95,8 +86,21 @@ def shift_plan(plan: ImportPlan, shifts: dict[str, int]) -> ImportPlan:
         annotations=annotations,
         objects=tuple(replace(item, T_world_object=None, joints={}) for item in plan.objects),
         files={target: source for target, source in plan.files.items() if target != TRUTH_FILE},
-        warnings=(*plan.warnings, *warnings),
+        warnings=(*plan.warnings, told, *_find_losses(plan, annotations)),
     )
+
+
+def _find_losses(plan: ImportPlan, annotations: Annotations | None) -> list[str]:
+    """What is known of the moments as they were, and does not go with the shifted cameras."""
+    losses = []
+    if plan.annotations and annotations and (gone := len(plan.annotations.items) - len(annotations.items)):
+        are = say_count(gone, "label is", "labels are")
+        losses.append(f"{are} left out, with the pictures that not all cameras have a moment for.")
+    if any(item.T_world_object is not None or item.joints for item in plan.objects):
+        losses.append("The places of objects in the first frame are left out, because another frame is first now.")
+    if TRUTH_FILE in plan.files:
+        losses.append(f"{TRUTH_FILE} is left out, because it belongs to the old frames.")
+    return losses
 
 
 def _shift_camera(camera: PlannedCamera, first: int, last: int) -> PlannedCamera:
@@ -105,7 +109,9 @@ def _shift_camera(camera: PlannedCamera, first: int, last: int) -> PlannedCamera
     return replace(camera, **streams, timestamps=times - times[0] if len(times) else times)
 
 
-def _shift_labels(annotations: Annotations, firsts: dict[str, int], count: int) -> Annotations:
+def _shift_labels(labels: Annotations | None, firsts: dict[str, int], count: int | None) -> Annotations | None:
     """Labels with their pictures: a camera's frame n is its frame n minus its first one now."""
-    moved = [replace(item, frame=item.frame - firsts[item.camera]) for item in annotations.items]
+    if labels is None or count is None:
+        return None
+    moved = [replace(item, frame=item.frame - firsts[item.camera]) for item in labels.items]
     return Annotations(tuple(item for item in moved if 0 <= item.frame < count))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from tracker.capture.camera_check import pick_pictures
 from tracker.capture.image_file import COLOR_SUFFIXES, DEPTH_SUFFIXES, ImageHeader, read_header
+from tracker.capture.import_findings import Findings
 from tracker.capture.import_options import ImportOptions
-from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question
+from tracker.capture.import_question import ImportChoice
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.numbered_files import NumberedFiles, group_by_number, match_pattern
 from tracker.errors import FrameError, ImportRefusedError, say_count
@@ -27,78 +28,79 @@ def look_at(files: ListedFiles, series: NumberedFiles) -> ImageHeader | None:
     return None
 
 
-def choose_depth(
-    files: ListedFiles, options: ImportOptions, problems: list[str], questions: list[ImportQuestion]
-) -> NumberedFiles:
+def choose_depth(files: ListedFiles, options: ImportOptions, found: Findings) -> NumberedFiles:
     """The depth images that were told or are the only ones; of several the likeliest, and a question.
 
     Raises ImportRefusedError when there are none.
     """
-    groups = group_by_number(files.names, DEPTH_SUFFIXES)[:_MOST_SERIES]
-    headers = {series.pattern: look_at(files, series) for series in groups}
-    depths = [series for series in groups if _is_depth(headers[series.pattern])]
-    told, text = None, ""
-    if options.depth_pattern:
-        told, fault = _match(files, options.depth_pattern, "depth_pattern")
-        if told is None and not depths:
-            raise ImportRefusedError(fault)
-        text = fault
+    depths, missing = _list_depths(files)
+    told, fault = _match(files, options.depth_pattern, "depth_pattern")
     if told is None and not depths:
-        raise ImportRefusedError(_describe_missing(groups, headers))
+        raise ImportRefusedError(fault or missing)
     named = [series for series in depths if "depth" in series.pattern.lower()]
-    likely = told or (named or depths)[0]
-    if told is None and not text and len(depths) > 1:
-        shown = ", ".join(f"{s.pattern} ({len(s.names)})" for s in depths[:5])
-        text = f"Depth images of {len(depths)} kinds: {shown}. Choose one with depth_pattern."
-    if text:
-        problems.append(text)
-    if text or len(depths) > 1:
-        ask = f"The files hold {say_count(len(depths), 'series', 'series')} of 16-bit grey images. Which one is depth?"
-        by = "its name" if named else "it has the most images"
-        choices = tuple(_make_choice(files, series) for series in depths[:_MOST_CHOICES])
-        first = (named or depths)[0].pattern if depths else None
-        questions.append(make_question("depth_pattern", ask, text, proposal=first, proposed_by=by, choices=choices))
-    return likely
+    likeliest = next(iter(named or depths), None)
+    if told is None and not fault and len(depths) > 1:
+        fault = f"Depth images of {len(depths)} kinds: {_show(depths)}. Choose one with depth_pattern."
+    ask = f"The files hold {say_count(len(depths), 'series', 'series')} of 16-bit grey images. Which one is depth?"
+    answers = {
+        "proposal": likeliest.pattern if likeliest else None,
+        "proposed_by": "its name" if named else "it has the most images",
+        "choices": tuple(_make_choice(files, series) for series in depths[:_MOST_CHOICES]),
+    }
+    if fault:
+        found.refuse(fault, "depth_pattern", ask, **answers)
+    elif len(depths) > 1:
+        found.ask("depth_pattern", ask, **answers)
+    chosen = told or likeliest
+    assert chosen is not None
+    return chosen
 
 
 def choose_color(
-    files: ListedFiles,
-    options: ImportOptions,
-    depth: NumberedFiles,
-    problems: list[str],
-    questions: list[ImportQuestion],
+    files: ListedFiles, options: ImportOptions, depth: NumberedFiles, found: Findings
 ) -> NumberedFiles | None:
     """The colour images with the depth images' numbers: those that were told or the only ones; else a question."""
-    groups = [s for s in group_by_number(files.names, COLOR_SUFFIXES)[:_MOST_SERIES] if s.names != depth.names]
-    colors = [s for s in groups if (header := look_at(files, s)) is not None and header.channels >= 3]
+    colors = _list_colors(files, depth)
     choices = (*(_make_choice(files, series) for series in colors[:_MOST_CHOICES]), _NO_COLOR)
     if options.color_pattern == "none":
         if colors:
-            questions.append(make_question("color_pattern", _ASK_COLOR, choices=choices))
+            found.ask("color_pattern", _ASK_COLOR, choices=choices)
         return None
-    told = None
-    if options.color_pattern:
-        told, fault = _match(files, options.color_pattern, "color_pattern")
-        if told is None:
-            problems.append(fault)
-            questions.append(make_question("color_pattern", fault, fault, choices=choices))
-            return None
+    told, fault = _match(files, options.color_pattern, "color_pattern")
+    if fault:
+        return found.refuse(fault, "color_pattern", choices=choices)
     candidates = [told] if told else [s for s in colors if s.numbers == depth.numbers] or colors
     if len(candidates) > 1:
-        shown = ", ".join(f"{s.pattern} ({len(s.names)})" for s in candidates[:5])
-        text = f"Colour images of {len(candidates)} kinds: {shown}. Choose one with color_pattern, or 'none'."
-        problems.append(text)
-        questions.append(make_question("color_pattern", _ASK_COLOR, text, choices=choices))
-        return None
+        text = (
+            f"Colour images of {len(candidates)} kinds: {_show(candidates)}. Choose one with color_pattern, or 'none'."
+        )
+        return found.refuse(text, "color_pattern", _ASK_COLOR, choices=choices)
     if candidates and candidates[0].numbers != depth.numbers:
         text = _describe_mismatch(depth, candidates[0])
-        problems.append(f"{text} Complete them, or set color_pattern to 'none'.")
         ask = f"{text} Complete the files, or import depth alone."
-        questions.append(make_question("color_pattern", ask, problems[-1], choices=choices))
-        return None
+        return found.refuse(
+            f"{text} Complete them, or set color_pattern to 'none'.", "color_pattern", ask, choices=choices
+        )
     if told is not None or len(colors) > 1:
-        questions.append(make_question("color_pattern", _ASK_COLOR, choices=choices))
+        found.ask("color_pattern", _ASK_COLOR, choices=choices)
     return candidates[0] if candidates else None
+
+
+def _show(several: list[NumberedFiles]) -> str:
+    return ", ".join(f"{series.pattern} ({len(series.names)})" for series in several[:5])
+
+
+def _list_depths(files: ListedFiles) -> tuple[list[NumberedFiles], str]:
+    """Series of 16-bit grey PNGs; when there are none, what there is instead."""
+    groups = group_by_number(files.names, DEPTH_SUFFIXES)[:_MOST_SERIES]
+    headers = {series.pattern: look_at(files, series) for series in groups}
+    depths = [series for series in groups if _is_depth(headers[series.pattern])]
+    return depths, "" if depths else _describe_missing(groups, headers)
+
+
+def _list_colors(files: ListedFiles, depth: NumberedFiles) -> list[NumberedFiles]:
+    groups = [s for s in group_by_number(files.names, COLOR_SUFFIXES)[:_MOST_SERIES] if s.names != depth.names]
+    return [s for s in groups if (header := look_at(files, s)) is not None and header.channels >= 3]
 
 
 def _is_depth(header: ImageHeader | None) -> bool:
@@ -111,8 +113,10 @@ def _make_choice(files: ListedFiles, series: NumberedFiles) -> ImportChoice:
     return ImportChoice(series.pattern, series.pattern, len(series.names), str(header or "unreadable"), pictures)
 
 
-def _match(files: ListedFiles, pattern: str, option: str) -> tuple[NumberedFiles | None, str]:
-    """The series that a pattern names, or what is wrong with it."""
+def _match(files: ListedFiles, pattern: str | None, option: str) -> tuple[NumberedFiles | None, str]:
+    """The series that a pattern names, or what is wrong with it; neither where none was told."""
+    if not pattern:
+        return None, ""
     series = match_pattern(files.names, pattern)
     if series is None:
         return None, f"{option} {pattern!r} needs one place for the number, such as depth/depth_*.png."

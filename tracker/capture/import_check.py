@@ -13,9 +13,10 @@ import numpy.typing as npt
 from tracker.capture.camera_check import report_camera
 from tracker.capture.camera_shifts import shift_plan
 from tracker.capture.frame_shifts import parse_shifts
+from tracker.capture.import_findings import Findings, show_first
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import Importer, ImportPlan, PlannedCamera, StreamProbe
-from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question, merge_questions
+from tracker.capture.import_question import ImportChoice, merge_questions
 from tracker.capture.import_report import ImportReport
 from tracker.capture.importers import IMPORT_FORMATS, list_importers
 from tracker.capture.listed_files import ListedFiles, list_files
@@ -29,6 +30,12 @@ _LABEL_FILES = {"_xyz.json": "FreiHAND", "_joint_3d.json": "InterHand2.6M", "per
 
 OWN_FORMAT = "recording_folder"
 """Its `sequence.json` tells which hands are seen."""
+
+_HANDS = (
+    ImportChoice(["right"], "Right hand"),
+    ImportChoice(["left"], "Left hand"),
+    ImportChoice(["right", "left"], "Both hands"),
+)
 
 SAMPLES = 12
 DEFAULT_FPS = 30.0
@@ -85,33 +92,23 @@ def examine(
     told = options.to_json() | ({"format": format} if format else {})
     try:
         files = list_files(source)
-        importer = _choose_importer(files, format)
-        plan = importer.plan(files, options)
-        if shifts := parse_shifts(options.camera_shifts or ""):
-            plan = shift_plan(plan, shifts)
+        plan = _make_plan(files, format, options)
     except (TrackerError, OSError) as fault:
         text = str(fault) if isinstance(fault, TrackerError) else f"Cannot be read: {fault}."
         return CheckedImport(None, ImportReport(format or "", name, problems=(text,), options=told), {}, {}, source)
-    problems, warnings, questions = list(plan.problems), list(plan.warnings), list(plan.questions)
-    if files.refused:
-        shown = "; ".join(files.refused[:5]) + ("; ..." if len(files.refused) > 5 else "")
-        are = say_count(len(files.refused), "name in the folder is", "names in the folder are")
-        problems.append(f"{are} not safe: {shown}.")
-    if options.hands is None and plan.format != OWN_FORMAT:
-        warnings.append("Which hands the recording shows was not given; a right hand is assumed.")
-        questions.append(_ask_hands())
-    objects, measured = ObjectCheck(problems, warnings, questions), tuple(ObjectReport(o.name) for o in plan.objects)
+    found = Findings(list(plan.problems), list(plan.warnings), list(plan.questions))
+    _check_folder(files, plan, options, found)
+    measured = tuple(ObjectReport(item.name) for item in plan.objects)
     if measure is not None:
+        objects = ObjectCheck(found)
         plan, measured = objects.check(plan, files.root, options, measure)
         plan = replace(plan, takes=(*plan.takes, *objects.takes))
-    probes = {camera.id: _probe(camera, problems, known) for camera in plan.cameras}
-    frame_count = _agree_on_count(plan, probes, problems, warnings, questions, allow=bool(options.allow_gaps))
-    fps = _agree_on_fps(plan, probes, problems, warnings, questions)
-    sizes: dict[str, tuple[int, int]] = {}
+    probes = {camera.id: _probe(camera, found, known) for camera in plan.cameras}
+    frame_count = _agree_on_count(plan, probes, options, found)
+    fps = _agree_on_fps(plan, probes, found)
     times = {camera.id: _find_times(camera, probes[camera.id]) for camera in plan.cameras}
-    cameras = tuple(
-        report_camera(c, probes[c.id], times[c.id], sizes, problems, warnings, questions) for c in plan.cameras
-    )
+    cameras = tuple(report_camera(camera, probes[camera.id], times[camera.id], found) for camera in plan.cameras)
+    sizes = {camera.id: (camera.width, camera.height) for camera in cameras}
     sensors = _fit_sensors(plan, probes, sizes)
     report = ImportReport(
         format=plan.format,
@@ -123,16 +120,32 @@ def examine(
         objects=tuple(item.name for item in plan.objects),
         object_sizes=measured,
         annotations=len(plan.annotations.items) if plan.annotations else 0,
-        baselines_m=_find_baselines(plan, problems, warnings),
-        problems=tuple(dict.fromkeys(problems)),
-        warnings=tuple(dict.fromkeys(warnings)),
+        baselines_m=_find_baselines(plan, found),
+        problems=tuple(dict.fromkeys(found.problems)),
+        warnings=tuple(dict.fromkeys(found.warnings)),
         left_out=(*plan.left_out, *_find_cut(plan, probes, frame_count)),
         options=told,
-        questions=merge_questions((item for item in questions if item.field in plan.takes), sensors),
+        questions=merge_questions((item for item in found.questions if item.field in plan.takes), sensors),
         sensors=sensors,
         takes=plan.takes,
     )
     return CheckedImport(replace(plan, fps=fps), report, sizes, times, files.root)
+
+
+def _make_plan(files: ListedFiles, format: str | None, options: ImportOptions) -> ImportPlan:
+    plan = _choose_importer(files, format).plan(files, options)
+    shifts = parse_shifts(options.camera_shifts or "")
+    return shift_plan(plan, shifts) if shifts else plan
+
+
+def _check_folder(files: ListedFiles, plan: ImportPlan, options: ImportOptions, found: Findings) -> None:
+    """Names that were left out for safety, and hands that nobody told."""
+    if files.refused:
+        are = say_count(len(files.refused), "name in the folder is", "names in the folder are")
+        found.refuse(f"{are} not safe: {show_first(files.refused, 5, '; ')}.")
+    if options.hands is None and plan.format != OWN_FORMAT:
+        found.warn("Which hands the recording shows was not given; a right hand is assumed.")
+        found.ask("hands", "A right hand is assumed.", choices=_HANDS)
 
 
 def _choose_importer(files: ListedFiles, format: str | None) -> Importer:
@@ -155,15 +168,6 @@ def _choose_importer(files: ListedFiles, format: str | None) -> Importer:
     )
 
 
-def _ask_hands() -> ImportQuestion:
-    choices = (
-        ImportChoice(["right"], "Right hand"),
-        ImportChoice(["left"], "Left hand"),
-        ImportChoice(["right", "left"], "Both hands"),
-    )
-    return make_question("hands", "A right hand is assumed.", choices=choices)
-
-
 def _fit_sensors(
     plan: ImportPlan, probes: dict[str, dict[str, StreamProbe]], sizes: dict[str, tuple[int, int]]
 ) -> tuple[SensorFit, ...]:
@@ -175,9 +179,7 @@ def _fit_sensors(
     return fit_presets(size if size != (0, 0) else None, sample.percentiles if sample else ())
 
 
-def _probe(
-    camera: PlannedCamera, problems: list[str], known: dict[Hashable, StreamProbe] | None
-) -> dict[str, StreamProbe]:
+def _probe(camera: PlannedCamera, found: Findings, known: dict[Hashable, StreamProbe] | None) -> dict[str, StreamProbe]:
     probes = {}
     for kind, stream in camera.streams():
         try:
@@ -187,7 +189,7 @@ def _probe(
                 known[stream] = probes[kind]
         except (TrackerError, OSError) as fault:
             probes[kind] = StreamProbe(0, None, {}, (str(fault),))
-        problems += probes[kind].problems
+        found.problems += probes[kind].problems
     return probes
 
 
@@ -199,32 +201,24 @@ def _find_times(camera: PlannedCamera, probes: dict[str, StreamProbe]) -> npt.ND
 
 
 def _agree_on_count(
-    plan: ImportPlan,
-    probes: dict[str, dict[str, StreamProbe]],
-    problems: list[str],
-    warnings: list[str],
-    questions: list[ImportQuestion],
-    *,
-    allow: bool,
+    plan: ImportPlan, probes: dict[str, dict[str, StreamProbe]], options: ImportOptions, found: Findings
 ) -> int:
     """Frames that all streams have."""
     counts = {f"{camera} {kind}": p.count for camera, own in probes.items() for kind, p in own.items()}
     fewest, most = min(counts.values(), default=0), max(counts.values(), default=0)
     if fewest == 0 or most > MAX_FRAMES:
-        problems.append(f"{say_count(fewest if fewest == 0 else most, 'frame')}; a recording has 1 to {MAX_FRAMES}.")
+        found.refuse(f"{say_count(fewest if fewest == 0 else most, 'frame')}; a recording has 1 to {MAX_FRAMES}.")
     elif fewest != most:
-        text = f"Frame counts differ: {', '.join(f'{name} {count}' for name, count in counts.items())}."
-        if allow:
-            warnings.append(
-                f"{text} Only the first {fewest} are imported; check that frame 0 is the same moment in all."
-            )
-        else:
-            problems.append(f"{text} Frames are missing, or the cameras did not start together; allow gaps to cut all.")
-            ask = f"{text} All can be cut to the first {fewest}, if frame 0 is the same moment in all."
-            questions.append(make_question("allow_gaps", ask, problems[-1]))
+        found.miss(
+            f"Frame counts differ: {', '.join(f'{name} {count}' for name, count in counts.items())}.",
+            options.allow_gaps,
+            allowed=f"Only the first {fewest} are imported; check that frame 0 is the same moment in all.",
+            refused="Frames are missing, or the cameras did not start together; allow gaps to cut all.",
+            ask=f"All can be cut to the first {fewest}, if frame 0 is the same moment in all.",
+        )
     if plan.frame_count is not None and fewest and plan.frame_count != fewest:
         declared = say_count(plan.frame_count, "frame is", "frames are")
-        problems.append(f"{declared} declared and {fewest} {'is' if fewest == 1 else 'are'} there.")
+        found.refuse(f"{declared} declared and {fewest} {'is' if fewest == 1 else 'are'} there.")
     return fewest
 
 
@@ -240,21 +234,17 @@ def _find_cut(plan: ImportPlan, probes: dict[str, dict[str, StreamProbe]], frame
     ]
 
 
-def _agree_on_fps(
-    plan: ImportPlan,
-    probes: dict[str, dict[str, StreamProbe]],
-    problems: list[str],
-    warnings: list[str],
-    questions: list[ImportQuestion],
-) -> float:
+def _agree_on_fps(plan: ImportPlan, probes: dict[str, dict[str, StreamProbe]], found: Findings) -> float:
     """Frame rate that was told, or that of the timestamps, or that of the videos, or 30."""
     said = {f"{c} {kind}": p.fps for c, own in probes.items() for kind, p in own.items() if p.fps}
     rates = list(said.values())
     if rates and max(rates) > 1.005 * min(rates):
         text = f"Frame rates differ: {', '.join(f'{name} {rate:g}' for name, rate in said.items())}."
-        (warnings if plan.fps else problems).append(text + ("" if plan.fps else " Give fps if they ran together."))
-        if not plan.fps:
-            questions.append(make_question("fps", f"{text} Give the rate if the cameras ran together.", problems[-1]))
+        if plan.fps:
+            found.warn(text)
+        else:
+            ask = f"{text} Give the rate if the cameras ran together."
+            found.refuse(f"{text} Give fps if they ran together.", "fps", ask)
     if plan.fps:
         return plan.fps
     for camera in plan.cameras:
@@ -262,12 +252,12 @@ def _agree_on_fps(
             return float(round(1 / np.median(np.diff(camera.timestamps)), 3))
     if rates:
         return float(np.median(rates))
-    warnings.append(f"The frame rate is not known; {DEFAULT_FPS:g} frames per second are assumed.")
-    questions.append(make_question("fps", f"{DEFAULT_FPS:g} are assumed."))
+    found.warn(f"The frame rate is not known; {DEFAULT_FPS:g} frames per second are assumed.")
+    found.ask("fps", f"{DEFAULT_FPS:g} are assumed.")
     return DEFAULT_FPS
 
 
-def _find_baselines(plan: ImportPlan, problems: list[str], warnings: list[str]) -> dict[str, float]:
+def _find_baselines(plan: ImportPlan, found: Findings) -> dict[str, float]:
     baselines = {}
     if not plan.unit_known:
         return baselines
@@ -275,7 +265,7 @@ def _find_baselines(plan: ImportPlan, problems: list[str], warnings: list[str]) 
         length = float(np.linalg.norm(a.T_world_camera[:3, 3] - b.T_world_camera[:3, 3]))
         baselines[f"{a.id} - {b.id}"] = length
         if length < 0.005:
-            warnings.append(f"{a.id} and {b.id} are {length * 1000:.1f} mm apart; is the calibration's unit right?")
+            found.warn(f"{a.id} and {b.id} are {length * 1000:.1f} mm apart; is the calibration's unit right?")
         elif length > 20:
-            warnings.append(f"{a.id} and {b.id} are {length:.1f} m apart; is the calibration's unit right?")
+            found.warn(f"{a.id} and {b.id} are {length:.1f} m apart; is the calibration's unit right?")
     return baselines

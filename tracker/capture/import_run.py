@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
@@ -16,7 +17,7 @@ from tracker.capture.document import read_regular_file
 from tracker.capture.frame_pattern import FramePattern
 from tracker.capture.import_check import CheckedImport, examine
 from tracker.capture.import_options import ImportOptions
-from tracker.capture.import_plan import ImportPlan, PlannedCamera, Progress
+from tracker.capture.import_plan import ImageStream, ImportPlan, PlannedCamera, Progress, SourceImage
 from tracker.capture.import_report import ImportReport
 from tracker.capture.object_units import MeasureMesh
 from tracker.capture.recorded_camera import RecordedCamera
@@ -24,6 +25,7 @@ from tracker.capture.sequence import Sequence, save_sequence_json
 from tracker.capture.workplace import make_workplace
 from tracker.errors import ImportRefusedError, TrackerError, say_count
 
+ANNOTATIONS_FILE = "annotations.json"
 SOURCES_FILE = "sources.json"
 REPORT_FILE = "import_report.json"
 MAX_OTHER_FILE = 1024 * 1024 * 1024
@@ -104,32 +106,20 @@ def _fill(folder: Path, checked: CheckedImport, progress: Progress) -> None:
         size, times, patterns = checked.sizes[camera.id], checked.times[camera.id], {}
         base = "" if len(plan.cameras) == 1 else f"{camera.id}/"
         for kind, stream in camera.streams():
-            pattern = FramePattern(f"{base}{kind}/", 6, stream.suffix)
+            pattern = patterns[kind] = FramePattern(f"{base}{kind}/", 6, stream.suffix)
             (folder / pattern.path(0)).parent.mkdir(parents=True)
-            stored: list[StoredSource] = []
-            for index, image in enumerate(islice(stream.read(), report.frame_count)):
-                if image.size != size:
-                    found = f"{image.size[0]}x{image.size[1]}"
-                    raise ImportRefusedError(
-                        f"{image.source}: is {found} px where the others are {size[0]}x{size[1]} px."
-                    )
+            stored = sources.setdefault(camera.id, {}).setdefault(kind, [])
+            for index, image in enumerate(_read_whole(stream, f"{camera.id} {kind}", size, report.frame_count)):
                 (folder / pattern.path(index)).write_bytes(image.data)
                 time = float(times[index]) if index < len(times) else None
                 digest = hashlib.sha256(image.data).hexdigest()
                 stored.append(StoredSource(pattern.path(index), image.source, digest, time))
                 done += 1
                 progress(f"{camera.id} {kind}", done / total)
-            if len(stored) != report.frame_count:
-                found = say_count(len(stored), "frame")
-                text = f"{camera.id} {kind}: {found} where the check had found {report.frame_count}"
-                raise ImportRefusedError(f"{text}; has the source changed?")
-            patterns[kind] = pattern
-            sources.setdefault(camera.id, {})[kind] = stored
         cameras.append(_make_camera(camera, size, patterns))
     _copy_others(folder, checked.root, plan)
-    name = "annotations.json" if plan.annotations is not None else None
     if plan.annotations is not None:
-        save_annotations(folder / "annotations.json", plan.annotations)
+        save_annotations(folder / ANNOTATIONS_FILE, plan.annotations)
     sequence = Sequence(
         folder,
         plan.name,
@@ -138,7 +128,7 @@ def _fill(folder: Path, checked: CheckedImport, progress: Progress) -> None:
         tuple(cameras),
         plan.hands,
         plan.objects,
-        name,
+        None if plan.annotations is None else ANNOTATIONS_FILE,
         plan.gravity,
         plan.planes,
     )
@@ -151,6 +141,20 @@ def _fill(folder: Path, checked: CheckedImport, progress: Progress) -> None:
     }
     _write_json(folder / SOURCES_FILE, document)
     _write_json(folder / REPORT_FILE, report.to_json())
+
+
+def _read_whole(stream: ImageStream, what: str, size: tuple[int, int], count: int) -> Iterator[SourceImage]:
+    """So many images of one size (width, height) px; an ImportRefusedError at the first that differs or is missing."""
+    read = 0
+    for image in islice(stream.read(), count):
+        if image.size != size:
+            found = f"{image.size[0]}x{image.size[1]}"
+            raise ImportRefusedError(f"{image.source}: is {found} px where the others are {size[0]}x{size[1]} px.")
+        yield image
+        read += 1
+    if read != count:
+        text = f"{what}: {say_count(read, 'frame')} where the check had found {count}"
+        raise ImportRefusedError(f"{text}; has the source changed?")
 
 
 def _make_camera(camera: PlannedCamera, size: tuple[int, int], patterns: dict[str, FramePattern]) -> RecordedCamera:

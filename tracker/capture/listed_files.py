@@ -48,24 +48,26 @@ def list_files(source: Path) -> ListedFiles:
         if base.count("/") > MAX_DEPTH:
             raise ImportRefusedError(f"{source}: folders are nested more than {MAX_DEPTH} deep.")
         folders[:] = sorted(name for name in folders if not _is_clutter(name))
-        for name in folders:
-            if (Path(folder) / name).is_symlink():
-                refused.append(f"{base}{name} is a link to a folder")
-        for name in sorted(files):
-            if _is_clutter(name):
-                continue
-            path, fault = Path(folder) / name, find_path_fault(base + name)
+        refused += [f"{base}{name} is a link to a folder" for name in folders if (Path(folder) / name).is_symlink()]
+        for name in sorted(base + file for file in files if not _is_clutter(file)):
+            fault = _find_fault(root, name)
             if fault:
-                refused.append(f"{base + name!r} {fault}")
-            elif path.is_symlink() and not is_inside(path, root):
-                refused.append(f"{base}{name} is a link out of the folder")
-            elif not path.is_file():
-                refused.append(f"{base}{name} is not a plain file")
+                refused.append(fault)
             else:
-                names.append(base + name)
+                names.append(name)
         if len(names) > MAX_FILES:
             raise ImportRefusedError(f"{source}: holds more than {MAX_FILES} files.")
     return ListedFiles(root, tuple(sorted(names)), tuple(refused))
+
+
+def _find_fault(root: Path, name: str) -> str:
+    """Why a file is left out, with its name; empty for a plain file inside the folder."""
+    if fault := find_path_fault(name):
+        return f"{name!r} {fault}"
+    path = root / name
+    if path.is_symlink() and not is_inside(path, root):
+        return f"{name} is a link out of the folder"
+    return "" if path.is_file() else f"{name} is not a plain file"
 
 
 def find_root(source: Path) -> Path:

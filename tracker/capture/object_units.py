@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
+from tracker.capture.import_findings import Findings
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan
-from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question
+from tracker.capture.import_question import ImportChoice
 from tracker.capture.recorded_object import RecordedObject
 from tracker.errors import TrackerError
 
@@ -61,9 +62,7 @@ def write_size(sides: tuple[float, float, float], metres_per_unit: float) -> str
 class ObjectCheck:
     """What a look at the objects of a plan finds."""
 
-    problems: list[str]
-    warnings: list[str]
-    questions: list[ImportQuestion]
+    found: Findings
     takes: tuple[str, ...] = ()
 
     def check(
@@ -82,7 +81,7 @@ class ObjectCheck:
         try:
             mesh = measure(path)
         except TrackerError as fault:
-            self.problems.append(f"Object {item.name!r}: {fault}")
+            self.found.refuse(f"Object {item.name!r}: {fault}")
             return item, ObjectReport(item.name)
         if mesh is None:
             return item, ObjectReport(item.name)
@@ -92,7 +91,7 @@ class ObjectCheck:
             self.takes = (FIELD,)
             self._ask(item, mesh, unit, is_guessed=told is None)
         elif fault := mesh.find_fault(item.metres_per_unit):
-            self.problems.append(
+            self.found.refuse(
                 f"{item.model}: with the unit of {item.metres_per_unit:g} m that sequence.json says, {fault}. Correct "
                 "metres_per_unit of the object there."
             )
@@ -108,20 +107,17 @@ class ObjectCheck:
         )
         if unit is None:
             across = " x ".join(f"{side:.4g}" for side in mesh.sides)
-            problem = (
+            text = (
                 f"{item.model}: {across} units large; no usual unit gives a size that a hand can hold. Give its unit."
             )
+            self.found.refuse(text, FIELD, choices=choices)
         elif fault := mesh.find_fault(unit):
-            problem = f"{item.model}: with a unit of {unit:g} m {fault}. Give another unit."
+            text = f"{item.model}: with a unit of {unit:g} m {fault}. Give another unit."
+            self.found.refuse(text, FIELD, choices=choices)
         elif is_guessed:
             said = write_size(mesh.sides, unit)
             text = f"The file of {item.name} does not say its unit. It is assumed to be {said} large: is that right?"
-            self.warnings.append(text)
-            self.questions.append(make_question(FIELD, text, choices=choices, proposal=unit))
-            return
+            self.found.warn(text)
+            self.found.ask(FIELD, text, choices=choices, proposal=unit)
         else:
-            said = f"{item.name} is {write_size(mesh.sides, unit)} large."
-            self.questions.append(make_question(FIELD, said, choices=choices))
-            return
-        self.problems.append(problem)
-        self.questions.append(make_question(FIELD, problem, problem, choices=choices))
+            self.found.ask(FIELD, f"{item.name} is {write_size(mesh.sides, unit)} large.", choices=choices)

@@ -32,18 +32,22 @@ def find_path_fault(text: str) -> str:
         return "is absolute"
     if ":" in text:
         return "holds a colon (a drive or a stream)"
-    for part in text.split("/"):
-        normal = unicodedata.normalize("NFKC", part)
-        if part == "":
-            return "has an empty part"
-        if part == ".." or normal.strip(" .") == "" or "/" in normal or "\\" in normal or ":" in normal:
-            return f"has a part {part!r} that leads out of the folder or stands for another name"
-        if len(part.encode("utf-8")) > MAX_PART:
-            return f"has a part longer than {MAX_PART} bytes"
-        if part != part.rstrip(" .") or part != part.lstrip(" "):
-            return f"has a part {part!r} that begins or ends in a space or ends in a dot"
-        if _DEVICES.match(normal):
-            return f"has a part {part!r} that names a device"
+    return next(filter(None, map(_find_part_fault, text.split("/"))), "")
+
+
+def _find_part_fault(part: str) -> str:
+    """The same of what stands between two `/`."""
+    normal = unicodedata.normalize("NFKC", part)
+    if part == "":
+        return "has an empty part"
+    if normal.strip(" .") == "" or any(sign in normal for sign in "/\\:"):
+        return f"has a part {part!r} that leads out of the folder or stands for another name"
+    if len(part.encode("utf-8")) > MAX_PART:
+        return f"has a part longer than {MAX_PART} bytes"
+    if part != part.rstrip(" .") or part != part.lstrip(" "):
+        return f"has a part {part!r} that begins or ends in a space or ends in a dot"
+    if _DEVICES.match(normal):
+        return f"has a part {part!r} that names a device"
     return ""
 
 

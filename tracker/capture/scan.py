@@ -141,7 +141,7 @@ def _unit(vectors: Array) -> Array:
 
 
 def _clean(path: Path, raw: RawScan) -> Scan:
-    points, faces, normals, colors = raw.points, raw.faces, raw.normals, raw.colors
+    points, faces = raw.points, raw.faces
     if not len(points):
         raise ScanError(path, "no points", "the points of a hand")
     if faces is not None and len(faces) and (faces.min() < 0 or faces.max() >= len(points)):
@@ -150,29 +150,13 @@ def _clean(path: Path, raw: RawScan) -> Scan:
     if is_usable.sum() < MIN_POINTS:
         found = f"{int(is_usable.sum())} finite points of {len(points)}"
         raise ScanError(path, found, f"at least {MIN_POINTS}")
-    points = points[is_usable]
-    normals = None if normals is None else normals[is_usable]
-    colors = None if colors is None else colors[is_usable]
     if faces is not None:
         faces = (np.cumsum(is_usable) - 1)[faces[is_usable[faces].all(axis=1)]]
-    if len(points) <= 5 * MAX_POINTS:  # merging millions of points only to thin them is waste
-        _, first, inverse = np.unique(_as_keys(points), return_index=True, return_inverse=True)
-        points = points[first]
-        normals = None if normals is None else normals[first]
-        colors = None if colors is None else colors[first]
-        faces = None if faces is None else inverse.ravel()[faces]
-    if faces is not None:
-        is_flat = (faces[:, 0] == faces[:, 1]) | (faces[:, 1] == faces[:, 2]) | (faces[:, 2] == faces[:, 0])
-        faces = faces[~is_flat]
-        if not len(faces):
-            faces = None
-    if faces is not None:
-        normals = find_vertex_normals(points, faces)
-    elif normals is not None:
-        normals = _unit(np.where(np.isfinite(normals).all(axis=1, keepdims=True), normals, 0.0))
-    else:
-        normals = np.zeros_like(points)
-    scan = Scan(points, normals, faces, colors, path.stem)
+    raw = raw.take(is_usable, faces)
+    if len(raw.points) <= 5 * MAX_POINTS:  # merging millions of points only to thin them is waste
+        raw = _merge_equal(raw)
+    faces = _drop_flat(raw.faces)
+    scan = Scan(raw.points, _find_normals(raw, faces), faces, raw.colors, path.stem)
     if len(scan.points) > MAX_POINTS:
         keep = np.zeros(len(scan.points), dtype=np.bool_)
         keep[np.random.default_rng(0).choice(len(scan.points), MAX_POINTS, replace=False)] = True
@@ -180,6 +164,29 @@ def _clean(path: Path, raw: RawScan) -> Scan:
     if len(scan.points) < MIN_POINTS:
         raise ScanError(path, f"{len(scan.points)} different points", f"at least {MIN_POINTS}")
     return scan if _points_outwards(scan) else replace(scan, normals=-scan.normals, faces=_reverse(scan.faces))
+
+
+def _merge_equal(raw: RawScan) -> RawScan:
+    _, first, inverse = np.unique(_as_keys(raw.points), return_index=True, return_inverse=True)
+    return raw.take(first, None if raw.faces is None else inverse.ravel()[raw.faces])
+
+
+def _drop_flat(faces: Ints | None) -> Ints | None:
+    """Triangles of three different points; None where no triangle is left."""
+    if faces is None:
+        return None
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    return faces if len(faces) else None
+
+
+def _find_normals(raw: RawScan, faces: Ints | None) -> Array:
+    """(N, 3) of the triangles, else the file's own, else zero."""
+    if faces is not None:
+        return find_vertex_normals(raw.points, faces)
+    if raw.normals is None:
+        return np.zeros_like(raw.points)
+    return _unit(np.where(np.isfinite(raw.normals).all(axis=1, keepdims=True), raw.normals, 0.0))
 
 
 def _reverse(faces: Ints | None) -> Ints | None:

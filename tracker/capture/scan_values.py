@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,12 @@ class RawScan(NamedTuple):
     faces: npt.NDArray[np.int64] | None = None
     normals: npt.NDArray[np.float64] | None = None
     colors: npt.NDArray[np.uint8] | None = None
+
+    def take(self, kept: npt.NDArray[Any], faces: npt.NDArray[np.int64] | None) -> RawScan:
+        """Only the points of a mask (N,) or of indices, with triangles that are of them."""
+        normals = None if self.normals is None else self.normals[kept]
+        colors = None if self.colors is None else self.colors[kept]
+        return RawScan(self.points[kept], faces, normals, colors)
 
 
 def to_bytes_of_color(colors: npt.NDArray) -> npt.NDArray[np.uint8]:

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from tracker.capture.import_options import ImportOptions
 from tracker.errors import ImportRefusedError
 
-PRESET_FIELDS = ("fx", "fy", "cx", "cy", "depth_scale")
 SAME_SHAPE = 0.01
 """Images whose width over height differs by less than this share were scaled, not cut."""
 

@@ -68,12 +68,7 @@ def synthesize(args: argparse.Namespace) -> dict[str, Any]:
     from tracker.synthesis.texture import Texture
     from tracker.synthesis.view_noise import ViewNoise
 
-    if not 1 <= args.cameras <= 8 or (args.twin is not None and (args.cameras, args.size) != (1, (640, 480))):
-        raise TrackerError("--cameras must be 1 to 8; a twin (--twin) has the one camera of its recording, 640x480 px.")
-    if args.step < 1 or args.seed < 0 or args.background < 0 or args.circles < 0:
-        raise TrackerError("--step must be at least 1, --seed, --background and --circles at least 0.")
-    if args.nails and not args.texture:
-        raise TrackerError("--nails needs --texture: without it the colour images have plain skin.")
+    _check(args)
     began = time.monotonic()
     performance = _load_twin(args) if args.twin is not None else _perform(args)
     options = RecordingOptions(
@@ -94,6 +89,15 @@ def synthesize(args: argparse.Namespace) -> dict[str, Any]:
         "objects": [item.name for item in sequence.objects],
         "seconds": round(time.monotonic() - began, 2),
     }
+
+
+def _check(args: argparse.Namespace) -> None:
+    if not 1 <= args.cameras <= 8 or (args.twin is not None and (args.cameras, args.size) != (1, (640, 480))):
+        raise TrackerError("--cameras must be 1 to 8; a twin (--twin) has the one camera of its recording, 640x480 px.")
+    if args.step < 1 or args.seed < 0 or args.background < 0 or args.circles < 0:
+        raise TrackerError("--step must be at least 1, --seed, --background and --circles at least 0.")
+    if args.nails and not args.texture:
+        raise TrackerError("--nails needs --texture: without it the colour images have plain skin.")
 
 
 def show(result: dict[str, Any]) -> str:

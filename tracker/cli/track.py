@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 import json
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tracker.cli.command import add_json, choose_frames, parse_hand, parse_named_file, parse_range, run_guarded
 from tracker.cli.hands import load_hands, load_objects
@@ -13,6 +14,10 @@ from tracker.cli.progress import ProgressLine
 from tracker.cli.recording import add_recording, load_recording
 from tracker.errors import TrackerError, say_count
 from tracker.fitting.presets import PRESETS, find_preset
+
+if TYPE_CHECKING:
+    from tracker.capture.annotations import Annotations
+    from tracker.capture.sequence import Sequence
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:
@@ -66,9 +71,10 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         metavar="A,B,...",
         help="cameras to track in together; a recording without depth is tracked in all of its cameras",
     )
-    parser.add_argument("--no-depth", action="store_true", help="with --cameras: use the colour of all, no depth")
-    parser.add_argument("--no-calibration", action="store_true", help="keep the models' size and shape as they are")
-    parser.add_argument("--no-detector", action="store_true", help="do not look for hands in the colour images")
+    turn_off = partial(parser.add_argument, action="store_const", const=False)
+    turn_off("--no-depth", dest="use_depth", help="with --cameras: use the colour of all, no depth")
+    turn_off("--no-calibration", dest="calibrate", help="keep the models' size and shape as they are")
+    turn_off("--no-detector", dest="use_detector", help="do not look for hands in the colour images")
     parser.add_argument(
         "--detector",
         type=Path,
@@ -77,25 +83,33 @@ def add_command(subparsers: argparse._SubParsersAction) -> None:
         "frame, for terms with S; otherwise the bundled one is used where a frame goes badly. With --cameras a "
         "detector of finger nails",
     )
-    parser.add_argument(
-        "--no-skin", action="store_true", help="do not use colour to distinguish hands from other things"
-    )
-    parser.add_argument("--no-recovery", action="store_true", help="do not look for a lost hand")
+    turn_off("--no-skin", dest="use_skin", help="do not use colour to distinguish hands from other things")
+    turn_off("--no-recovery", dest="recover", help="do not look for a lost hand")
     parser.add_argument(
         "--static-scene",
         choices=("find", "recording", "none"),
         help="tables and walls for physics: from the recording, otherwise found in depth (find)",
     )
     parser.add_argument(
-        "--stop-below", type=float, metavar="MM", help="stop iterating when the mean joint moves less than this (never)"
+        "--stop-below",
+        dest="stop_below_mm",
+        type=float,
+        metavar="MM",
+        help="stop iterating when the mean joint moves less than this (never)",
     )
     parser.add_argument("--threads", type=int, metavar="N", help="threads; the second prepares the next frame (1)")
     add_json(parser)
     parser.set_defaults(run=run_guarded(track, show))
 
 
+OPTIONS = (
+    *("terms", "iterations", "first_iterations", "camera", "cameras", "use_depth", "calibrate", "use_detector"),
+    *("use_skin", "recover", "static_scene", "stop_below_mm", "threads"),
+)
+"""Arguments that are options of the tracker, under the same names."""
+
+
 def track(args: argparse.Namespace) -> dict[str, Any]:
-    from tracker.capture.annotations import load_annotations
     from tracker.detection import load_detector
     from tracker.fitting.options import TrackOptions
     from tracker.tracking.follow import track_frames
@@ -104,31 +118,11 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
 
     sequence = load_recording(args)
     frames = choose_frames(args.frames, sequence.frame_count)
-    given = {
-        "terms": args.terms,
-        "iterations": args.iterations,
-        "first_iterations": args.first_iterations,
-        "first_frame": frames.start,
-        "last_frame": frames.stop - 1,
-        "camera": args.camera,
-        "cameras": args.cameras,
-        "use_depth": False if args.no_depth else None,
-        "calibrate": False if args.no_calibration else None,
-        "use_detector": False if args.no_detector else None,
-        "use_skin": False if args.no_skin else None,
-        "recover": False if args.no_recovery else None,
-        "static_scene": args.static_scene,
-        "stop_below_mm": args.stop_below,
-        "threads": args.threads,
-    }
+    given = {name: value for name in OPTIONS if (value := getattr(args, name)) is not None}
+    given |= {"first_frame": frames.start, "last_frame": frames.stop - 1}
     preset = find_preset(args.preset).values if args.preset else {}
-    options = TrackOptions.from_json(preset | {name: value for name, value in given.items() if value is not None})
-    annotations = None
-    if args.annotations is None:
-        path = sequence.annotations_path
-        annotations = load_annotations(path) if path is not None and path.exists() else None
-    elif str(args.annotations) != "none":
-        annotations = load_annotations(args.annotations)
+    options = TrackOptions.from_json(preset | given)
+    annotations = _load_annotations(args, sequence)
     detector = None if args.detector is None else load_detector(args.detector)
     if args.out.exists() and not args.out.is_dir():
         raise TrackerError(f"{args.out}: is a file; --out needs a folder.")
@@ -154,6 +148,16 @@ def track(args: argparse.Namespace) -> dict[str, Any]:
     track = join_chunks(sequence, setup, [chunk])
     track.save(args.out)
     return {"out": str(args.out), **json.loads((args.out / "summary.json").read_text())}
+
+
+def _load_annotations(args: argparse.Namespace, sequence: Sequence) -> Annotations | None:
+    """The marks to start from: those that were named, else the recording's own if it has some."""
+    from tracker.capture.annotations import load_annotations
+
+    path = args.annotations or sequence.annotations_path
+    if path is None or str(args.annotations) == "none":
+        return None
+    return load_annotations(path) if args.annotations or path.exists() else None
 
 
 def show(result: dict[str, Any]) -> str:

@@ -150,31 +150,30 @@ def _describe_methods(
     if chosen is not None:  # of several tracks of its method and recording, the reference itself
         methods[_key(chosen)][chosen.recording_key] = chosen
     differing = [name for name, values in _spread(judged).items() if len(values) > 1 and name not in NOT_METHOD]
-    rows = []
-    for runs in methods.values():
-        first = next(iter(runs.values()))
-        errors = np.concatenate([one.evaluation.error for one in runs.values()])
-        pairs = [
-            (one.evaluation, other.evaluation)
-            for key, one in runs.items()
-            if chosen is not None and (other := methods[_key(chosen)].get(key)) is not None
-        ]
-        is_reference = chosen is not None and _key(first) == _key(chosen)
-        paired = None if is_reference or not pairs else compare_paired(pairs)
-        rows.append(
-            {
-                "name": ", ".join(f"{name} {word_of(first.parameters.get(name))}" for name in differing) or "all alike",
-                "tracks": [one.key for one in runs.values()],
-                "recordings": len(runs),
-                "frames": sum(len(one.evaluation.track_frame) for one in runs.values()),
-                "lost": sum(len(one.evaluation.lost_frame) for one in runs.values()),
-                "error": compute_statistics(errors).to_json(),
-                "within": _share(errors, within_px),
-                "is_reference": is_reference,
-                "paired": None if paired is None else paired.to_json(),
-            }
-        )
-    return rows
+    reference = {} if chosen is None else methods[_key(chosen)]
+    return [_describe_method(runs, reference, differing, within_px) for runs in methods.values()]
+
+
+def _describe_method(
+    runs: dict[str, JudgedTrack], reference: dict[str, JudgedTrack], differing: list[str], within_px: float
+) -> dict[str, Any]:
+    """One method by its runs on each recording, beside the reference's; `differing` parameters name it."""
+    parameters = next(iter(runs.values())).parameters
+    found = [one.evaluation for one in runs.values()]
+    errors = np.concatenate([one.error for one in found])
+    pairs = [(one.evaluation, reference[key].evaluation) for key, one in runs.items() if key in reference]
+    paired = compare_paired(pairs) if pairs and runs is not reference else None
+    return {
+        "name": ", ".join(f"{name} {word_of(parameters.get(name))}" for name in differing) or "all alike",
+        "tracks": [one.key for one in runs.values()],
+        "recordings": len(runs),
+        "frames": sum(len(one.track_frame) for one in found),
+        "lost": sum(len(one.lost_frame) for one in found),
+        "error": compute_statistics(errors).to_json(),
+        "within": _share(errors, within_px),
+        "is_reference": runs is reference,
+        "paired": None if paired is None else paired.to_json(),
+    }
 
 
 def _compare_parameters(judged: Sequence[JudgedTrack]) -> dict[str, Any]:

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from tracker.capture.annotations import Annotations
+from tracker.capture.annotations import Annotation, Annotations
 from tracker.capture.joint_source import JointSources
 from tracker.capture.source_choice import ALL, JUDGING, count_origins, describe_origin, find_counted, find_origin
 from tracker.evaluation.statistics import Statistics, compute_statistics
@@ -112,35 +113,27 @@ class Evaluation:
 
         Empty and None take all. `sources` are SOURCE_CHOICES, of which a joint must be one.
         """
-        kept = np.ones(len(self.frame), dtype=bool)
-        if camera:
-            kept &= np.array([name == camera for name in self.camera], dtype=bool)
-        if hand:
-            kept &= np.array([name == hand for name in self.hand], dtype=bool)
+        keys = zip(self.camera, self.hand, strict=True)
+        kept = np.array([camera in ("", c) and hand in ("", h) for c, h in keys], dtype=bool)
         if without_start and len(self.track_frame):
             kept &= self.frame != self.track_frame[0]
-        error = self.error[kept]
+        own = self._take(kept)
+        error = own.error
         if visibility is not None:
-            error = np.where(self.visibility[kept] == visibility, error, np.nan)
-        rows = np.flatnonzero(kept)
-        own = tuple(self.sources[row] for row in rows)
-        excluded = ~np.array([find_counted(one, sources) for one in own], dtype=bool).reshape(error.shape)
-        left_out = self.left_out[kept] | (excluded & np.isfinite(error))
+            error = np.where(own.visibility == visibility, error, np.nan)
+        excluded = ~np.array([find_counted(one, sources) for one in own.sources], dtype=bool).reshape(error.shape)
+        left_out = own.left_out | (excluded & np.isfinite(error))
+        untracked = tuple(key for key in self.untracked if camera in ("", key[1]) and hand in ("", key[2]))
+        return replace(own, error=np.where(left_out, np.nan, error), left_out=left_out, untracked=untracked)
+
+    def _take(self, kept: npt.NDArray[np.bool_]) -> Evaluation:
+        """Only the items of a mask (N,)."""
+        arrays = ("frame", "error", "visibility", "marked", "tracked", "left_out")
+        tuples = ("camera", "hand", "status", "sources")
         return replace(
             self,
-            frame=self.frame[kept],
-            camera=tuple(self.camera[row] for row in rows),
-            hand=tuple(self.hand[row] for row in rows),
-            status=tuple(self.status[row] for row in rows),
-            error=np.where(left_out, np.nan, error),
-            sources=own,
-            left_out=left_out,
-            visibility=self.visibility[kept],
-            marked=self.marked[kept],
-            tracked=self.tracked[kept],
-            untracked=tuple(
-                key for key in self.untracked if (not camera or key[1] == camera) and (not hand or key[2] == hand)
-            ),
+            **{name: getattr(self, name)[kept] for name in arrays},
+            **{name: tuple(compress(getattr(self, name), kept)) for name in tuples},
         )
 
     def where(self, mask: npt.NDArray[np.bool_]) -> Statistics:
@@ -208,31 +201,29 @@ def evaluate_track(track: Track, annotations: Annotations, sources: Sequence[str
     places = {int(frame): place for place, frame in enumerate(track.frame)}
     cameras = {camera: c for c, camera in enumerate(track.camera_ids)}
     columns = {name: j for j, name in enumerate(track.joint_names)}
-    evaluated, untracked, errors, visibilities, tracked = [], [], [], [], []
-    for item in annotations.items:
-        names = [f"{item.hand}/{joint}" for joint in HAND_JOINTS]
-        if item.frame not in places or item.camera not in cameras or names[0] not in columns:
-            untracked.append(item.key)
-            continue
-        own = [columns[name] for name in names]
-        projected = track.joints_2d[places[item.frame], cameras[item.camera], own]
-        visibility = item.points[:, 2].astype(np.int64)
-        distance = np.linalg.norm(projected - item.points[:, :2], axis=1)
-        evaluated.append(item)
-        errors.append(np.where(visibility > 0, distance, np.nan))
-        visibilities.append(visibility)
-        tracked.append(projected)
+
+    def is_tracked(item: Annotation) -> bool:
+        return item.frame in places and item.camera in cameras and f"{item.hand}/{HAND_JOINTS[0]}" in columns
+
+    evaluated = [item for item in annotations.items if is_tracked(item)]
     shape = (len(evaluated), len(HAND_JOINTS))
+    marked = np.array([item.points for item in evaluated], dtype=np.float64).reshape(*shape, 3)
+    visibility = marked[..., 2].astype(np.int64)
+    tracked = np.empty((*shape, 2))
+    for row, item in enumerate(evaluated):
+        own = [columns[f"{item.hand}/{joint}"] for joint in HAND_JOINTS]
+        tracked[row] = track.joints_2d[places[item.frame], cameras[item.camera], own]
+    distance = np.linalg.norm(tracked - marked[..., :2], axis=-1)
     everything = Evaluation(
         frame=np.array([item.frame for item in evaluated], dtype=np.int64),
         camera=tuple(item.camera for item in evaluated),
         hand=tuple(item.hand for item in evaluated),
         status=tuple(str(track.status[places[item.frame]]) for item in evaluated),
-        error=np.array(errors, dtype=np.float64).reshape(shape),
-        visibility=np.array(visibilities, dtype=np.int64).reshape(shape),
-        marked=np.array([item.points[:, :2] for item in evaluated], dtype=np.float64).reshape(*shape, 2),
-        tracked=np.array(tracked, dtype=np.float64).reshape(*shape, 2),
-        untracked=tuple(untracked),
+        error=np.where(visibility > 0, distance, np.nan),
+        visibility=visibility,
+        marked=marked[..., :2],
+        tracked=tracked,
+        untracked=tuple(item.key for item in annotations.items if not is_tracked(item)),
         track_frame=np.asarray(track.frame, dtype=np.int64),
         lost_frame=np.asarray(track.frame, dtype=np.int64)[track.status == "lost"],
         sources=tuple(item.sources for item in evaluated),

@@ -82,13 +82,53 @@ def study_held_out(
     """
     began = time.monotonic()
     kept, say = checkpoints or NoCheckpoints(), progress or (lambda stage, share: None)
-    models, refused = {LEARNED: learned}, {}
     others = _list_others(training_set, options) if level.trains_others else {}
-    for number, (name, changed) in enumerate(others.items()):
-        span = 0.5 * number / len(others), 0.5 / len(others)
+    share = 0.5 if others else 0.0
+    trained, refused = _train_others(others, training_set, initial, kept, lambda stage, done: say(stage, share * done))
+    models = {LEARNED: learned, **trained}
+    fitted = {**models, **compared}
+    templates, posed, curves = {}, {}, {}
+    if templated := held_out.with_template:
+        templates = {
+            name: {who: find_template(model, flat) for who, flat in held_out.flats.items()}
+            for name, model in models.items()
+        }
+        plain = {SHAPES_OFF: without_pose_shapes(learned)} if learned.pose_directions.any() else {}
+        posed = {**models, **plain}
+        curves = {name: models[name] for name in (LEARNED, RIGHT_ONLY) if name in models}
+    judge = _Judge(kept, lambda stage, done: say(stage, share + (1.0 - share) * done))
+    judge.expect(len(fitted) + len(posed) + len(level.counts) * len(curves))
+    few = templated[:: max(1, len(templated) // level.curve_hands)][: level.curve_hands]
+    return {
+        "people": sorted({hand.subject for hand in held_out.hands}),
+        "scans": len(held_out.hands),
+        "floor_mm": round(measure_floor(learned, held_out.hands), 4),
+        "models": {name: judge.rate(name, model, held_out.hands, None) for name, model in fitted.items()},
+        "own_template": {
+            name: judge.rate(name, model, templated, templates.get(name, templates[LEARNED]))
+            for name, model in posed.items()
+        },
+        "pose_generalisation": {
+            name: judge.draw_curve(name, model, few, templates[name], level.counts) for name, model in curves.items()
+        },
+        "not_compared": refused,
+        "seconds": round(time.monotonic() - began, 1),
+    }
 
-        def tell(stage: str, share: float, name: str = name, span: tuple[float, float] = span) -> None:
-            say(f"{name}: {stage}", span[0] + span[1] * share)
+
+def _train_others(
+    others: Mapping[str, TrainingOptions],
+    training_set: TrainingSet,
+    initial: BlendModel,
+    kept: Checkpoints,
+    say: Progress,
+) -> tuple[dict[str, BlendModel], dict[str, str]]:
+    """Models trained alike but for one thing, and why a name has none."""
+    models, refused = {}, {}
+    for number, (name, changed) in enumerate(others.items()):
+
+        def tell(stage: str, share: float, name: str = name, number: int = number) -> None:
+            say(f"{name}: {stage}", (number + share) / len(others))
 
         try:
             own = PrefixedCheckpoints(kept, name.replace(" ", "-"))
@@ -96,33 +136,7 @@ def study_held_out(
         except TrainingError as error:
             refused[name] = str(error)
             log.warning("%s cannot be compared: %s", name, error)
-    judge = _Judge(kept, lambda stage, share: say(stage, (0.5 if others else 0.0) + (0.5 if others else 1.0) * share))
-    fitted = {**models, **compared}
-    templated = held_out.with_template
-    plain = {SHAPES_OFF: without_pose_shapes(learned)} if learned.pose_directions.any() else {}
-    curves = {name: models[name] for name in (LEARNED, RIGHT_ONLY) if name in models} if templated else {}
-    judge.expect(len(fitted) + (len(models) + len(plain) if templated else 0) + len(level.counts) * len(curves))
-    found = {name: judge.rate(name, model, held_out.hands, None) for name, model in fitted.items()}
-    own_found: dict[str, Any] = {}
-    templates = {
-        name: {who: find_template(model, flat) for who, flat in held_out.flats.items()}
-        for name, model in (models.items() if templated else ())
-    }
-    for name, model in ({**models, **plain} if templated else {}).items():
-        own_found[name] = judge.rate(name, model, templated, templates.get(name, templates[LEARNED]))
-    few = templated[:: max(1, len(templated) // level.curve_hands)][: level.curve_hands]
-    return {
-        "people": sorted({hand.subject for hand in held_out.hands}),
-        "scans": len(held_out.hands),
-        "floor_mm": round(measure_floor(learned, held_out.hands), 4),
-        "models": found,
-        "own_template": own_found,
-        "pose_generalisation": {
-            name: judge.draw_curve(name, model, few, templates[name], level.counts) for name, model in curves.items()
-        },
-        "not_compared": refused,
-        "seconds": round(time.monotonic() - began, 1),
-    }
+    return models, refused
 
 
 def _list_others(training_set: TrainingSet, options: TrainingOptions) -> dict[str, TrainingOptions]:

@@ -39,52 +39,66 @@ class Line:
         return found
 
 
+@dataclass(frozen=True)
+class _Plane:
+    """What is drawn from left to right, and from 0 up to the top."""
+
+    low: float
+    high: float
+    top: float
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """Place in the drawing, px."""
+        across = (x - self.low) / (self.high - self.low)
+        return LEFT + across * (WIDTH - LEFT - RIGHT), HEIGHT - BOTTOM - y / self.top * (HEIGHT - TOP - BOTTOM)
+
+    def draw_grid(self) -> str:
+        parts = []
+        for step in range(5):
+            value = self.top * step / 4
+            y = self.at(self.low, value)[1]
+            parts.append(f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{y:.1f}" y2="{y:.1f}"/>')
+            parts.append(f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">{value:.3g}</text>')
+        for step in range(6):
+            value = self.low + (self.high - self.low) * step / 5
+            x = self.at(value, 0)[0]
+            anchor = "end" if step == 5 else "middle"
+            parts.append(f'<text x="{x:.1f}" y="{HEIGHT - BOTTOM + 15}" text-anchor="{anchor}">{value:.4g}</text>')
+        return "".join(parts)
+
+    def draw(self, line: Line, color: str, dash: str) -> str:
+        """Its pieces; dots where there are few values, and where one stands alone."""
+        pieces = [[self.at(x, min(y, self.top)) for x, y in piece] for piece in line.pieces()]
+        paths = [" ".join(f"{x:.1f},{y:.1f}" for x, y in piece) for piece in pieces]
+        dotted = pieces if sum(map(len, pieces)) <= 60 else [piece for piece in pieces if len(piece) == 1]
+        return "".join(
+            [
+                *(f'<polyline points="{path}" stroke="{color}" stroke-dasharray="{dash}"/>' for path in paths),
+                *(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="{color}"/>' for piece in dotted for x, y in piece),
+            ]
+        )
+
+
 def draw_curves(lines: Sequence[Line], label: str, x_title: str, y_title: str, top: float | None = None) -> str:
     """Lines over one another, told apart by colour and dashes, with a legend."""
     xs = [value for line in lines for value in line.x]
     ys = [value for line in lines for value in line.y if value is not None]
     if not xs or not ys:
         return "<p class=quiet>Nothing to draw.</p>"
-    low, high = min(xs), max(max(xs), min(xs) + 1)
-    top = top or max(1e-9, 1.05 * max(ys))
-
-    def at(x: float, y: float) -> tuple[float, float]:
-        across = (x - low) / (high - low)
-        return LEFT + across * (WIDTH - LEFT - RIGHT), HEIGHT - BOTTOM - y / top * (HEIGHT - TOP - BOTTOM)
-
-    parts = [f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(label)}">']
-    for step in range(5):
-        value = top * step / 4
-        y = at(low, value)[1]
-        parts.append(f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{y:.1f}" y2="{y:.1f}"/>')
-        parts.append(f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">{value:.3g}</text>')
-    for step in range(6):
-        value = low + (high - low) * step / 5
-        x = at(value, 0)[0]
-        anchor = "end" if step == 5 else "middle"
-        parts.append(f'<text x="{x:.1f}" y="{HEIGHT - BOTTOM + 15}" text-anchor="{anchor}">{value:.4g}</text>')
-    parts.append(f'<text x="{WIDTH - RIGHT}" y="{HEIGHT - 4}" text-anchor="end">{escape(x_title)}</text>')
-    parts.append(f'<text x="4" y="{HEIGHT - 4}">{escape(y_title)}</text>')
-    for place, line in enumerate(lines):
-        color, dash = COLORS[place % len(COLORS)], DASHES[place % len(DASHES)]
-        pieces = [[at(x, min(y, top)) for x, y in piece] for piece in line.pieces()]
-        for piece in pieces:
-            path = " ".join(f"{x:.1f},{y:.1f}" for x, y in piece)
-            parts.append(f'<polyline points="{path}" stroke="{color}" stroke-dasharray="{dash}"/>')
-        has_dots = sum(map(len, pieces)) <= 60
-        parts += [
-            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="{color}"/>'
-            for piece in pieces
-            for x, y in piece
-            if has_dots or len(piece) == 1
-        ]
+    plane = _Plane(min(xs), max(max(xs), min(xs) + 1), top or max(1e-9, 1.05 * max(ys)))
+    looks = [(line, COLORS[n % len(COLORS)], DASHES[n % len(DASHES)]) for n, line in enumerate(lines)]
+    curves = "".join(plane.draw(line, color, dash) for line, color, dash in looks)
     legend = "".join(
         f'<span><svg class="key" viewBox="0 0 24 8"><line x1="0" x2="24" y1="4" y2="4" '
-        f'stroke="{COLORS[place % len(COLORS)]}" stroke-dasharray="{DASHES[place % len(DASHES)]}"/></svg>'
-        f"{escape(line.label)}</span>"
-        for place, line in enumerate(lines)
+        f'stroke="{color}" stroke-dasharray="{dash}"/></svg>{escape(line.label)}</span>'
+        for line, color, dash in looks
     )
-    return f'<figure>{"".join(parts)}</svg><figcaption class="legend">{legend}</figcaption></figure>'
+    return (
+        f'<figure><svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(label)}">{plane.draw_grid()}'
+        f'<text x="{WIDTH - RIGHT}" y="{HEIGHT - 4}" text-anchor="end">{escape(x_title)}</text>'
+        f'<text x="4" y="{HEIGHT - 4}">{escape(y_title)}</text>{curves}</svg>'
+        f'<figcaption class="legend">{legend}</figcaption></figure>'
+    )
 
 
 def draw_bar_cell(value: float | None, full: float, text: str | None = None, best: bool = False) -> str:

@@ -37,7 +37,6 @@ SCORER = "handloom"
 HANDS = ("right", "left")
 MAX_COLUMNS = 1000
 MAX_ROWS = 1_000_000
-MAX_CELL = 2000
 NOT_A_NUMBER = ("", "nan", "NaN", "NA", "None")
 Column = tuple[str, int, int]
 """Hand, joint, 0 for x and 1 for y."""

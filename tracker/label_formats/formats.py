@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -181,25 +182,32 @@ def import_labels(
         return format_.name, format_.read(files, sets, hints)
 
 
+_NAMES = {
+    "interhand": re.compile(r"_joint_3d\.json\Z"),
+    "freihand": re.compile(r"_xyz\.json\Z"),
+    "deeplabcut": re.compile(r"(?ai)\.csv\Z"),
+    "t16": re.compile("joints_2D_GT/"),
+}
+"""How files of a format are called."""
+
+_WORDS = (
+    ("coco_wholebody", (b'"lefthand_kpts"',)),
+    ("coco_wholebody", (b'"righthand_kpts"',)),
+    ("coco_keypoints", (b'"categories"', b'"annotations"')),
+    ("annotations", (b'"items"', b'"joints"')),
+)
+"""What a single file of a format holds; the first that fits, since COCO's own hold all of it."""
+
+
 def recognise_labels(files: dict[str, bytes]) -> str:
     """The format of files, from their names and first words; raises when it is none or could be several."""
-    names = [name.split("/")[-1] for name in files]
-    if any(name.endswith("_joint_3d.json") for name in names):
-        return "interhand"
-    if any(name.endswith("_xyz.json") for name in names):
-        return "freihand"
-    if any(name.lower().endswith(".csv") for name in names):
-        return "deeplabcut"
-    if any("joints_2D_GT/" in name for name in files):
-        return "t16"
-    if len(files) == 1:
-        data = next(iter(files.values()))
-        if b'"lefthand_kpts"' in data or b'"righthand_kpts"' in data:
-            return "coco_wholebody"
-        if b'"categories"' in data and b'"annotations"' in data:
-            return "coco_keypoints"
-        if b'"items"' in data and b'"joints"' in data:
-            return "annotations"
+    for format, pattern in _NAMES.items():
+        if any(pattern.search(name) for name in files):
+            return format
+    data = next(iter(files.values())) if len(files) == 1 else b""
+    for format, words in _WORDS:
+        if all(word in data for word in words):
+            return format
     raise AnnotationError(
         f"The labels were not recognised ({', '.join(sorted(files)[:5])}); say the format: {', '.join(LABEL_FORMATS)}."
     )

@@ -156,22 +156,16 @@ def rank_combinations(
     carry. What touches already helps in every combination.
     """
     touching = [gap for gap in gaps if gap.distance <= 2.0 * options.protocol.skin]
-    plane_points, plane_normals = world.find_plane_contacts()
-    friction = options.protocol.contact_friction
+    always = {gap.hull for gap in touching}
+    by_hull = _build_by_hull(world, [*touching, *movable], options.protocol.contact_friction)
     plane_friction = options.protocol.static_friction * options.protocol.friction
-
-    still = build_wrenches(plane_points, plane_normals, plane_friction, world.centroid, world.radius)
-    usable = list({gap.hull: gap for gap in [*touching, *movable]}.values())
-    points = np.array([gap.point for gap in usable]).reshape(-1, 3)
-    inward = -np.array([gap.normal for gap in usable]).reshape(-1, 3)
-    each = np.split(build_wrenches(points, inward, friction, world.centroid, world.radius), max(len(usable), 1), axis=1)
-    by_hull = {gap.hull: columns for gap, columns in zip(usable, each, strict=False)}
+    still = build_wrenches(*world.find_plane_contacts(), plane_friction, world.centroid, world.radius)
     passing: list[tuple[int, int, tuple[int, ...]]] = []
     failing: list[tuple[float, tuple[int, ...]]] = []
     for size in range(2, options.most_parts + 1):
         held: list[tuple[float, tuple[int, ...]]] = []
         for combination in combinations(range(len(movable)), size):
-            hulls = {gap.hull for gap in touching} | {movable[i].hull for i in combination}
+            hulls = always | {movable[i].hull for i in combination}
             wrenches = np.concatenate([still, *(by_hull[hull] for hull in sorted(hulls))], axis=1)
             imbalance = find_imbalance(wrenches, world.down)
             if imbalance <= options.carried:
@@ -181,6 +175,16 @@ def rank_combinations(
         passing += [(place, size, combination) for place, (_, combination) in enumerate(sorted(held))]
     ranked = [combination for *_, combination in sorted(passing)] + [combination for _, combination in sorted(failing)]
     return ranked, len(passing)
+
+
+def _build_by_hull(world: PhysicsWorld, gaps: Sequence[Gap], friction: float) -> dict[int, Array]:
+    """Wrenches (6, n) of the contact that closes each hull's gap, the last one given of each hull."""
+    usable = list({gap.hull: gap for gap in gaps}.values())
+    points = np.array([gap.point for gap in usable]).reshape(-1, 3)
+    inward = -np.array([gap.normal for gap in usable]).reshape(-1, 3)
+    wrenches = build_wrenches(points, inward, friction, world.centroid, world.radius)
+    each = np.split(wrenches, max(len(usable), 1), axis=1)
+    return {gap.hull: columns for gap, columns in zip(usable, each, strict=False)}
 
 
 def find_part_bones(model: ArticulatedModel) -> dict[int, str]:

@@ -52,23 +52,13 @@ def annotated_nail_images(sequence: Sequence, annotations: Annotations, step: in
         annotations: Of its frames.
         step: One of so many annotated frames.
     """
+    colored = {camera.id for camera in sequence.cameras if camera.has_color}
     for frame in list_frames(sequence, annotations)[::step]:
         by_hand: dict[str, list[Annotation]] = defaultdict(list)
         for item in annotations.at(frame):
-            has_color = any(camera.id == item.camera and camera.has_color for camera in sequence.cameras)
-            if has_color and np.count_nonzero(item.points[:, 2]) >= ENOUGH:
+            if item.camera in colored and np.count_nonzero(item.points[:, 2]) >= ENOUGH:
                 by_hand[item.hand].append(item)
-        fitted = {hand: _fit(sequence, hand, items) for hand, items in by_hand.items()}
-        poses = {hand: pose for hand, pose in fitted.items() if pose is not None}
-        if not poses:
-            continue
-        scene = Scene(tuple(default_hand(hand) for hand in poses))
-        posed, places = scene.pose_at(np.concatenate(list(poses.values()))), NailPlaces.of(scene)
-        for camera_id in sorted({item.camera for hand in poses for item in by_hand[hand]}):
-            marks = [next((one for one in by_hand[hand] if one.camera == camera_id), None) for hand in poses]
-            found = _cut_out(sequence, frame, camera_id, posed, places, marks)
-            if found is not None:
-                yield found
+        yield from _cut_out_all(sequence, frame, by_hand)
 
 
 def list_frames(sequence: Sequence, annotations: Annotations) -> list[int]:
@@ -80,6 +70,21 @@ def count_nail_images(sequence: Sequence, annotations: Annotations, step: int = 
     """How many images `annotated_nail_images` takes at most."""
     frames = set(list_frames(sequence, annotations)[::step])
     return len({(item.frame, item.camera) for item in annotations.items if item.frame in frames})
+
+
+def _cut_out_all(sequence: Sequence, frame: int, by_hand: dict[str, list[Annotation]]) -> Iterator[AnnotatedImage]:
+    """The images of one moment, with the hands that can be fitted to their marks."""
+    fitted = {hand: _fit(sequence, hand, items) for hand, items in by_hand.items()}
+    poses = {hand: pose for hand, pose in fitted.items() if pose is not None}
+    if not poses:
+        return
+    scene = Scene(tuple(default_hand(hand) for hand in poses))
+    posed, places = scene.pose_at(np.concatenate(list(poses.values()))), NailPlaces.of(scene)
+    marks = [{item.camera: item for item in reversed(by_hand[hand])} for hand in poses]
+    for camera_id in sorted(set().union(*marks)):
+        found = _cut_out(sequence, frame, camera_id, posed, places, [own.get(camera_id) for own in marks])
+        if found is not None:
+            yield found
 
 
 def _fit(sequence: Sequence, hand: str, items: list[Annotation]) -> Array | None:

@@ -89,32 +89,8 @@ def write_recording(
     assert len(options.moments) > 0
     with _appearing(folder) as unfinished:
         cameras = tuple(_recorded_camera(camera, number, options) for number, camera in enumerate(performance.cameras))
-        for name in ("models", *(["objects"] if performance.objects else [])):
-            (unfinished / name).mkdir()
-        for camera in cameras:
-            for pattern in (camera.color, camera.depth):
-                assert pattern is not None
-                (unfinished / pattern.path(0)).parent.mkdir(parents=True)
-        views = [performance.seen_by(camera) for camera in cameras]
-        moments = []
-        for frame, index in enumerate(options.moments):
-            seen = [render_moment(view, index) for view in views]
-            for number, (view, moment) in enumerate(zip(views, seen, strict=True)):
-                _write_images(view, moment, number, frame, unfinished, options)
-            visibility = [find_visibility(view, moment) for view, moment in zip(views, seen, strict=True)]
-            moments.append((seen[0].joints, [moment.pixels for moment in seen], visibility))
-            progress((frame + 1) / len(options.moments))
-        joints, pixels, visibility = (np.array(column) for column in zip(*moments, strict=True))
-        truth = Truth(
-            frame=np.arange(len(options.moments)),
-            source_frame=np.array(options.moments),
-            joint_names=performance.joint_names,
-            joints_3d=joints,
-            joints_2d=pixels,
-            visibility=visibility,
-            object_names=tuple(actor.name for actor in performance.objects),
-            T_world_object=_object_motion(performance, options.moments),
-        )
+        _make_folders(unfinished, cameras, performance)
+        truth = _render(performance, cameras, unfinished, options, progress)
         truth.save(unfinished / TRUTH_FILE)
         save_annotations(unfinished / "annotations.json", _annotate(performance, truth))
         for actor in performance.hands:
@@ -134,6 +110,45 @@ def write_recording(
         )
     log.info("wrote %d frames of %s to %s", len(options.moments), performance.name, folder)
     return load_sequence(folder)
+
+
+def _make_folders(folder: Path, cameras: tuple[RecordedCamera, ...], performance: Performance) -> None:
+    for name in ("models", *(["objects"] if performance.objects else [])):
+        (folder / name).mkdir()
+    for camera in cameras:
+        for pattern in (camera.color, camera.depth):
+            assert pattern is not None
+            (folder / pattern.path(0)).parent.mkdir(parents=True)
+
+
+def _render(
+    performance: Performance,
+    cameras: tuple[RecordedCamera, ...],
+    folder: Path,
+    options: RecordingOptions,
+    progress: Callable[[float], None],
+) -> Truth:
+    """Write every image of every moment; what is exactly known of them."""
+    views = [performance.seen_by(camera) for camera in cameras]
+    moments = []
+    for frame, index in enumerate(options.moments):
+        seen = [render_moment(view, index) for view in views]
+        for number, (view, moment) in enumerate(zip(views, seen, strict=True)):
+            _write_images(view, moment, number, frame, folder, options)
+        visibility = [find_visibility(view, moment) for view, moment in zip(views, seen, strict=True)]
+        moments.append((seen[0].joints, [moment.pixels for moment in seen], visibility))
+        progress((frame + 1) / len(options.moments))
+    joints, pixels, visibility = (np.array(column) for column in zip(*moments, strict=True))
+    return Truth(
+        frame=np.arange(len(options.moments)),
+        source_frame=np.array(options.moments),
+        joint_names=performance.joint_names,
+        joints_3d=joints,
+        joints_2d=pixels,
+        visibility=visibility,
+        object_names=tuple(actor.name for actor in performance.objects),
+        T_world_object=_object_motion(performance, options.moments),
+    )
 
 
 def _recorded_camera(camera: Camera, number: int, options: RecordingOptions) -> RecordedCamera:

@@ -41,10 +41,6 @@ class StructuredLight:
         """Standard deviation along the optical axis, m, at depth z, m: 1.2 mm + 1.9 mm/m² (z - 0.4 m)²."""
         return 0.0012 + 0.0019 * (depth - 0.4) ** 2
 
-    def quantization_step(self, depth: Array, fx: float) -> Array:
-        """Distance between two depths that the sensor can tell apart, m: z² δ / (f b)."""
-        return depth**2 * self.disparity_step / (fx * self.baseline)
-
     def measure(self, depth: Array, cosine: Array, fx: float, rng: np.random.Generator) -> Array:
         """What the sensor reports.
 

@@ -62,39 +62,67 @@ def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene
         posed: Where the hands are expected.
         gone: Hands that nobody knows the place of.
     """
-    names, threads = setup.hand_names, setup.options.threads
-    idle = [default_hand_detector(number) for number in range(threads)]
-    known = [hand for hand in setup.hands if hand not in gone]
     looked_at = [view for view in views if view.frame.color is not None]
-
-    def follow(number: int) -> dict[str, DetectedHand]:
-        view = looked_at[number]
-        expected = {setup.names[hand]: _expect(posed, hand, setup.names[hand], view.camera) for hand in known}
-        places = {name: hand for name, hand in expected.items() if hand is not None}
-        if not places:
-            return {}
-        detector = idle.pop()  # each looks at one image at a time
-        found = _find(detector, view.frame, names, places, ())
-        idle.append(detector)
-        return found
-
+    look = _Look(setup, looked_at, posed, [hand for hand in setup.hands if hand not in gone])
     turn = range(len(looked_at)) if gone or not looked_at else choose_views(len(looked_at), looked_at[0].frame.index)
-    seen: list[dict[str, DetectedHand]] = [{} for _ in looked_at]
-    for view, hands in zip(turn, map_views(follow, turn, threads), strict=True):
-        seen[view] = hands
-    if any(sum(name in hands for hands in seen) < min(2, len(seen)) for name in names):
-        others = sorted(set(range(len(looked_at))) - set(turn))
-        for view, hands in zip(others, map_views(follow, others, threads), strict=True):
-            seen[view] = hands
+    look.follow(turn)
+    if look.is_scarce():
+        look.follow(sorted(set(range(len(looked_at))) - set(turn)))
         turn = range(len(looked_at))
-    detector = default_hand_detector()
-    for view in turn:
-        frame = looked_at[view].frame
-        is_scarce = any(sum(name in hands for hands in seen) < min(2, len(seen)) for name in names)
-        if len(seen[view]) < len(names) and (is_scarce or frame.index % len(seen) == view):
-            turns = ALL_TURNS if gone else (0, 1 + frame.index % 3)
-            seen[view] = _find(detector, frame, names, seen[view], turns)
-    return ViewHands(tuple(view.camera for view in looked_at), tuple(seen))
+    for number in turn:
+        index = looked_at[number].frame.index
+        if look.lacks_hands(number) and (look.is_scarce() or index % len(looked_at) == number):
+            look.search(number, ALL_TURNS if gone else (0, 1 + index % 3))
+    return ViewHands(tuple(view.camera for view in looked_at), tuple(look.seen))
+
+
+class _Look:
+    """What the detector finds in the colour images of a moment, as they are looked at one after the other.
+
+    Attributes:
+        seen: Of each view the hands by name.
+    """
+
+    def __init__(
+        self, setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene, known: Sequence[int]
+    ) -> None:
+        self._setup, self._views, self._posed, self._known = setup, views, posed, known
+        self.seen: list[dict[str, DetectedHand]] = [{} for _ in views]
+
+    def follow(self, numbers: Sequence[int]) -> None:
+        """Look into views where the pose has the hands; each detector looks at one image at a time."""
+        threads = self._setup.options.threads
+        idle = [default_hand_detector(number) for number in range(threads)]
+
+        def follow_in(number: int) -> dict[str, DetectedHand]:
+            places = self._expect(self._views[number].camera)
+            if not places:
+                return {}
+            detector = idle.pop()
+            found = _find(detector, self._views[number].frame, self._setup.hand_names, places, ())
+            idle.append(detector)
+            return found
+
+        for number, hands in zip(numbers, map_views(follow_in, numbers, threads), strict=True):
+            self.seen[number] = hands
+
+    def search(self, number: int, turns: tuple[int, ...]) -> None:
+        """Look through a whole image for the hands that were not seen in it."""
+        frame, before = self._views[number].frame, self.seen[number]
+        self.seen[number] = _find(default_hand_detector(), frame, self._setup.hand_names, before, turns)
+
+    def lacks_hands(self, number: int) -> bool:
+        return len(self.seen[number]) < len(self._setup.hand_names)
+
+    def is_scarce(self) -> bool:
+        """Whether two views, or the only one, do not see every hand."""
+        enough = min(2, len(self.seen))
+        return any(sum(name in hands for hands in self.seen) < enough for name in self._setup.hand_names)
+
+    def _expect(self, camera: Camera) -> dict[str, DetectedHand]:
+        names = {hand: self._setup.names[hand] for hand in self._known}
+        expected = {name: _expect(self._posed, hand, name, camera) for hand, name in names.items()}
+        return {name: hand for name, hand in expected.items() if hand is not None}
 
 
 def fit_views(

@@ -9,6 +9,7 @@ from tracker.fitting.choose_views import PLENTY
 from tracker.fitting.frame_fit import Fit
 from tracker.fitting.setup import TrackSetup
 from tracker.fitting.view_hands import ViewHands
+from tracker.model.scene import PosedScene
 from tracker.search.part import Part
 from tracker.search.place_in_views import place_in_views
 from tracker.search.tools import Tools
@@ -46,12 +47,10 @@ def follow_views(
     stages = {"reading": read.seconds, "detecting hands": perf_counter() - looked_at}
     if ahead:
         ahead.begin(state.next_frame + 1)  # not before: the detector takes all threads
-    found = set()
-    for hand in sorted(gone):
-        placed = place_in_views(setup.models[hand], setup.names[hand], seen)
-        if placed is not None:
-            pose[scene.pose_slices[hand]] = placed
-            found.add(hand)
+    placed = {hand: place_in_views(setup.models[hand], setup.names[hand], seen) for hand in sorted(gone)}
+    found = {hand for hand, own in placed.items() if own is not None}
+    for hand in found:
+        pose[scene.pose_slices[hand]] = placed[hand]
     iterations = setup.options.first_iterations if found else setup.options.iterations
     part = Part.without(setup, tuple(gone - found))  # what is lost is nowhere: it hides and touches nothing
     fit = Fit(part.take(pose), (), {})
@@ -64,9 +63,7 @@ def follow_views(
         fit = fit_views(part.setup, objective, believed, views, fit.pose, iterations)
     pose = part.put(fit.pose, pose)
     posed = scene.pose_at(pose)
-    verdicts = {hand: judge_hand(setup, seen, posed, hand) for hand in hands}
-    lost = {hand for hand in hands if hand in gone - found or not verdicts[hand][0]}
-    left = {hand for hand in lost if hand in gone or not verdicts[hand][1]}
+    lost, left = _judge_hands(setup, seen, posed, gone, found)
     earlier = state.pose.copy()
     for hand in gone | left:
         where = scene.pose_slices[hand]
@@ -90,3 +87,20 @@ def follow_views(
     earlier = stop_unseen(setup, pose, earlier, objects)
     after = TrackState(state.next_frame + 1, pose, earlier, is_lost=bool(left), lost_hands=tuple(sorted(left)))
     return after, result, seen
+
+
+def _judge_hands(
+    setup: TrackSetup, seen: ViewHands, posed: PosedScene, gone: set[int], found: set[int]
+) -> tuple[set[int], set[int]]:
+    """Hands that are lost now, and those of them that stay where they were instead of being followed.
+
+    Args:
+        setup: Models and options.
+        seen: The hands in all views.
+        posed: As it was fitted.
+        gone: Hands that were lost before this frame.
+        found: Those of them that were placed anew.
+    """
+    verdicts = {hand: judge_hand(setup, seen, posed, hand) for hand in setup.hands}
+    lost = {hand for hand, (is_held, _) in verdicts.items() if hand in gone - found or not is_held}
+    return lost, {hand for hand in lost if hand in gone or not verdicts[hand][1]}

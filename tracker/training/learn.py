@@ -79,17 +79,6 @@ def begin(
     return Learnt(templates, joints, poses, rig, regressor)
 
 
-def improve(
-    learnt: Learnt,
-    data: Data,
-    options: TrainingOptions,
-    is_last: bool,
-    progress: Callable[[str, float], None],
-) -> Learnt:
-    """One round: poses with joints, templates, blend weights, blend shapes, joint regressor."""
-    return improve_surface(improve_joints(learnt, data, options, progress), data, options, is_last, progress)
-
-
 def improve_joints(
     learnt: Learnt, data: Data, options: TrainingOptions, progress: Callable[[str, float], None]
 ) -> Learnt:

@@ -9,7 +9,10 @@ import pytest
 import trimesh
 from fastapi.testclient import TestClient
 
+from server.bodies.service import read_motion
+from server.errors import InvalidError
 from server.scans.geometry import unpack_arrays
+from tracker.errors import TrackerError
 from tracker.model.body_hands import body_pose
 from tracker.model.body_model import body_model
 from tracker.model.body_motion import BodyMotion, save_body_motion
@@ -104,3 +107,21 @@ def test_a_file_that_is_no_motion_is_refused_with_its_name(client, data):
     answer = send_motion(client, data, "evil.npz")
     assert answer.status_code == 422 and answer.json()["detail"].startswith("evil.npz: ")
     assert "needed an .npz archive" in answer.json()["detail"]
+
+
+def test_a_motion_longer_than_the_page_plays_is_refused_with_both_numbers(tmp_path):
+    motion = BodyMotion(np.zeros((5, 52, 3)), np.zeros((5, 3)), np.zeros(0), 30.0)
+    save_body_motion(motion, tmp_path / "long.npz")
+    with pytest.raises(InvalidError, match=r"long\.npz has 5 frames; the page plays 4 at most"):
+        read_motion(tmp_path / "long.npz", 4)
+    assert len(read_motion(tmp_path / "long.npz", 5).poses) == 5
+
+
+def test_a_motion_of_a_person_with_more_directions_than_the_body_has_keeps_only_those_that_say_nothing(tmp_path):
+    for shape, is_kept in ((np.r_[np.ones(20), np.zeros(5)], True), (np.ones(25), False)):
+        save_body_motion(BodyMotion(np.zeros((1, 52, 3)), np.zeros((1, 3)), shape, 30.0), tmp_path / "walk.npz")
+        if is_kept:
+            assert read_motion(tmp_path / "walk.npz", 5).shape == [1.0] * 20
+        else:
+            with pytest.raises(TrackerError, match="shape"):
+                read_motion(tmp_path / "walk.npz", 5)

@@ -69,7 +69,3 @@ def test_more_components_keep_the_pose_and_fewer_forget_only_the_rest(fit, state
     assert np.allclose(more.pose, state.pose, atol=1e-12)
     again = with_hands(more, fit.space, more.hands)
     assert np.array_equal(again.hands, state.hands)
-
-
-def test_coefficients_come_back_from_the_fingers_they_pose(fit, state) -> None:
-    assert np.allclose(fit.space.coefficients_of(state.pose[22:]), state.hands, atol=1e-10)

@@ -26,7 +26,7 @@ def test_noise_on_a_wall_has_the_stated_standard_deviation(z, rng):
     sensor = StructuredLight()
     reported = interior(sensor.measure(*wall(z), FX, rng))
     values = reported[reported > 0]
-    step = sensor.quantization_step(np.array(z), FX)
+    step = z**2 * sensor.disparity_step / (FX * sensor.baseline)
     expected = np.hypot(sensor.axial_std(np.array(z)), step / np.sqrt(12.0))
     assert np.std(values) == pytest.approx(float(expected), rel=0.03)
     assert np.mean(values) == pytest.approx(z, abs=2e-4)

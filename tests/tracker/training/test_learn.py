@@ -2,7 +2,7 @@ import numpy as np
 
 from tests.tracker.training.fingers import PARENTS, crude_regressor, make_fingers, make_tube, make_weights, pose
 from tracker.training.joints import fit_joints
-from tracker.training.learn import Data, begin, improve
+from tracker.training.learn import Data, begin, improve_joints, improve_surface
 from tracker.training.motion import fill_skinning, sparsen_skinning, turn
 from tracker.training.options import TrainingOptions
 from tracker.training.pose_fit import Hands, Poses, Rig
@@ -16,7 +16,8 @@ def learn(fingers, rounds, **options):
     learnt = begin(data, tube, PARENTS, crude, crude_regressor(tube), options, lambda share: None)
     errors = [np.sqrt(np.mean(learnt.poses.errors**2))]
     for number in range(rounds):
-        learnt = improve(learnt, data, options, number == rounds - 1, lambda stage, share: None)
+        learnt = improve_joints(learnt, data, options, lambda stage, share: None)
+        learnt = improve_surface(learnt, data, options, number == rounds - 1, lambda stage, share: None)
         errors.append(np.sqrt(np.mean(learnt.poses.errors**2)))
     return learnt, errors
 

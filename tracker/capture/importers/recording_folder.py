@@ -7,12 +7,13 @@ from pathlib import PurePosixPath
 from tracker.capture.annotations import Annotations, load_annotations
 from tracker.capture.frame_pattern import FramePattern
 from tracker.capture.image_files import ImageFiles
+from tracker.capture.import_findings import Findings
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.sequence import SEQUENCE_FILE, Sequence, load_sequence
 from tracker.capture.video_file import VideoFile
-from tracker.errors import AnnotationError, TrackerError, say_count
+from tracker.errors import TrackerError
 
 TRUTH_FILE = "truth.npz"
 """What is exactly known of a synthetic recording."""
@@ -32,19 +33,11 @@ class RecordingFolder:
     def plan(self, files: ListedFiles, options: ImportOptions) -> ImportPlan:
         sequence = load_sequence(files.root)
         used: set[str] = {SEQUENCE_FILE, *_WRITTEN_BY_IMPORTS}
-        problems: list[str] = []
-        copies = {name: name for name in (TRUTH_FILE,) if name in files.names}
-        for item in sequence.objects:
-            beside = find_model_files(files, item.model)
-            if item.model not in beside:
-                problems.append(f"{item.model}: the model of object {item.name!r} is missing.")
-            copies |= {name: name for name in beside}
-        problems += [
-            f"{camera.film}: the film of camera {camera.id} is missing."
-            for camera in sequence.cameras
-            if camera.film is not None and camera.film not in files.names
-        ]
-        annotations, faults = _load_annotations(sequence)
+        found = Findings()
+        models = [name for item in sequence.objects for name in find_model_files(files, item.model)]
+        copies = {name: name for name in (TRUTH_FILE, *models) if name in files.names}
+        _check_whole(files, sequence, found)
+        annotations = _load_annotations(sequence, found)
         cameras = tuple(
             PlannedCamera(
                 id=camera.id,
@@ -59,14 +52,9 @@ class RecordingFolder:
             )
             for camera in sequence.cameras
         )
-        others = [n for n in files.names if n not in used | set(copies) | {sequence.annotations or ""}]
-        warnings = []
-        if others:
-            shown = ", ".join(others[:3]) + (", ..." if len(others) > 3 else "")
-            are = say_count(
-                len(others), "file that sequence.json does not name is", "files that sequence.json does not name are"
-            )
-            warnings.append(f"{are} left out: {shown}.")
+        used |= {*copies, sequence.annotations or ""}
+        unnamed = "that sequence.json does not name"
+        found.leave_out([n for n in files.names if n not in used], f"file {unnamed} is", f"files {unnamed} are")
         return ImportPlan(
             format=self.format,
             name=options.name or sequence.name,
@@ -79,9 +67,19 @@ class RecordingFolder:
             planes=sequence.planes,
             files=copies,
             annotations=annotations,
-            problems=(*problems, *faults),
-            warnings=tuple(warnings),
+            problems=tuple(found.problems),
+            warnings=tuple(found.warnings),
         )
+
+
+def _check_whole(files: ListedFiles, sequence: Sequence, found: Findings) -> None:
+    """Every model and every film that the recording names has to be there; frames are looked at later."""
+    for item in sequence.objects:
+        if item.model not in files.names:
+            found.refuse(f"{item.model}: the model of object {item.name!r} is missing.")
+    for camera in sequence.cameras:
+        if camera.film is not None and camera.film not in files.names:
+            found.refuse(f"{camera.film}: the film of camera {camera.id} is missing.")
 
 
 def find_model_files(files: ListedFiles, model: str) -> list[str]:
@@ -108,18 +106,17 @@ def _find_film(files: ListedFiles, film: str | None, options: ImportOptions, use
     return VideoFile(files.root, film, options.color_format == "png")
 
 
-def _load_annotations(sequence: Sequence) -> tuple[Annotations | None, list[str]]:
-    """Annotations of the recording, and what is wrong with them."""
+def _load_annotations(sequence: Sequence, found: Findings) -> Annotations | None:
+    """Annotations of the recording; none when something is wrong with them, which goes to the findings."""
     try:
         path = sequence.annotations_path
         if path is None or not path.exists():
-            return None, []
+            return None
         annotations = load_annotations(path)
     except TrackerError as fault:
-        return None, [str(fault)]
+        return found.refuse(str(fault))
     known = {camera.id for camera in sequence.cameras}
     for item in annotations.items:
         if item.camera not in known or item.frame >= sequence.frame_count:
-            fault = AnnotationError(f"{path}: frame {item.frame} of camera {item.camera!r} is not in the recording.")
-            return None, [str(fault)]
-    return annotations, []
+            return found.refuse(f"{path}: frame {item.frame} of camera {item.camera!r} is not in the recording.")
+    return annotations

@@ -7,9 +7,10 @@ import numpy.typing as npt
 
 from tracker.capture.image_files import ImageFiles
 from tracker.capture.image_series import choose_color, choose_depth, look_at
+from tracker.capture.import_findings import Findings, show_first
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
-from tracker.capture.import_question import ImportQuestion, make_question
+from tracker.capture.import_question import make_question
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.numbered_files import NumberedFiles
 from tracker.capture.sensor_presets import apply_preset
@@ -31,29 +32,24 @@ class RgbdFolder:
         return any(name.lower().endswith(".png") for name in files.names)
 
     def plan(self, files: ListedFiles, options: ImportOptions) -> ImportPlan:
-        problems: list[str] = []
-        warnings: list[str] = []
-        questions: list[ImportQuestion] = []
-        depth = choose_depth(files, options, problems, questions)
-        color = choose_color(files, options, depth, problems, questions)
-        gaps = _describe_gaps(depth, problems, warnings, questions, allow=bool(options.allow_gaps))
+        found = Findings()
+        depth = choose_depth(files, options, found)
+        color = choose_color(files, options, depth, found)
+        gaps = _describe_gaps(depth, options, found)
         used = {*depth.names, *(color.names if color else ())}
-        ignored = [name for name in files.names if name not in used]
-        if ignored and not any(question.is_required and question.choices for question in questions):
-            shown = ", ".join(ignored[:3]) + (", ..." if len(ignored) > 3 else "")
-            warnings.append(f"{say_count(len(ignored), 'other file is', 'other files are')} left out: {shown}.")
+        if not any(question.is_required and question.choices for question in found.questions):
+            found.leave_out([name for name in files.names if name not in used])
         stream = ImageFiles(files.root, depth.names, True)
         header = look_at(files, depth)
         size = (header.width, header.height) if header is not None else None
         try:
             raw = stream.sample_depth().percentiles if options.preset else ()
-            options = apply_preset(options, size, raw, warnings)
+            options = apply_preset(options, size, raw, found.warnings)
         except ImportRefusedError as fault:
-            problems.append(str(fault))
-            questions.append(make_question("preset", str(fault), str(fault)))
+            found.refuse(str(fault), "preset")
         camera = PlannedCamera(
             id="cam0",
-            K=read_intrinsics(options, problems, questions),
+            K=read_intrinsics(options, found),
             distortion=np.array(options.distortion or (), dtype=np.float64),
             color=ImageFiles(files.root, color.names, False) if color else None,
             depth=stream,
@@ -66,43 +62,34 @@ class RgbdFolder:
             fps=options.fps,
             cameras=(camera,),
             hands=options.hands if options.hands is not None else ("right",),
-            problems=tuple(problems),
-            warnings=tuple(warnings),
-            questions=tuple(questions),
+            problems=tuple(found.problems),
+            warnings=tuple(found.warnings),
+            questions=tuple(found.questions),
             takes=TAKES,
         )
 
 
-def read_intrinsics(
-    options: ImportOptions, problems: list[str], questions: list[ImportQuestion]
-) -> npt.NDArray[np.float64] | None:
-    """K (3, 3) px of the options; what is missing goes to the problems and the questions."""
+def read_intrinsics(options: ImportOptions, found: Findings) -> npt.NDArray[np.float64] | None:
+    """K (3, 3) px of the options; what is missing goes to the findings."""
     missing = [name for name in ("fx", "cx", "cy") if getattr(options, name) is None]
     if missing:
         text = f"The camera is not known: give {', '.join(missing)} (and fy if it differs from fx), in px."
-        problems.append(text)
+        found.problems.append(text)
         ask = "In pixels of this image size: from the camera's calibration, or a typical value of its kind."
-        questions += [make_question(name, ask, text) for name in missing]
+        found.questions += [make_question(name, ask, text) for name in missing]
         if options.fy is None:
-            questions.append(make_question("fy", "As fx when left empty."))
+            found.ask("fy", "As fx when left empty.")
         return None
     assert options.fx is not None and options.cx is not None and options.cy is not None
     return np.array([[options.fx, 0, options.cx], [0, options.fy or options.fx, options.cy], [0, 0, 1]], np.float64)
 
 
-def _describe_gaps(
-    series: NumberedFiles,
-    problems: list[str],
-    warnings: list[str],
-    questions: list[ImportQuestion],
-    *,
-    allow: bool,
-) -> list[str]:
+def _describe_gaps(series: NumberedFiles, options: ImportOptions, found: Findings) -> list[str]:
     """Sentences about numbers that are missing; a reason to refuse unless gaps are allowed."""
     if series.doubles:
-        problems.append(f"Two files have the same number: {', '.join(series.doubles[:5])}.")
+        found.refuse(f"Two files have the same number: {', '.join(series.doubles[:5])}.")
     if series.step > 1:
-        warnings.append(
+        found.warn(
             f"{series.pattern} is numbered in steps of {series.step}; the frames become 0, 1, 2, ... "
             "Give the frame rate of these frames, not of the camera."
         )
@@ -110,12 +97,12 @@ def _describe_gaps(
     sentences = [f"{count} missing between {a} and {b}" for a, b, count in gaps]
     if gaps:
         total = sum(count for _, _, count in gaps)
-        shown = "; ".join(sentences[:5]) + ("; ..." if len(sentences) > 5 else "")
-        text = f"{series.pattern}: {say_count(total, 'frame is', 'frames are')} missing in the numbering ({shown})."
-        if allow:
-            warnings.append(text + " The frames around them become neighbours.")
-        else:
-            problems.append(text + " Add them, or allow gaps.")
-            ask = f"{text} If they are imported all the same, the frames around a gap become neighbours."
-            questions.append(make_question("allow_gaps", ask, problems[-1]))
+        are, shown = say_count(total, "frame is", "frames are"), show_first(sentences, 5, "; ")
+        found.miss(
+            f"{series.pattern}: {are} missing in the numbering ({shown}).",
+            options.allow_gaps,
+            allowed="The frames around them become neighbours.",
+            refused="Add them, or allow gaps.",
+            ask="If they are imported all the same, the frames around a gap become neighbours.",
+        )
     return sentences

@@ -6,16 +6,17 @@ image nearest in time, at most 20 ms away, each image used once.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.document import read_regular_file
 from tracker.capture.image_files import ImageFiles
+from tracker.capture.import_findings import Findings, show_first
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera, default_name
-from tracker.capture.import_question import ImportChoice, ImportQuestion, make_question
+from tracker.capture.import_question import ImportChoice
 from tracker.capture.importers.rgbd_folder import read_intrinsics
 from tracker.capture.listed_files import ListedFiles
 from tracker.capture.relative_path import find_path_fault
@@ -35,6 +36,16 @@ CAMERAS: dict[str, tuple[tuple[float, float, float, float], tuple[float, ...]]] 
 }
 
 
+@dataclass(frozen=True, eq=False)
+class _Pairs:
+    """Names (N) of depth and colour images taken together, the depth images' times (N,) s, and names of the others."""
+
+    depth: tuple[str, ...]
+    color: tuple[str, ...]
+    times: npt.NDArray[np.float64]
+    left_out: tuple[str, ...]
+
+
 class TumRgbd:
     """Importer of TUM RGB-D recordings; intrinsics by options or, when told, those of one of its cameras."""
 
@@ -45,74 +56,70 @@ class TumRgbd:
         return "depth.txt" in files.names and "rgb.txt" in files.names
 
     def plan(self, files: ListedFiles, options: ImportOptions) -> ImportPlan:
-        problems: list[str] = []
-        warnings: list[str] = []
-        questions: list[ImportQuestion] = []
-        for name in ("rgb.txt", "depth.txt"):
-            if name not in files.names:
-                raise ImportRefusedError(
-                    f"{name} is missing; a TUM RGB-D folder lists its images in rgb.txt and depth.txt."
-                )
-        depth_times, depth_names = _read_list(files, "depth.txt")
-        color_times, color_names = _read_list(files, "rgb.txt")
-        partner = associate(depth_times, color_times, MAX_DIFFERENCE_S)
-        alone = np.flatnonzero(partner < 0)
-        left_out = [depth_names[i] for i in alone]
-        if alone.size:
-            text = (
-                f"{alone.size} of {len(depth_names)} depth images have no colour image within "
-                f"{MAX_DIFFERENCE_S * 1000:g} ms ({', '.join(left_out[:3])}{', ...' if alone.size > 3 else ''})."
-            )
-            if options.allow_gaps:
-                warnings.append(text + " They are left out.")
-            else:
-                problems.append(text + " Allow gaps to leave them out.")
-                questions.append(make_question("allow_gaps", f"{text} They can be left out.", problems[-1]))
-        kept = np.flatnonzero(partner >= 0)
-        if not kept.size:
-            raise ImportRefusedError(
-                "No depth image has a colour image close in time; do both lists use the same clock?"
-            )
-        unused = sorted(set(range(len(color_names))) - set(partner[kept].tolist()))
-        if unused:
-            warnings.append(
-                f"{len(unused)} of {len(color_names)} colour images belong to no depth image and are left out."
-            )
-            left_out += [color_names[i] for i in unused]
-        lag = np.abs(depth_times[kept] - color_times[partner[kept]]) * 1000
-        warnings.append(f"Colour is up to {lag.max():.1f} ms away from depth (median {np.median(lag):.1f} ms).")
+        found = Findings()
+        pairs = _pair_images(files, options, found)
         for name in ("groundtruth.txt", "accelerometer.txt"):
             if name in files.names:
-                warnings.append(f"{name} is not used; the camera stands at the origin of the world.")
+                found.warn(f"{name} is not used; the camera stands at the origin of the world.")
         options = _choose_camera(options)
-        times = depth_times[kept]
         camera = PlannedCamera(
             id="cam0",
-            K=read_intrinsics(options, problems, questions),
+            K=read_intrinsics(options, found),
             distortion=np.array(options.distortion or (), dtype=np.float64),
-            color=ImageFiles(files.root, tuple(color_names[i] for i in partner[kept]), False),
-            depth=ImageFiles(files.root, tuple(depth_names[i] for i in kept), True),
+            color=ImageFiles(files.root, pairs.color, False),
+            depth=ImageFiles(files.root, pairs.depth, True),
             depth_scale=options.depth_scale or DEPTH_SCALE,
-            timestamps=times - times[0],
+            timestamps=pairs.times - pairs.times[0],
         )
         if options.intrinsics is None and camera.K is None:
             text = f"Or name the benchmark's camera with intrinsics: {', '.join(CAMERAS)}."
-            problems.append(text)
             choices = tuple(ImportChoice(name, name) for name in CAMERAS)
             ask = "The camera that the benchmark's recording was made with; its published values fill the fields."
-            questions.append(make_question("intrinsics", ask, text, is_required=False, choices=choices))
+            found.refuse(text, "intrinsics", ask, is_required=False, choices=choices)
         return ImportPlan(
             format=self.format,
             name=default_name(files, options),
             fps=options.fps,
             cameras=(camera,),
             hands=options.hands if options.hands is not None else ("right",),
-            problems=tuple(problems),
-            warnings=tuple(warnings),
-            questions=tuple(questions),
+            problems=tuple(found.problems),
+            warnings=tuple(found.warnings),
+            questions=tuple(found.questions),
             takes=TAKES,
-            left_out=tuple(left_out),
+            left_out=pairs.left_out,
         )
+
+
+def _pair_images(files: ListedFiles, options: ImportOptions, found: Findings) -> _Pairs:
+    """Each depth image with the colour image nearest in time; what has no partner is left out."""
+    color_times, color_names = _read_list(files, "rgb.txt")
+    depth_times, depth_names = _read_list(files, "depth.txt")
+    partner = associate(depth_times, color_times, MAX_DIFFERENCE_S)
+    alone = np.flatnonzero(partner < 0)
+    left_out = [depth_names[i] for i in alone]
+    if alone.size:
+        found.miss(
+            f"{alone.size} of {len(depth_names)} depth images have no colour image within "
+            f"{MAX_DIFFERENCE_S * 1000:g} ms ({show_first(left_out, 3)}).",
+            options.allow_gaps,
+            allowed="They are left out.",
+            refused="Allow gaps to leave them out.",
+            ask="They can be left out.",
+        )
+    kept = np.flatnonzero(partner >= 0)
+    if not kept.size:
+        raise ImportRefusedError("No depth image has a colour image close in time; do both lists use the same clock?")
+    used = set(partner[kept].tolist())
+    if unused := [name for index, name in enumerate(color_names) if index not in used]:
+        found.warn(f"{len(unused)} of {len(color_names)} colour images belong to no depth image and are left out.")
+    lag = np.abs(depth_times[kept] - color_times[partner[kept]]) * 1000
+    found.warn(f"Colour is up to {lag.max():.1f} ms away from depth (median {np.median(lag):.1f} ms).")
+    return _Pairs(
+        depth=tuple(depth_names[i] for i in kept),
+        color=tuple(color_names[i] for i in partner[kept]),
+        times=depth_times[kept],
+        left_out=(*left_out, *unused),
+    )
 
 
 def associate(first: npt.NDArray[np.float64], second: npt.NDArray[np.float64], most: float) -> npt.NDArray[np.int64]:
@@ -153,6 +160,8 @@ def _choose_camera(options: ImportOptions) -> ImportOptions:
 
 def _read_list(files: ListedFiles, name: str) -> tuple[npt.NDArray[np.float64], list[str]]:
     """Times (N,) s, ascending, and names of a list file."""
+    if name not in files.names:
+        raise ImportRefusedError(f"{name} is missing; a TUM RGB-D folder lists its images in rgb.txt and depth.txt.")
     data = read_regular_file(files.path(name), MAX_LIST_BYTES, ImportRefusedError)
     entries: list[tuple[float, str]] = []
     for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), 1):

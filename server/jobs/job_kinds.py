@@ -12,6 +12,8 @@ from server.jobs import service
 from server.jobs.calibrating import find_calibrate_obstacles, make_calibrate_job
 from server.jobs.create_jobs import make_loop_job, make_register_job, make_train_job
 from server.jobs.models import JobRow
+from server.jobs.moving import find_moving_obstacles, make_moving_job
+from server.jobs.moving_schemas import RegisterMovingCreate
 from server.jobs.obstacles import find_detect_obstacles, find_register_obstacles, find_track_obstacles
 from server.jobs.scan_choice import list_loop_scans
 from server.jobs.schemas import (
@@ -25,7 +27,9 @@ from server.jobs.schemas import (
 from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles
 from server.storage import Storage
 
-OneKindCreate = JobCreate | DetectCreate | RegisterCreate | TrainCreate | LoopCreate | CalibrateCreate
+OneKindCreate = (
+    JobCreate | DetectCreate | RegisterCreate | TrainCreate | LoopCreate | CalibrateCreate | RegisterMovingCreate
+)
 
 
 def start_job(session: Session, storage: Storage, asked: OneKindCreate, account_id: uuid.UUID) -> JobRow:
@@ -43,6 +47,8 @@ def _make(session: Session, storage: Storage, asked: OneKindCreate, account_id: 
             return make_train_job(session, storage, asked, account_id)
         case LoopCreate():
             return make_loop_job(session, storage, asked, account_id)
+        case RegisterMovingCreate():
+            return make_moving_job(session, storage, asked, account_id)
         case CalibrateCreate():
             get_calibration(session, asked.calibration_id)
             return make_calibrate_job(session, storage, asked.calibration_id, account_id)
@@ -63,6 +69,8 @@ def find_obstacles(session: Session, storage: Storage, asked: OneKindCreate) -> 
             return find_train_obstacles(session, storage, asked)
         case LoopCreate():
             return find_loop_obstacles(session, storage, asked, list_loop_scans(session, asked))
+        case RegisterMovingCreate():
+            return find_moving_obstacles(session, storage, asked)
         case CalibrateCreate():
             return find_calibrate_obstacles(session, storage, asked.calibration_id)
         case DetectCreate():

@@ -10,9 +10,10 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, StrictBool, Ta
 
 from server.database.numbers import Whole
 from server.database.texts import Label, Name
+from server.jobs.moving_schemas import RegisterMovingJobCreate
 from server.registrations.training_set_schemas import TrainingRule
 
-JobKind = Literal["track", "detect", "register", "train", "loop", "calibrate"]
+JobKind = Literal["track", "detect", "register", "train", "loop", "calibrate", "register_moving"]
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
@@ -170,7 +171,8 @@ AnyJobCreate = Annotated[
     | Annotated[CalibrateJobCreate, Tag("calibrate")]
     | Annotated[RegisterJobCreate, Tag("register")]
     | Annotated[TrainJobCreate, Tag("train")]
-    | Annotated[LoopJobCreate, Tag("loop")],
+    | Annotated[LoopJobCreate, Tag("loop")]
+    | Annotated[RegisterMovingJobCreate, Tag("register_moving")],
     Discriminator(_read_kind),
 ]
 """What a job of any kind is to do."""
@@ -218,6 +220,7 @@ class JobOut(BaseModel):
     state: JobState
     title: str = Field(description="The recording as it is called now, or what else it is about.")
     sequence_id: uuid.UUID | None = Field(description="The recording of a job that tracks or detects.")
+    moving_scan_id: uuid.UUID | None = Field(description="The moving scan of a job that registers one.")
     track_id: uuid.UUID | None = Field(description="What a tracking job produced.")
     hand_model_id: uuid.UUID | None = Field(description="What training produced, the last model of a loop.")
     params: dict[str, Any]

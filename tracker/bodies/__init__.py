@@ -7,9 +7,23 @@ from typing import TYPE_CHECKING
 from tracker.lazy_names import offer
 
 if TYPE_CHECKING:
-    from tracker.model.body_hands import body_pose
+    from tracker.bodies.body_registration import (
+        BodyRegistration,
+        load_body_registration,
+        save_body_registration,
+    )
+    from tracker.bodies.body_scan_file import find_body_unit, load_body_scan
+    from tracker.bodies.follow_body import BodyFollower, FollowOptions
+    from tracker.bodies.register_body import Registrar
+    from tracker.bodies.template import (
+        choose_template_frames,
+        make_own_model,
+        register_for_template,
+        without_shape,
+    )
+    from tracker.model.body_hands import body_hand, body_pose
     from tracker.model.body_model import body_model
-    from tracker.model.body_motion import BodyMotion, load_body_motion
+    from tracker.model.body_motion import BodyMotion, load_body_motion, save_body_motion
     from tracker.model.mano_writer import smplx_vertex_ids
 
 __getattr__, __dir__ = offer(__name__)

@@ -27,6 +27,20 @@ def load_body_scan(path: Path, metres_per_unit: float | None = None) -> tuple[Sc
         ScanError: No scan, or of a size that no person has; names the file.
     """
     scan = read_scan(path)
+    return scan.scaled(find_body_unit(path, scan, metres_per_unit)), metres_per_unit is None
+
+
+def find_body_unit(path: Path, scan: Scan, metres_per_unit: float | None = None) -> float:
+    """Metres per unit of a scan of a person: as somebody says, or the only one that a person's size leaves.
+
+    Args:
+        path: For the message.
+        scan: In the unit of its file.
+        metres_per_unit: As somebody says.
+
+    Raises:
+        ScanError: The scan has a size that no person has, or a size that leaves the unit open.
+    """
     length = float(measure_size(scan.points)[0])
     if metres_per_unit is not None:
         if not (np.isfinite(metres_per_unit) and metres_per_unit > 0.0):
@@ -34,10 +48,10 @@ def load_body_scan(path: Path, metres_per_unit: float | None = None) -> tuple[Sc
         if not BODY_LENGTHS[0] <= length * metres_per_unit <= BODY_LENGTHS[1]:
             found = f"a scan {write_length(length * metres_per_unit)} long with 1 unit = {1e3 * metres_per_unit:.6g} mm"
             raise ScanError(path, found, f"{NEEDED}; correct its unit (metres per unit) or crop it")
-        return scan.scaled(metres_per_unit), False
+        return metres_per_unit
     possible = {name: metres for name, metres in UNITS.items() if BODY_LENGTHS[0] <= length * metres <= BODY_LENGTHS[1]}
     if len(possible) != 1:
         lengths = " or ".join(f"{write_length(length * metres)} in {name}" for name, metres in possible.items())
         found = f"a size of {length:.4g} units (longest side)" + (f", which may be {lengths}" if lengths else "")
         raise ScanError(path, found, f"{NEEDED}, in m, cm, mm or inches; say its unit (metres per unit) or crop it")
-    return scan.scaled(next(iter(possible.values()))), True
+    return next(iter(possible.values()))

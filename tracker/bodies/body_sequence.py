@@ -20,7 +20,12 @@ from tracker.bodies.body_registration import (
 from tracker.bodies.body_scan_file import load_body_scan
 from tracker.bodies.follow_body import BodyFollower, FollowOptions
 from tracker.bodies.register_body import Registrar
-from tracker.bodies.template import make_template
+from tracker.bodies.template import (
+    choose_template_frames,
+    make_own_model,
+    register_for_template,
+    without_shape,
+)
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan import Scan
 from tracker.errors import RegistrationError, ScanError, TrackerError
@@ -142,8 +147,7 @@ def _begin(sequence: Sequence, follower: BodyFollower, frame: int, scan: Scan) -
     folder = sequence.out / TEMPLATES / f"{frame:06d}"
     if not (folder / BODY_FILE).is_file():
         return follower.begin(scan)
-    known = load_body_registration(folder)
-    return follower.begin(scan, replace(known.state, shape=np.zeros(0)))
+    return follower.begin(scan, without_shape(load_body_registration(folder)))
 
 
 def _run_chunk(job: tuple[Sequence, BlendModel, int]) -> int:
@@ -192,9 +196,9 @@ def _own_model(sequence: Sequence, model: BlendModel, tell: Progress) -> BlendMo
     if path.is_file():
         return load_blend_model(path)
     registrar: Registrar | None = None
-    span = min(sequence.options.template_span, len(sequence))
-    count = min(sequence.options.template_frames, span)
-    chosen = np.unique(np.linspace(0, span - 1, count).astype(int))
+    chosen = choose_template_frames(
+        range(len(sequence)), sequence.options.template_frames, sequence.options.template_span
+    )
     found: list[BodyRegistration] = []
     for number, frame in enumerate(chosen):
         tell(0.1 * number / len(chosen), f"template, frame {frame}")
@@ -202,22 +206,13 @@ def _own_model(sequence: Sequence, model: BlendModel, tell: Progress) -> BlendMo
         if (folder / BODY_FILE).is_file():
             found.append(load_body_registration(folder))
             continue
-        scan = _read(sequence, int(frame))
+        scan = _read(sequence, frame)
         if scan is None:
             continue
         registrar = registrar or Registrar(model)
-        start = found[-1].state if found and found[-1].verdict != "bad" else None
-        registration = registrar.register(scan, start)
-        if registration.verdict == "bad" and start is not None:
-            registration = registrar.register(scan)
-        save_body_registration(registration, model.faces, folder)
-        found.append(registration)
-    good = [each for each in found if each.verdict != "bad"]
-    if not good:
-        why = "; ".join(found[0].reasons) if found else "none of its scans can be read"
-        raise TrackerError(f"No frame of the sequence shows one whole person: {why}.")
-    own = make_template(model, good)
-    save_blend_model(own, path)
+        found.append(register_for_template(registrar, scan, found[-1] if found else None))
+        save_body_registration(found[-1], model.faces, folder)
+    save_blend_model(make_own_model(model, found), path)
     return load_blend_model(path)  # as a run that goes on reads it: to the last bit the same
 
 

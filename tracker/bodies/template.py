@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from tracker.bodies.body_registration import BodyRegistration
+from tracker.bodies.body_state import BodyState
+from tracker.bodies.register_body import Registrar
+from tracker.capture.scan import Scan
+from tracker.errors import TrackerError
 from tracker.model.blend_model import BlendModel
 from tracker.model.body_hands import body_hand
 
@@ -50,3 +55,41 @@ def make_template(model: BlendModel, registrations: list[BodyRegistration]) -> B
         shape_directions=np.zeros((len(template), 3, 0)),
         provenance=provenance,
     )
+
+
+TEMPLATE_FRAMES, TEMPLATE_SPAN = 6, 50
+"""So many frames, spread over the first 50, in which the person is mostly still ([R17] 4.3), make the template."""
+
+
+def choose_template_frames(frames: Sequence[int], count: int = TEMPLATE_FRAMES, span: int = TEMPLATE_SPAN) -> list[int]:
+    """At most `count` frames, spread over the first `span` of those given."""
+    early = frames[:span]
+    places = np.unique(np.linspace(0, len(early) - 1, min(count, len(early))).astype(int))
+    return [early[place] for place in places]
+
+
+def register_for_template(registrar: Registrar, scan: Scan, before: BodyRegistration | None) -> BodyRegistration:
+    """A scan of the person from where the one before ended; without a start where that leads nowhere."""
+    start = before.state if before is not None and before.verdict != "bad" else None
+    registration = registrar.register(scan, start)
+    if registration.verdict == "bad" and start is not None:
+        registration = registrar.register(scan)
+    return registration
+
+
+def make_own_model(model: BlendModel, found: list[BodyRegistration]) -> BlendModel:
+    """The person's model from those registrations that show one whole person.
+
+    Raises:
+        TrackerError: None does; says why the first does not.
+    """
+    good = [each for each in found if each.verdict != "bad"]
+    if not good:
+        why = "; ".join(found[0].reasons) if found else "none of its scans can be read"
+        raise TrackerError(f"No frame of the sequence shows one whole person: {why}.")
+    return make_template(model, good)
+
+
+def without_shape(registration: BodyRegistration) -> BodyState:
+    """Where the person's own model begins that was made from the registration: the same pose, and no shape to find."""
+    return replace(registration.state, shape=np.zeros(0))

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 
 from tracker.bodies.body_registration import BodyRegistration
 from tracker.bodies.body_state import BodyState, hand_space, make_state
-from tracker.bodies.template import make_template, unpose
+from tracker.bodies.template import (
+    choose_template_frames,
+    make_own_model,
+    make_template,
+    unpose,
+    without_shape,
+)
+from tracker.errors import TrackerError
 from tracker.model.body_hands import body_hand
 from tracker.model.body_model import body_model
 
@@ -34,3 +44,25 @@ def test_a_template_leaves_out_hands_that_no_scan_shows_and_has_no_shape_left() 
     own = make_template(body_model(), found)
     assert own.num_shape == 0
     assert np.abs(own.template - body_model().shaped(found[0].state.shape)).max() < 1e-9
+
+
+def test_a_registration_that_is_bad_has_no_part_in_the_person_s_model_and_bad_ones_alone_make_none() -> None:
+    bad = replace(registered(2, spoilt=(0, 1)), verdict="bad", reasons=("the scan shows only part of a person",))
+    own = make_own_model(body_model(), [bad, registered(1)])
+    assert np.abs(own.template - body_model().shaped(0.5 * np.ones(body_model().num_shape))).max() < 1e-9
+    for found, why in (([bad], "only part of a person"), ([], "none of its scans can be read")):
+        with pytest.raises(TrackerError, match=why):
+            make_own_model(body_model(), found)
+
+
+def test_the_frames_of_the_template_are_spread_over_those_at_the_beginning() -> None:
+    assert choose_template_frames(range(200)) == [0, 9, 19, 29, 39, 49]
+    assert choose_template_frames([0, 2, 7]) == [0, 2, 7]
+    assert choose_template_frames([4, 5, 8, 9], count=1) == [4]
+    assert choose_template_frames([]) == []
+
+
+def test_the_person_s_own_model_begins_in_the_pose_that_was_found_and_with_no_shape() -> None:
+    each = registered(1)
+    state = without_shape(each)
+    assert len(state.shape) == 0 and np.array_equal(state.pose, each.state.pose)

@@ -32,6 +32,9 @@ WORDS = {
     "jobs": "job",
     "registrations": "registration",
     "decisions": "decision",
+    "moving_registrations": "registration of frames",
+    "frame_registrations": "registered frame",
+    "stretch_decisions": "decision about frames",
 }
 """What is told of what goes too; revisions, log lines and such go unnamed with what they are of."""
 
@@ -40,6 +43,9 @@ FOLDERS = {
     "tracks": "tracks",
     "scans": "scans",
     "registrations": "registrations",
+    "moving_scans": "moving_scans",
+    "moving_registrations": "moving_registrations",
+    "frame_registrations": "frame_registrations",
     "hand_models": "models",
     "detectors": "detectors",
     "calibrations": "calibrations",
@@ -48,11 +54,12 @@ FOLDERS = {
 }
 DOCUMENTS = {"label_snapshots": "snapshots"}
 
-GO_TOO = {("jobs", "sequence_id"), ("imports", "sequence_id")}
+GO_TOO = {("jobs", "sequence_id"), ("imports", "sequence_id"), ("jobs", "moving_scan_id")}
 """Columns that may be empty, of rows that mean nothing without what they name. Other such columns are emptied."""
 
 NEEDS = {
     ("training_members", "registration_id"): "a training set was made from {word} of it",
+    ("body_sets", "moving_scan_id"): "accepted frames of it are kept in a set",
     ("registrations", "model_id"): "registrations were made with it",
     ("decisions", "model_id"): "decisions were made about registrations by it",
     ("hand_models", "parent_id"): "a newer hand model was trained from it",

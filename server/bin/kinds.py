@@ -20,6 +20,8 @@ from server.detectors.models import DetectorRow
 from server.detectors.service import AREA as DETECTOR_AREA
 from server.hand_models.models import HandModelRow
 from server.hand_models.service import AREA as HAND_MODEL_AREA
+from server.moving_scans.adding import AREA as MOVING_SCAN_AREA
+from server.moving_scans.models import MovingScanRow
 from server.scans.models import ScanRow
 from server.scans.service import AREA as SCAN_AREA
 from server.sequences.models import SequenceRow
@@ -74,6 +76,7 @@ BIN_KINDS: tuple[BinKind, ...] = (
     make_kind("recording", "recording", SequenceRow, RECORDING_AREA),
     make_kind("track", "track", TrackRow, TRACK_AREA, ("recording", TrackRow.sequence_id)),
     make_kind("scan", "scan", ScanRow, SCAN_AREA),
+    make_kind("moving_scan", "moving scan", MovingScanRow, MOVING_SCAN_AREA),
     make_kind("hand_model", "hand model", HandModelRow, HAND_MODEL_AREA),
     make_kind("detector", "fingertip detector", DetectorRow, DETECTOR_AREA),
     make_kind("calibration", "camera calibration", CalibrationRow, CALIBRATION_AREA),

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
 from server.hand_models.models import HandModelRow
+from server.moving_scans.models import MovingScanRow
 from server.scans.models import ScanRow
 from server.sequences.models import SequenceRow
 from server.tracks.models import TrackRow
@@ -29,6 +30,7 @@ class JobRow(Base):
         Index(None, "sequence_id"),
         Index(None, "updated_at"),
         Index(None, "batch_id"),
+        Index(None, "moving_scan_id"),
         CheckConstraint("state IN ('queued', 'running', 'succeeded', 'failed', 'cancelled')", name="state"),
     )
 
@@ -36,6 +38,8 @@ class JobRow(Base):
     state: Mapped[str] = mapped_column(String(10), default="queued")
     sequence_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(SequenceRow.id))
     """Of a job that tracks or detects."""
+    moving_scan_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(MovingScanRow.id))
+    """Of a job that registers one."""
     track_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(TrackRow.id))
     """What a tracking job produced."""
     hand_model_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey(HandModelRow.id))

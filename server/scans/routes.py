@@ -91,11 +91,11 @@ async def create_scans(
     request: Request, database: DatabaseDep, storage: StorageDep, summaries: SummariesDep, account_id: AccountIdDep
 ) -> ScansAdded:
     """Upload scans. Each file is judged by itself; one sent again is not kept twice."""
-    limits = _read_limits(request)
+    limits = read_limits(request)
 
     def work(folder: Path, upload: Upload) -> ScansAdded:
         options = parse_options(upload.fields.get("options", ""))
-        source = _unpack(folder, upload, limits)
+        source = unpack_upload(folder, upload, limits)
         done = add_scans(database, storage, source, options, account_id, moves=True)
         with database.reading() as session:
             return ScansAdded(
@@ -111,22 +111,23 @@ async def create_scans(
 @router.post("/measure", responses=error_responses(413, 507), openapi_extra=_BODY, dependencies=[Depends(require_lead)])
 async def measure_scans(request: Request, storage: StorageDep, compute: ComputeDep) -> ScansMeasured:
     """How large scans would be, in which units: the files of an upload are looked at, and nothing is stored."""
-    limits = _read_limits(request)
+    limits = read_limits(request)
     return await work_on_upload(
         request,
         storage,
         UPLOADS,
         limits,
-        lambda folder, upload: compute.ask(computing.measure_folder, _unpack(folder, upload, limits)),
+        lambda folder, upload: compute.ask(computing.measure_folder, unpack_upload(folder, upload, limits)),
     )
 
 
-def _read_limits(request: Request) -> UploadLimits:
+def read_limits(request: Request) -> UploadLimits:
+    """What the settings let an upload bring."""
     settings = request.app.state.settings
     return UploadLimits(settings.max_upload_files, settings.max_upload_bytes)
 
 
-def _unpack(folder: Path, upload: Upload, limits: UploadLimits) -> Path:
+def unpack_upload(folder: Path, upload: Upload, limits: UploadLimits) -> Path:
     """The folder with the files of an upload, those of a zip when it is one."""
     if len(upload.names) != 1 or not upload.names[0].lower().endswith(".zip"):
         return folder

@@ -101,8 +101,8 @@ def database_kind(request: pytest.FixtureRequest) -> str:
 
 
 POSTGRESQL_IN_PROOFS = {
-    "app", "client", "evaluations", "exchange", "hand_models", "imports", "quality", "registrations", "scans",
-    "sequences", "suggestions", "tracks", "training_sets",
+    "app", "client", "evaluations", "exchange", "hand_models", "imports", "moving_scans", "quality", "registrations",
+    "scans", "sequences", "suggestions", "tracks", "training_sets",
 }  # fmt: skip
 """Rooms that read more than they write. Where many write at once (labels, jobs, people), `make test` has both."""
 

@@ -30,7 +30,7 @@ def test_a_kind_is_found_by_the_name_that_the_audit_trail_has(kind: BinKind) -> 
 
 
 def test_an_unknown_kind_is_refused_with_those_that_there_are() -> None:
-    with pytest.raises(NotFoundError, match="recording, track, scan, hand_model"):
+    with pytest.raises(NotFoundError, match="recording, track, scan, moving_scan, hand_model"):
         find_kind("dream")
 
 

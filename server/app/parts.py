@@ -27,6 +27,7 @@ from server.imports.lifespan import clean_imports
 from server.jobs import old_routes as old_jobs
 from server.jobs import routes as jobs
 from server.live import routes as live
+from server.moving_scans import body_set_routes as body_sets
 from server.moving_scans import registration_routes as moving_registrations
 from server.moving_scans import routes as moving_scans
 from server.quality import queue_routes as quality_queue
@@ -90,6 +91,7 @@ ROUTERS: tuple[APIRouter, ...] = (
     bodies.router,
     moving_scans.router,
     moving_registrations.router,
+    body_sets.router,
     bin_routes.router,
 )
 """All under `/api/v1`, looked through in this order at each request: what is asked most stands first."""

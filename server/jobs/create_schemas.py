@@ -9,6 +9,7 @@ from pydantic import Discriminator, Tag
 from server.jobs.calibrate_schemas import CalibrateJobCreate
 from server.jobs.detect_schemas import DetectJobCreate
 from server.jobs.loop_schemas import LoopJobCreate
+from server.jobs.moving_schemas import RegisterMovingJobCreate
 from server.jobs.register_schemas import RegisterJobCreate
 from server.jobs.track_schemas import JobCreate
 from server.jobs.train_schemas import TrainJobCreate
@@ -25,7 +26,8 @@ AnyJobCreate = Annotated[
     | Annotated[CalibrateJobCreate, Tag("calibrate")]
     | Annotated[RegisterJobCreate, Tag("register")]
     | Annotated[TrainJobCreate, Tag("train")]
-    | Annotated[LoopJobCreate, Tag("loop")],
+    | Annotated[LoopJobCreate, Tag("loop")]
+    | Annotated[RegisterMovingJobCreate, Tag("register_moving")],
     Discriminator(_read_kind),
 ]
 """What a job of any kind is to do."""

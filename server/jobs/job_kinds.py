@@ -15,6 +15,8 @@ from server.jobs.create_jobs import make_loop_job, make_register_job, make_train
 from server.jobs.detect_schemas import DetectCreate
 from server.jobs.loop_schemas import LoopCreate
 from server.jobs.models import JobRow
+from server.jobs.moving import find_moving_obstacles, make_moving_job
+from server.jobs.moving_schemas import RegisterMovingCreate
 from server.jobs.obstacles import find_detect_obstacles, find_register_obstacles, find_track_obstacles
 from server.jobs.register_schemas import RegisterCreate
 from server.jobs.scan_choice import list_loop_scans
@@ -23,7 +25,9 @@ from server.jobs.train_schemas import TrainCreate
 from server.jobs.training_obstacles import find_loop_obstacles, find_train_obstacles
 from server.storage import Storage
 
-OneKindCreate = JobCreate | DetectCreate | RegisterCreate | TrainCreate | LoopCreate | CalibrateCreate
+OneKindCreate = (
+    JobCreate | DetectCreate | RegisterCreate | TrainCreate | LoopCreate | CalibrateCreate | RegisterMovingCreate
+)
 
 
 def start_job(session: Session, storage: Storage, asked: OneKindCreate, account_id: uuid.UUID) -> JobRow:
@@ -41,6 +45,8 @@ def _make(session: Session, storage: Storage, asked: OneKindCreate, account_id: 
             return make_train_job(session, storage, asked, account_id)
         case LoopCreate():
             return make_loop_job(session, storage, asked, account_id)
+        case RegisterMovingCreate():
+            return make_moving_job(session, storage, asked, account_id)
         case CalibrateCreate():
             get_calibration(session, asked.calibration_id)
             return make_calibrate_job(session, storage, asked.calibration_id, account_id)
@@ -61,6 +67,8 @@ def find_obstacles(session: Session, storage: Storage, asked: OneKindCreate) -> 
             return find_train_obstacles(session, storage, asked)
         case LoopCreate():
             return find_loop_obstacles(session, storage, asked, list_loop_scans(session, asked))
+        case RegisterMovingCreate():
+            return find_moving_obstacles(session, storage, asked)
         case CalibrateCreate():
             return find_calibrate_obstacles(session, storage, asked.calibration_id)
         case DetectCreate():

@@ -11,6 +11,8 @@ from server.jobs.create_jobs import list_job_scans
 from server.jobs.files import JobFiles
 from server.jobs.loop_schemas import LoopCreate
 from server.jobs.models import JobRow
+from server.jobs.moving import KIND as MOVING
+from server.jobs.moving import find_moving_obstacles, read_moving
 from server.jobs.obstacles import find_detect_obstacles, find_model_obstacles, find_track_obstacles, make_check
 from server.jobs.schemas import RestartCheck
 from server.jobs.train_schemas import TrainCreate
@@ -35,6 +37,8 @@ def find_restart_obstacles(session: Session, storage: Storage, job: JobRow) -> l
     if job.kind == "detect":
         assert job.sequence_id is not None, "a detecting job has a recording"
         return find_detect_obstacles(session, job.sequence_id)
+    if job.kind == MOVING:
+        return find_moving_obstacles(session, storage, read_moving(job))
     if job.kind == KIND:
         return find_calibrate_obstacles(session, storage, read_calibration_id(job), again=True)
     if job.kind == "register":
@@ -54,6 +58,8 @@ def list_kept(storage: Storage, job: JobRow) -> list[str]:
     """What a job has done so far, for people; a step that was broken off does not count."""
     if job.kind == "track":
         return _list_kept_of_tracking(storage, job)
+    if job.kind == MOVING:
+        return _list_kept_of_moving(storage, job)
     if job.kind == "detect":
         return _list_kept_frames(JobFiles(storage.folder("jobs", job.id), storage.remote_folder("jobs", job.id)))
     kept: list[str] = []
@@ -67,6 +73,14 @@ def list_kept(storage: Storage, job: JobRow) -> list[str]:
     elif stages := len(list(storage.folder("jobs", job.id).glob("train-*.json"))):
         kept.append("1 stage of the training" if stages == 1 else f"{stages} stages of the training")
     return kept
+
+
+def _list_kept_of_moving(storage: Storage, job: JobRow) -> list[str]:
+    """The person's model, or frames of it, and the registered frames."""
+    if job.frames_done > 0:
+        return ["the person's own model", say_count(job.frames_done, "registered frame")]
+    frames = len(list(storage.folder("jobs", job.id).glob("template-*.json")))
+    return [f"{say_count(frames, 'frame')} of the person's own model"] if frames else []
 
 
 def _list_kept_of_tracking(storage: Storage, job: JobRow) -> list[str]:

@@ -42,7 +42,8 @@ EVENT_STREAM: dict[int | str, dict[str, Any]] = {
 @router.post("/jobs", status_code=201, responses=error_responses(404))
 def create_job(body: AnyJobCreate, session: SessionDep, storage: StorageDep, account: ReviewerAccount) -> JobOut:
     """Queue a job of the `kind` that the body names: `track` and `detect` a recording, `calibrate` cameras from films,
-    `register` scans, `train` a hand model, or `loop`: register, choose, train and register again."""
+    `register` scans, `register_moving` a moving scan, `train` a hand model, or `loop`: register, choose, train
+    and register again."""
     return describe_job(session, start_job(session, storage, body, account.id))
 
 
@@ -86,12 +87,13 @@ def list_jobs(
     state: Annotated[list[JobState], Query(description="One or several.")] = [],  # noqa: B006 (FastAPI copies it)
     created_by: uuid.UUID | None = None,
     batch_id: uuid.UUID | None = None,
+    moving_scan_id: uuid.UUID | None = None,
     search: Annotated[str | None, Query(max_length=200, description="Words of its title.")] = None,
     cursor: Cursor = None,
     limit: Limit = 100,
 ) -> Page[JobOut]:
     """Jobs, the newest first."""
-    wanted = service.JobFilter(sequence_id, state, created_by, batch_id, search, kind)
+    wanted = service.JobFilter(sequence_id, state, created_by, batch_id, search, kind, moving_scan_id)
     rows, next_cursor = service.list_jobs(session, wanted, cursor, limit)
     return Page(items=describe_jobs(session, rows), next_cursor=next_cursor)
 

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-JobKind = Literal["track", "detect", "register", "train", "loop", "calibrate"]
+JobKind = Literal["track", "detect", "register", "train", "loop", "calibrate", "register_moving"]
 JobState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
@@ -46,6 +46,7 @@ class JobOut(BaseModel):
     state: JobState
     title: str = Field(description="The recording as it is called now, or what else it is about.")
     sequence_id: uuid.UUID | None = Field(description="The recording of a job that tracks or detects.")
+    moving_scan_id: uuid.UUID | None = Field(description="The moving scan of a job that registers one.")
     track_id: uuid.UUID | None = Field(description="What a tracking job produced.")
     hand_model_id: uuid.UUID | None = Field(description="What training produced, the last model of a loop.")
     params: dict[str, Any]

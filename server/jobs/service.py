@@ -21,9 +21,9 @@ from server.jobs.models import ENDED_STATES, JobLogRow, JobRow, WorkerRow
 from server.sequences.models import SequenceRow
 from server.sequences.service import get_sequence
 
-KINDS = ("track", "detect", "register", "train", "loop", "calibrate")
-FRAME_KINDS = ("track", "detect")
-"""Those that go through the frames of a recording."""
+KINDS = ("track", "detect", "register", "train", "loop", "calibrate", "register_moving")
+FRAME_KINDS = ("track", "detect", "register_moving")
+"""Those that go through the frames of a recording, or of a moving scan."""
 
 HAND_MODEL = "hand_model_id"
 DETECTOR = "detector_id"
@@ -63,6 +63,7 @@ class JobFilter:
         batch_id: Of one batch.
         search: Words that the name of the recording, or the title, holds, upper and lower case alike.
         kind: Of this kind.
+        moving_scan_id: Of one moving scan.
     """
 
     sequence_id: UUID | None = None
@@ -71,6 +72,7 @@ class JobFilter:
     batch_id: UUID | None = None
     search: str | None = None
     kind: str | None = None
+    moving_scan_id: UUID | None = None
 
     def apply(self, query: Select[Any]) -> Select[Any]:
         for column, wanted in (
@@ -78,6 +80,7 @@ class JobFilter:
             (JobRow.kind, self.kind),
             (JobRow.created_by, self.created_by),
             (JobRow.batch_id, self.batch_id),
+            (JobRow.moving_scan_id, self.moving_scan_id),
         ):
             if wanted is not None:
                 query = query.where(column == wanted)
@@ -106,6 +109,7 @@ def create_job(
     batch_id: UUID | None = None,
     retry_of: UUID | None = None,
     title: str = "",
+    moving_scan_id: UUID | None = None,
 ) -> JobRow:
     """Queue a job. A worker finds it as soon as the transaction is committed."""
     if kind not in KINDS:
@@ -118,6 +122,7 @@ def create_job(
         created_by=created_by,
         batch_id=batch_id,
         retry_of=retry_of,
+        moving_scan_id=moving_scan_id,
     )
     session.add(job)
     session.flush()
@@ -213,6 +218,7 @@ def retry_job(session: Session, job_id: UUID, created_by: UUID | None = None) ->
         batch_id=job.batch_id,
         retry_of=job.id,
         title=job.title,
+        moving_scan_id=job.moving_scan_id,
     )
 
 

@@ -7,6 +7,7 @@ from uuid import UUID
 
 from server.jobs.calibrate_workflow import register_calibrate_workflow
 from server.jobs.detect_workflow import register_detect_workflow
+from server.jobs.moving_workflow import register_moving_workflow
 from server.jobs.run import WorkerContext
 from server.jobs.scan_workflow import register_scan_workflows
 from server.jobs.track_workflow import register_track_workflow
@@ -31,5 +32,6 @@ def register_workflows(context: WorkerContext) -> dict[str, Workflow]:
         "track": register_track_workflow(context),
         "detect": register_detect_workflow(context),
         "calibrate": register_calibrate_workflow(context),
+        "register_moving": register_moving_workflow(context),
         **register_scan_workflows(context),
     }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import uuid
 from collections.abc import Sequence
 
 from sqlalchemy import func, select
@@ -19,7 +18,7 @@ def describe_moving_scans(session: Session, rows: Sequence[MovingScanRow]) -> li
     ids = [row.id for row in rows]
     counted = select(MovingRegistrationRow.moving_scan_id, func.count()).group_by(MovingRegistrationRow.moving_scan_id)
     counted = counted.where(MovingRegistrationRow.moving_scan_id.in_(ids))
-    made: dict[uuid.UUID, int] = {id_: count for id_, count in session.execute(counted)}
+    made = {row[0]: row[1] for row in session.execute(counted)}
     accepted = count_accepted(session, ids)
     people = find_names(session, (row.created_by for row in rows))
     own = ("id", "name", "subject", "fps", "frame_count", "usable_count", "byte_count", "metres_per_unit")

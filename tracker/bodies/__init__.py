@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from tracker.bodies.register_body import Registrar
     from tracker.bodies.template import (
         choose_template_frames,
+        find_shape,
         make_own_model,
         register_for_template,
         without_shape,

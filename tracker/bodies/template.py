@@ -93,3 +93,17 @@ def make_own_model(model: BlendModel, found: list[BodyRegistration]) -> BlendMod
 def without_shape(registration: BodyRegistration) -> BodyState:
     """Where the person's own model begins that was made from the registration: the same pose, and no shape to find."""
     return replace(registration.state, shape=np.zeros(0))
+
+
+def find_shape(model: BlendModel, own: BlendModel, weight: float = 1e-6) -> Array:
+    """(S,) coefficients of a body that come nearest to a person's own template, for programs that know no template.
+
+    Args:
+        model: The body that the template was made from.
+        own: The person's.
+        weight: Of the coefficients' squares against squared distances of vertices, m².
+    """
+    directions = model.shape_directions.reshape(-1, model.num_shape)
+    apart = (own.template - model.template).reshape(-1)
+    found = np.linalg.solve(directions.T @ directions + weight * np.eye(model.num_shape), directions.T @ apart)
+    return np.asarray(found, dtype=np.float64)

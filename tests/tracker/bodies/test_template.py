@@ -11,6 +11,7 @@ from tracker.bodies.body_registration import BodyRegistration
 from tracker.bodies.body_state import BodyState, hand_space, make_state
 from tracker.bodies.template import (
     choose_template_frames,
+    find_shape,
     make_own_model,
     make_template,
     unpose,
@@ -66,3 +67,10 @@ def test_the_person_s_own_model_begins_in_the_pose_that_was_found_and_with_no_sh
     each = registered(1)
     state = without_shape(each)
     assert len(state.shape) == 0 and np.array_equal(state.pose, each.state.pose)
+
+
+def test_the_shape_that_a_template_was_made_with_is_found_again() -> None:
+    model = body_model()
+    shape = np.random.default_rng(3).standard_normal(model.num_shape)
+    own = replace(model, template=model.shaped(shape), shape_directions=np.zeros((len(model.template), 3, 0)))
+    assert np.abs(find_shape(model, own) - shape).max() < 0.02, "standard deviations"

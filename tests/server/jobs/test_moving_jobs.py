@@ -1,0 +1,135 @@
+"""Jobs that register a moving scan: a killed worker loses one frame at most, and another prior goes on from a frame."""
+
+from __future__ import annotations
+
+import itertools
+import uuid
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sqlalchemy import select
+
+from server.access.models import LOCAL_ACCOUNT_ID
+from server.compute import Compute
+from server.jobs.moving import make_moving_job
+from server.jobs.moving_run import FAILED
+from server.jobs.moving_schemas import RegisterMovingCreate
+from server.jobs.restarting import list_kept
+from server.moving_scans.adding import add_moving_scan
+from server.moving_scans.models import FrameRegistrationRow, MovingRegistrationRow
+from server.moving_scans.schemas import MovingScanOptions
+from server.moving_scans.storing import AREA, TEMPLATE, TEMPLATES
+from server.scans.geometry import unpack_arrays
+from tests.server.jobs.scan_bench import ScanBench, bench
+from tests.server.moving_scans.moving import MovingPerson, moving_person
+from tracker.bodies import BodyRegistration, load_body_registration
+
+__all__ = ["bench", "moving_person"]
+
+
+def add(bench: ScanBench, person: MovingPerson, folder: Path) -> uuid.UUID:
+    """The three frames, and a broken file between the first and the second."""
+    folder.mkdir()
+    for name, data in person.files.items():
+        (folder / name).write_bytes(data)
+    (folder / "frame0b.ply").write_bytes(b"ply\nnothing\n")
+    compute = Compute(bench.settings, bench.database, bench.storage)
+    row, _ = add_moving_scan(
+        bench.database, bench.storage, compute, folder, "moving", MovingScanOptions(), LOCAL_ACCOUNT_ID
+    )
+    compute.close()
+    assert [frame["problem"] is None for frame in row.frames] == [True, False, True, True]
+    return row.id
+
+
+def find_frames(bench: ScanBench, job_id: uuid.UUID) -> tuple[MovingRegistrationRow, list[FrameRegistrationRow]]:
+    with bench.database.reading() as session:
+        row = session.scalars(select(MovingRegistrationRow).where(MovingRegistrationRow.job_id == job_id)).one()
+        query = select(FrameRegistrationRow).where(FrameRegistrationRow.registration_id == row.id)
+        return row, list(session.scalars(query.order_by(FrameRegistrationRow.frame)))
+
+
+def load(bench: ScanBench, row: FrameRegistrationRow) -> BodyRegistration:
+    return load_body_registration(bench.storage.folder(AREA, row.id))
+
+
+@pytest.mark.slow
+def test_a_killed_job_goes_on_at_its_frame_and_one_with_another_prior_goes_on_from_there(
+    bench: ScanBench, moving_person: MovingPerson, tmp_path: Path
+) -> None:
+    scan_id = add(bench, moving_person, tmp_path / "walking")
+    worker = bench.start_worker()
+    asked = RegisterMovingCreate(moving_scan_id=scan_id, template_frames=1)
+    job_id = bench.make(make_moving_job, asked)
+    bench.wait(job_id, lambda job: job.frames_done >= 1, 240.0)
+    bench.kill(worker)
+    before = find_frames(bench, job_id)[1]
+    kept = list_kept(bench.storage, bench.job(job_id))
+    assert kept == ["the person's own model", f"{len(before)} registered frame" + "s" * (len(before) > 1)]
+    bench.start_worker()
+    job = bench.wait_for_end(job_id)
+    assert (job.frames_done, job.frames_total, job.progress, job.moving_scan_id) == (3, 3, 1.0, scan_id)
+    assert any("going on after the last finished step" in line for line in bench.log(job_id))
+    assert any("1 frame left out, whose file cannot be used" in line for line in bench.log(job_id))
+
+    made, frames = find_frames(bench, job_id)
+    assert [row.frame for row in frames] == [0, 2, 3]
+    assert {row.id: row.created_at for row in before}.items() <= {row.id: row.created_at for row in frames}.items()
+    assert [(row.has_left, row.has_right) for row in frames] == [(True, True), (True, True), (False, True)]
+    for row, body in zip(frames, moving_person.bodies, strict=True):
+        found = load(bench, row)
+        apart = 1e3 * np.linalg.norm(found.vertices - body.true_vertices, axis=1)
+        assert apart[body.is_seen].mean() < 6.0 and row.scan_to_mesh_mm["mean"] < 2.0
+        view, _ = unpack_arrays((bench.storage.folder(AREA, row.id) / "body.view").read_bytes())
+        np.testing.assert_allclose(view["vertices"], found.vertices, atol=1e-6)
+        assert np.nanmean(view["point_error_mm"]) == pytest.approx(row.scan_to_mesh_mm["mean"], rel=0.05)
+        assert view["guessed"].any() == (not row.has_left)
+        assert np.isnan(view["vertex_error_mm"][view["guessed"] == 1]).all()
+    assert (bench.storage.folder(TEMPLATES, made.id) / TEMPLATE).is_file()
+
+    again = RegisterMovingCreate(moving_scan_id=scan_id, parent_id=made.id, first_frame=2, prior="gaussian")
+    other_id = bench.make(make_moving_job, again)
+    bench.wait_for_end(other_id)
+    other, others = find_frames(bench, other_id)
+    assert (other.parent_id, other.template_id, other.prior, other.first_frame) == (made.id, made.id, "gaussian", 2)
+    assert [row.frame for row in others] == [2, 3] and all(row.verdict != FAILED for row in others)
+    one, two = load(bench, frames[1]), load(bench, others[0])
+    apart = 1e3 * np.linalg.norm(one.vertices - two.vertices, axis=1).mean()
+    assert 0.0 < apart < 10.0, "another prior, from the same frame before"
+    assert not bench.storage.folder("jobs", job_id).exists(), "working files go when the job has ended"
+    assert bench.job(other_id).title.endswith("frames 2 to 3, on from registration 1, Gaussian prior")
+
+
+def test_what_cannot_be_registered_is_refused_before_it_is_queued(
+    bench: ScanBench, moving_person: MovingPerson, tmp_path: Path
+) -> None:
+    scan_id = add(bench, moving_person, tmp_path / "walking")
+    nobody = uuid.uuid4()
+    refused = {
+        "has no frame 4; it has 0 to 3": {"last_frame": 4},
+        "lies behind the last one": {"first_frame": 3, "last_frame": 2},
+        "None of the frames 1 to 1": {"first_frame": 1, "last_frame": 1},
+        f"There is no registration {nobody}": {"parent_id": nobody},
+        f"moving scan {nobody} does not exist": {"moving_scan_id": nobody},
+    }
+    for told, asked in refused.items():
+        with pytest.raises(Exception, match=told):
+            bench.make(make_moving_job, RegisterMovingCreate(**{"moving_scan_id": scan_id, **asked}))
+
+
+def test_a_moving_job_is_made_over_the_api_listed_by_its_scan_cancelled_and_retried(studio, moving_person) -> None:
+    from tests.server.moving_scans.moving import add as send
+
+    scan = send(studio, dict(itertools.islice(moving_person.files.items(), 2)))
+    body = {"kind": "register_moving", "moving_scan_id": scan["id"], "prior": "none"}
+    check = studio.client.post("/api/v1/jobs/check", json=body).json()
+    assert check["can_start"], check
+    job = studio.client.post("/api/v1/jobs", json=body).json()
+    assert (job["unit"], job["moving_scan_id"], job["title"]) == ("frames", scan["id"], "Moving scan, no prior")
+    assert studio.client.post(f"/api/v1/jobs/{job['id']}/cancel").json()["state"] == "cancelled"
+    again = studio.client.post(f"/api/v1/jobs/{job['id']}/retry").json()
+    assert (again["moving_scan_id"], again["params"], again["retry_of"]) == (scan["id"], job["params"], job["id"])
+    listed = studio.client.get("/api/v1/jobs", params={"moving_scan_id": scan["id"]}).json()["items"]
+    assert {each["id"] for each in listed} == {job["id"], again["id"]}
+    assert studio.client.post("/api/v1/jobs", json={**body, "prior": "wish"}).status_code == 422

@@ -118,6 +118,7 @@ export function takeIn(client: QueryClient, job: Job): void {
   void client.invalidateQueries({ queryKey: jobKeys.lists }); // it may be in other lists now
   void client.invalidateQueries({ queryKey: jobKeys.batches });
   if (!isActive(job)) {
+    if (job.moving_scan_id) void client.invalidateQueries({ queryKey: ["moving-scans"] });
     const changed = { scans: ["scans", "registrations", "hand-models", "training-sets", "lineage"], cameras: ["calibrations"], frames: ["tracks"] }[job.unit];
     for (const key of changed) void client.invalidateQueries({ queryKey: [key] });
     void client.invalidateQueries({ queryKey: recordingKeys.all });

@@ -71,7 +71,7 @@ export function formatPicture(name: string): string {
   return film === undefined ? file : `Frame ${frame} of ${film}`;
 }
 
-const JOB_WORDS: Record<string, string> = { detect: "Find hands in", calibrate: "Calibrate" };
+const JOB_WORDS: Record<string, string> = { detect: "Find hands in", calibrate: "Calibrate", register_moving: "Register" };
 
 /** What a job does, before the name of what it does it to: "Track", "Find hands in". */
 export const formatJobKind = (kind: string): string => JOB_WORDS[kind] ?? formatName(kind);

@@ -1,6 +1,6 @@
 /** Every key of the app: one table drives the handlers, the help overlay and the conflict check. */
 
-export type Scope = "everywhere" | "annotate" | "track" | "curate" | "scan";
+export type Scope = "everywhere" | "annotate" | "track" | "curate" | "scan" | "moving";
 
 export interface KeyBinding {
   readonly id: string;
@@ -154,6 +154,36 @@ export const KEYMAP = [
     ["scan.previous", "Previous scan", "Left"],
   ]),
   ...handKeys("scan", "Hand of a scan"),
+  ...table("moving", "Moving scan", [
+    ["moving.play", "Play or pause", "Space"],
+    ["moving.next", "Next frame", "F", "Right"],
+    ["moving.previous", "Previous frame", "D", "Left"],
+    ["moving.forward", "10 frames on", "V"],
+    ["moving.backward", "10 frames back", "C"],
+    ["moving.first", "First frame", "Home"],
+    ["moving.last", "Last frame", "End"],
+    ["moving.nextDoubt", "Next frame that is not good", "N"],
+    ["moving.previousDoubt", "Previous frame that is not good", "Shift+N"],
+    ["moving.begin", "The stretch begins here", "I"],
+    ["moving.end", "The stretch ends here", "O"],
+    ["moving.accept", "Accept the stretch", "A"],
+    ["moving.reject", "Reject the stretch", "R"],
+    ["moving.undo", "Undo your last decision", "Z", "Backspace"],
+    ["moving.rerun", "Register again from here with another prior", "G"],
+    ["moving.errors", "Error colours on or off", "E"],
+    ["moving.wireframe", "Wireframe on or off", "W"],
+    ["moving.layers", "Scan, body, or both", "Tab"],
+    ["moving.turntable", "Turntable on or off", "T"],
+    ["moving.whole", "The whole person, from the side they are first seen from", "P"],
+    ["moving.behind", "The whole person from behind", "B"],
+    ["moving.turnLeft", "Turn left", "Shift+Left"],
+    ["moving.turnRight", "Turn right", "Shift+Right"],
+    ["moving.turnUp", "Turn up", "Shift+Up"],
+    ["moving.turnDown", "Turn down", "Shift+Down"],
+    ["moving.nearer", "Nearer", "+", "="],
+    ["moving.farther", "Farther", "-"],
+    ["moving.leave", "Leave the picture for the tools", "Esc"],
+  ]),
 ] as const satisfies readonly KeyBinding[];
 
 /** Keys that the browser or the system keeps for itself. */

@@ -20,6 +20,8 @@ const CuratePage = lazy(() => import("./curate/CuratePage"));
 const ReviewAgreementPage = lazy(() => import("./curate/ReviewAgreementPage"));
 const ScansPage = lazy(() => import("./scans/ScansPage"));
 const ScanPage = lazy(() => import("./scans/ScanPage"));
+const MovingScansPage = lazy(() => import("./moving/MovingScansPage"));
+const MovingScanPage = lazy(() => import("./moving/MovingScanPage"));
 const ModelsPage = lazy(() => import("./models/ModelsPage"));
 const ModelPage = lazy(() => import("./models/ModelPage"));
 const BodyPage = lazy(() => import("./body/BodyPage"));
@@ -66,6 +68,8 @@ export const router = createBrowserRouter([
           { path: "tracks", element: <TracksPage /> },
           { path: "tracks/:trackId", element: <TrackPage /> },
           { path: "scans", element: <ScansPage /> },
+          { path: "scans/moving", element: <MovingScansPage /> },
+          { path: "scans/moving/:movingScanId", element: <MovingScanPage /> },
           { path: "scans/:scanId", element: <ScanPage /> },
           { path: "curate", element: <CuratePage /> },
           { path: "curate/agreement", element: <ReviewAgreementPage /> },

@@ -21,6 +21,10 @@ export interface HandGeometry {
   readonly side: "right" | "left" | null;
   /** Turns the scan so that fingers point up and the palm faces the viewer, quaternion xyzw. */
   readonly upright: readonly [number, number, number, number];
+  /** What the eye is to see; left out, the mesh or else the scan. */
+  readonly box?: Box;
+  /** About how far points lie apart, m; left out, it is measured. */
+  readonly spacing?: number;
 }
 
 export interface Box {

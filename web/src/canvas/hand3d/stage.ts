@@ -26,6 +26,8 @@ export interface Stage {
   prepare: (geometry: HandGeometry) => Staged;
   /** Draw this hand from now on; null draws nothing. Returns when it is drawn. */
   show: (hand: Staged | null) => void;
+  /** Draw what is shown after it was renewed. */
+  refresh: () => void;
   setLook: (look: Look) => void;
   lookFrom: (side: ViewSide) => void;
   /** Degrees to the right and up. */
@@ -75,10 +77,10 @@ export function createStage(canvas: HTMLCanvasElement, onDrawn: () => void): Sta
   }
 
   function applyLook(hand: Staged): void {
-    const hasMesh = hand.mesh !== null;
+    const hasMesh = hand.hasMesh();
     hand.scan.visible = look.layers !== "mesh" || !hasMesh;
-    if (hand.mesh) hand.mesh.visible = look.layers !== "scan";
-    if (hand.wireframe) hand.wireframe.visible = look.hasWireframe && look.layers !== "scan";
+    if (hand.mesh) hand.mesh.visible = hasMesh && look.layers !== "scan";
+    if (hand.wireframe) hand.wireframe.visible = hasMesh && look.hasWireframe && look.layers !== "scan";
     if (look.hasCorrespondences || hand.hasLines()) {
       const lines = hand.lines();
       if (lines) lines.visible = look.hasCorrespondences;
@@ -89,7 +91,7 @@ export function createStage(canvas: HTMLCanvasElement, onDrawn: () => void): Sta
     cancelAnimationFrame(frame);
     frame = 0;
     uniforms.grow.value = shown?.mesh?.visible ? 0.55 : 1.3;
-    uniforms.hasErrors.value = look.hasErrors && shown?.geometry.mesh ? 1 : 0;
+    uniforms.hasErrors.value = look.hasErrors && shown?.hasMesh() ? 1 : 0;
     renderer.render(scene, camera);
     onDrawn();
   }
@@ -141,6 +143,10 @@ export function createStage(canvas: HTMLCanvasElement, onDrawn: () => void): Sta
         }
         controls.update();
       }
+      draw();
+    },
+    refresh() {
+      if (shown) applyLook(shown);
       draw();
     },
     setLook(next) {

@@ -21,10 +21,14 @@ export interface Staged {
   /** Of what is shown, m. */
   readonly radius: number;
   readonly geometry: HandGeometry;
+  /** Whether there is a mesh to be seen now. */
+  hasMesh: () => boolean;
   /** 1 for points of the scan to be shown as taken away. */
   take: (taken: Uint8Array) => void;
   /** Put the mesh's vertices elsewhere; what is in the middle stays. */
   move: (positions: Float32Array) => void;
+  /** Another frame in the place of this one; the eye stays. The mesh has the same triangles, or there is none. */
+  renew: (scan: Surface, mesh: Surface | null) => void;
   release: () => void;
 }
 
@@ -39,6 +43,26 @@ function bufferOf({ positions, normals, colors, index, errorMm, taken }: Surface
   made.setAttribute("taken", new BufferAttribute(taken?.slice() ?? new Uint8Array(count), 1));
   if (index) made.setIndex(new BufferAttribute(index, 1));
   return made;
+}
+
+/** Other values for an attribute; its buffer is kept where they fit in. */
+function refill(buffer: BufferGeometry, name: string, values: Float32Array | Int8Array | Uint8Array, size: number): void {
+  const held = buffer.getAttribute(name) as BufferAttribute;
+  if (held.array.constructor !== values.constructor || held.array.length < values.length) {
+    buffer.setAttribute(name, new BufferAttribute(values, size, held.normalized));
+    return;
+  }
+  held.array.set(values);
+  held.needsUpdate = true;
+}
+
+function renewBuffer(buffer: BufferGeometry, { positions, normals, colors, errorMm }: Surface): void {
+  const count = positions.length / 3;
+  refill(buffer, "position", positions, 3);
+  refill(buffer, "normal", normals ?? new Int8Array(3 * count), 3);
+  refill(buffer, "tint", colors ?? new Uint8Array(3 * count), 3);
+  refill(buffer, "errorMm", errorMm ?? new Float32Array(count).fill(-1), 1);
+  if (!buffer.index) buffer.setDrawRange(0, count);
 }
 
 function wiresOf({ positions, index }: Surface): LineSegments | null {
@@ -68,16 +92,17 @@ function linesOf({ positions: points }: Surface, { positions, index }: Surface):
 
 export function stageHand(geometry: HandGeometry, uniforms: Uniforms): Staged {
   const { scan: scanned, mesh: fitted, side, upright } = geometry;
-  const scanMaterial = createMaterial(uniforms, { plain: SCAN_COLOR, isPoint: !scanned.index, hasTint: scanned.colors !== null, radius: spacingOf(scanned.positions) });
+  const scanMaterial = createMaterial(uniforms, { plain: SCAN_COLOR, isPoint: !scanned.index, hasTint: scanned.colors !== null, radius: geometry.spacing ?? spacingOf(scanned.positions) });
   const scanBuffer = bufferOf(scanned);
   const scan = scanned.index ? new Mesh(scanBuffer, scanMaterial) : new Points(scanBuffer, scanMaterial);
-  const mesh = fitted && new Mesh(bufferOf(fitted), createMaterial(uniforms, { plain: HAND_COLORS[side ?? "right"], isPoint: false, hasTint: false, radius: 0 }));
+  const mesh = fitted && new Mesh(bufferOf(fitted), createMaterial(uniforms, { plain: HAND_COLORS[side ?? "right"], isPoint: false, hasTint: fitted.colors !== null, radius: 0 }));
   const wireframe = fitted && wiresOf(fitted);
   const parts: (Points | Mesh | LineSegments)[] = [scan, mesh, wireframe].flatMap((part) => part ?? []);
   let lines: LineSegments | null = null;
+  let isMeshThere = mesh !== null;
 
   // With a mesh the hand is in the middle, not the hand with its forearm and whatever it holds.
-  const box = boxOf(fitted?.positions ?? scanned.positions);
+  const box = geometry.box ?? boxOf(fitted?.positions ?? scanned.positions);
   const root = new Group();
   const inner = new Group();
   inner.position.copy(new Vector3(...box.centre).negate());
@@ -94,6 +119,7 @@ export function stageHand(geometry: HandGeometry, uniforms: Uniforms): Staged {
     scan,
     mesh,
     wireframe,
+    hasMesh: () => isMeshThere,
     lines() {
       if (lines || !fitted) return lines;
       lines = linesOf(scanned, fitted);
@@ -121,6 +147,13 @@ export function stageHand(geometry: HandGeometry, uniforms: Uniforms): Staged {
           if (attribute) attribute.needsUpdate = true;
         }
       }
+    },
+    renew(nextScan, nextMesh) {
+      renewBuffer(scanBuffer, nextScan);
+      isMeshThere = mesh !== null && nextMesh !== null;
+      if (!mesh || !nextMesh) return;
+      renewBuffer(mesh.geometry, nextMesh);
+      if (wireframe) refill(wireframe.geometry, "position", nextMesh.positions, 3);
     },
     release() {
       for (const part of parts) {

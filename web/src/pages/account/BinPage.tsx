@@ -16,6 +16,7 @@ const KINDS = [
   { value: "recording", label: "Recordings" },
   { value: "track", label: "Tracks" },
   { value: "scan", label: "Scans" },
+  { value: "moving_scan", label: "Moving scans" },
   { value: "hand_model", label: "Hand models" },
   { value: "detector", label: "Fingertip detectors" },
   { value: "calibration", label: "Camera calibrations" },

@@ -36,7 +36,7 @@ const TURN_DEG = 15;
 const SIDES: readonly ViewSide[] = ["back", "thumb", "little"];
 
 /** What the keys of a hand in 3D do. */
-export function handHandlers(scope: "curate" | "scan", stage: Stage | null, { look, change, nextLayers }: LookControl): Handlers {
+export function handHandlers(scope: "curate" | "scan" | "moving", stage: Stage | null, { look, change, nextLayers }: LookControl): Handlers {
   const named: Handlers = {
     errors: () => change({ hasErrors: !look.hasErrors }),
     wireframe: () => change({ hasWireframe: !look.hasWireframe }),

@@ -69,6 +69,11 @@ export function JobActions({ job, restart, isHere = false }: { job: Job; restart
           Open the calibration
         </Button>
       )}
+      {job.moving_scan_id && !isHere && (
+        <Button size="xs" variant={isActive(job) ? "default" : "filled"} component={Link} to={`/scans/moving/${job.moving_scan_id}?job=${job.id}`}>
+          Open the moving scan
+        </Button>
+      )}
       {job.hand_model_id && (
         <Button size="xs" variant={isActive(job) ? "default" : "filled"} component={Link} to={`/models/${job.hand_model_id}`}>
           Open the model

@@ -16,6 +16,7 @@ import { Thumbnail } from "../parts/Thumbnail";
 import { useTitle } from "../parts/useTitle";
 import { intoBin } from "../parts/undo";
 import { AddScansButton, ScanDrops } from "./AddScans";
+import { ScanKinds } from "./ScanKinds";
 import { RegisterDialog } from "./RegisterDialog";
 import classes from "./ScansPage.module.css";
 import { UnitsDialog } from "./UnitsDialog";
@@ -107,6 +108,12 @@ export default function ScansPage() {
       <>
         <ScanDrops />
         <UploadDialog />
+        <div className="page">
+          <Group gap="md">
+            <Title order={1}>Scans</Title>
+            <ScanKinds here="/scans" />
+          </Group>
+        </div>
         <EmptyState icon={<IconScan size={56} stroke={1.25} />} title="No scans yet" action={<AddScansButton label="Add the first scans" />}>
           Drop PLY, OBJ or STL files, a folder of them or a .zip anywhere on this page. Then register them: a hand model is fitted to each, you accept or reject, and what you accept trains a better model.
         </EmptyState>
@@ -118,8 +125,9 @@ export default function ScansPage() {
       <ScanDrops />
       <UploadDialog />
       <Group mb="md" justify="space-between" wrap="nowrap">
-        <Group align="baseline" gap="md" wrap="nowrap">
+        <Group gap="md" wrap="nowrap">
           <Title order={1}>Scans</Title>
+          <ScanKinds here="/scans" />
           {data && known && <span className="quiet">{formatCount(total, "scan")}</span>}
         </Group>
         <Group gap="sm" wrap="nowrap">

@@ -1,6 +1,6 @@
 /** Moving scans: uploaded, registered frame by frame, decided about by stretch, kept. */
 
-import { keepPreviousData, useInfiniteQuery, useMutation, useQuery, useQueryClient, type QueryClient } from "@tanstack/react-query";
+import { keepPreviousData, useInfiniteQuery, useMutation, useQueries, useQuery, useQueryClient, type QueryClient } from "@tanstack/react-query";
 import type { Surface } from "../canvas/hand3d/geometry";
 import { refreshAfterDelete } from "./afterDelete";
 import { API, fetchBytes, request, upload } from "./client";
@@ -66,13 +66,19 @@ export const useMovingRegistrations = (id: string, isGrowing: boolean) =>
     refetchInterval: isGrowing ? REFRESH_MS : false,
   });
 
-export const useRegisteredFrames = (id: string, registration: string | undefined, isGrowing: boolean) =>
-  useQuery({
-    queryKey: [...movingKeys.one(id), "frames", registration],
-    queryFn: async () => (await request<Schemas["FrameRegistrations"]>("GET", `/moving-registrations/${registration}/frames`)).frames,
-    enabled: registration !== undefined,
-    refetchInterval: isGrowing ? REFRESH_MS : false,
+/** Frames of some registrations, one list for each, as far as they are there. */
+export const useRegisteredFrames = (id: string, registrations: readonly string[], isGrowing: boolean): readonly (readonly FrameRegistration[])[] =>
+  useQueries({
+    queries: registrations.map((registration) => ({
+      queryKey: [...movingKeys.one(id), "frames", registration],
+      queryFn: async () => (await request<Schemas["FrameRegistrations"]>("GET", `/moving-registrations/${registration}/frames`)).frames,
+      refetchInterval: isGrowing ? REFRESH_MS : (false as const),
+    })),
+    combine: listFound,
   });
+
+const NONE: readonly FrameRegistration[] = [];
+const listFound = (results: readonly { data: readonly FrameRegistration[] | undefined }[]) => results.map(({ data }) => data ?? NONE);
 
 export const useStretchDecisions = (id: string) =>
   useQuery({
@@ -155,6 +161,8 @@ export const bodySetUrl = (id: string): string => `${API}/body-sets/${id}/archiv
 export interface FrameGeometry {
   readonly scan: Surface;
   readonly mesh: Surface | null;
+  /** That the body is of. */
+  readonly registration: string | null;
 }
 
 /** What nothing was compared with comes as not-a-number and goes to the 3D view as -1. */
@@ -186,7 +194,7 @@ export async function fetchFrame(scan: string, frame: number, registration: stri
     errorMm: body ? knownErrors(body["point_error_mm"] as Float32Array) : null,
     taken: null,
   };
-  if (!body) return { scan: points, mesh: null };
+  if (!body) return { scan: points, mesh: null, registration };
   const mesh: Surface = {
     positions: body["vertices"] as Float32Array,
     normals: body["normals"] as Int8Array,
@@ -195,5 +203,5 @@ export async function fetchFrame(scan: string, frame: number, registration: stri
     errorMm: knownErrors(body["vertex_error_mm"] as Float32Array),
     taken: null,
   };
-  return { scan: points, mesh };
+  return { scan: points, mesh, registration };
 }

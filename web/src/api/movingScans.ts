@@ -21,9 +21,6 @@ export type AcceptedFrames = Schemas["AcceptedFrames"];
 export type BodySet = Schemas["BodySetOut"];
 export type Prior = MovingRegistration["prior"];
 
-/** How a moving scan is registered; what is left out is as the server has it. */
-export type RegisterMovingWish = Pick<Schemas["RegisterMovingJobCreate"], "moving_scan_id"> & Partial<Schemas["RegisterMovingJobCreate"]>;
-
 export interface MovingScanOptions {
   name?: string;
   subject?: string;
@@ -120,14 +117,6 @@ export function useKeepAccepted(id: string) {
   return useMutation({
     mutationFn: (name: string) => request<BodySet>("POST", "/body-sets", { body: { moving_scan_id: id, name } }),
     onSettled: () => refresh(client, id),
-  });
-}
-
-export function useStartMoving() {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: (wish: RegisterMovingWish) => request<Job>("POST", "/jobs", { body: { ...wish, kind: "register_moving" } }),
-    onSuccess: () => client.invalidateQueries({ queryKey: jobKeys.all }),
   });
 }
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from server.compute import ComputeContext
 from server.scans.geometry import choose_points, pack_scan
-from server.scans.thumbnails import draw_thumbnail
+from server.scans.thumbnails import SIZE_PX, draw_picture
 from server.storage.digest import compute_digest
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 VIEW_POINTS = 20_000
 """Points of a frame that the browser draws."""
 THUMBNAIL = "thumbnail.png"
+CLEARLY = 1.2
+"""A person stands along z where the scan is so many times as long along it as along y."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,8 @@ def _read_one(folder: Path, frame: int, file: str, metres_per_unit: float | None
     view = pack_scan(scan.points, scan.normals, scan.colors, flags, VIEW_POINTS, digest)
     find_view(folder, frame).write_bytes(view)
     if not (folder / THUMBNAIL).exists():
-        (folder / THUMBNAIL).write_bytes(draw_thumbnail(scan, flags == 0, digest))
+        picture, _ = draw_picture(scan, flags == 0, digest, SIZE_PX, find_standing(scan.points))
+        (folder / THUMBNAIL).write_bytes(picture)
     low, high = scan.points.min(axis=0).tolist(), scan.points.max(axis=0).tolist()
     return FrameRead(digest, len(scan.points), unit, tuple(low), tuple(high))
 
@@ -89,3 +92,15 @@ def _read_one(folder: Path, frame: int, file: str, metres_per_unit: float | None
 def choose_view_points(scan: Scan, digest: str) -> np.ndarray:
     """Indices of the points of a scan that its view has; `digest` is that of its file."""
     return choose_points(len(scan.points), VIEW_POINTS, digest)
+
+
+def find_standing(points: np.ndarray) -> np.ndarray:
+    """(3, 3) rotation whose rows are right, up, towards the eye, of a person (N, 3): y is up, or z where the person is
+    clearly longer along it; the broad side looks at the eye. As the browser has it in `standing.ts`."""
+    size = np.ptp(points, axis=0)
+    up = np.eye(3)[2 if size[2] > CLEARLY * size[1] else 1]
+    flat = points - points.mean(axis=0)
+    flat = flat - np.outer(flat @ up, up)
+    right = np.linalg.eigh(flat.T @ flat)[1][:, 2]
+    right = right if right[0] >= 0.0 else -right
+    return np.stack([right, up, np.cross(right, up)])

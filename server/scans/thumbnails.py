@@ -24,15 +24,17 @@ def draw_thumbnail(scan: Scan, is_kept: npt.NDArray[np.bool_], digest: str) -> b
     return draw_picture(scan, is_kept, digest, SIZE_PX)[0]
 
 
-def draw_picture(scan: Scan, is_kept: npt.NDArray[np.bool_], digest: str, size_px: int) -> tuple[bytes, float]:
+def draw_picture(
+    scan: Scan, is_kept: npt.NDArray[np.bool_], digest: str, size_px: int, turn: Array | None = None
+) -> tuple[bytes, float]:
     """Such a picture of `size_px` a side, and the length of a side in the unit of the scan's points. Far points are
-    drawn first, so that near ones hide them."""
+    drawn first, so that near ones hide them. `turn` (3, 3) is as `find_upright` gives it, which is asked otherwise."""
     kept = np.flatnonzero(is_kept)
     chosen = kept[choose_points(len(kept), MOST_POINTS, digest)]
     image = np.zeros((size_px, size_px, 4), dtype=np.uint8)
     side = 0.0
     if len(chosen):
-        turn = find_upright(scan.points[chosen])
+        turn = find_upright(scan.points[chosen]) if turn is None else turn
         points = (scan.points[chosen] - scan.points[chosen].mean(axis=0)) @ turn.T
         facing = scan.normals[chosen] @ turn[2]
         colors = np.full((len(chosen), 3), PLAIN) if scan.colors is None else scan.colors[chosen]

@@ -142,7 +142,7 @@ def test_a_moving_scan_is_registered_looked_at_and_curated_by_stretch(
     dialog.get_by_text("No prior").click()
     dialog.get_by_label("Last frame").fill("2")
     dialog.get_by_role("button", name="Register", exact=True).click()
-    choice = page.get_by_role("textbox", name="Registration")
+    choice = page.get_by_role("combobox", name="Registration", exact=True)
     expect(choice).to_have_value("2: no prior, frames 2 to 2", timeout=60_000)
     expect(page.get_by_role("region", name="The job")).to_have_count(0, timeout=120_000)
     page.get_by_role("button", name="Accept").click()

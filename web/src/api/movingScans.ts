@@ -1,6 +1,6 @@
 /** Moving scans: uploaded, registered frame by frame, decided about by stretch, kept. */
 
-import { keepPreviousData, useInfiniteQuery, useMutation, useQuery, useQueryClient, type QueryClient } from "@tanstack/react-query";
+import { keepPreviousData, useInfiniteQuery, useMutation, useQueries, useQuery, useQueryClient, type QueryClient } from "@tanstack/react-query";
 import type { Surface } from "../canvas/hand3d/geometry";
 import { refreshAfterDelete } from "./afterDelete";
 import { API, fetchBytes, request, upload } from "./client";
@@ -20,9 +20,6 @@ export type StretchDecision = Schemas["StretchDecisionOut"];
 export type AcceptedFrames = Schemas["AcceptedFrames"];
 export type BodySet = Schemas["BodySetOut"];
 export type Prior = MovingRegistration["prior"];
-
-/** How a moving scan is registered; what is left out is as the server has it. */
-export type RegisterMovingWish = Pick<Schemas["RegisterMovingJobCreate"], "moving_scan_id"> & Partial<Schemas["RegisterMovingJobCreate"]>;
 
 export interface MovingScanOptions {
   name?: string;
@@ -66,13 +63,19 @@ export const useMovingRegistrations = (id: string, isGrowing: boolean) =>
     refetchInterval: isGrowing ? REFRESH_MS : false,
   });
 
-export const useRegisteredFrames = (id: string, registration: string | undefined, isGrowing: boolean) =>
-  useQuery({
-    queryKey: [...movingKeys.one(id), "frames", registration],
-    queryFn: async () => (await request<Schemas["FrameRegistrations"]>("GET", `/moving-registrations/${registration}/frames`)).frames,
-    enabled: registration !== undefined,
-    refetchInterval: isGrowing ? REFRESH_MS : false,
+/** Frames of some registrations, one list for each, as far as they are there. */
+export const useRegisteredFrames = (id: string, registrations: readonly string[], isGrowing: boolean): readonly (readonly FrameRegistration[])[] =>
+  useQueries({
+    queries: registrations.map((registration) => ({
+      queryKey: [...movingKeys.one(id), "frames", registration],
+      queryFn: async () => (await request<Schemas["FrameRegistrations"]>("GET", `/moving-registrations/${registration}/frames`)).frames,
+      refetchInterval: isGrowing ? REFRESH_MS : (false as const),
+    })),
+    combine: listFound,
   });
+
+const NONE: readonly FrameRegistration[] = [];
+const listFound = (results: readonly { data: readonly FrameRegistration[] | undefined }[]) => results.map(({ data }) => data ?? NONE);
 
 export const useStretchDecisions = (id: string) =>
   useQuery({
@@ -117,14 +120,6 @@ export function useKeepAccepted(id: string) {
   });
 }
 
-export function useStartMoving() {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: (wish: RegisterMovingWish) => request<Job>("POST", "/jobs", { body: { ...wish, kind: "register_moving" } }),
-    onSuccess: () => client.invalidateQueries({ queryKey: jobKeys.all }),
-  });
-}
-
 export function useDeleteMovingScan() {
   const client = useQueryClient();
   return useMutation({
@@ -155,6 +150,8 @@ export const bodySetUrl = (id: string): string => `${API}/body-sets/${id}/archiv
 export interface FrameGeometry {
   readonly scan: Surface;
   readonly mesh: Surface | null;
+  /** That the body is of. */
+  readonly registration: string | null;
 }
 
 /** What nothing was compared with comes as not-a-number and goes to the 3D view as -1. */
@@ -186,7 +183,7 @@ export async function fetchFrame(scan: string, frame: number, registration: stri
     errorMm: body ? knownErrors(body["point_error_mm"] as Float32Array) : null,
     taken: null,
   };
-  if (!body) return { scan: points, mesh: null };
+  if (!body) return { scan: points, mesh: null, registration };
   const mesh: Surface = {
     positions: body["vertices"] as Float32Array,
     normals: body["normals"] as Int8Array,
@@ -195,5 +192,5 @@ export async function fetchFrame(scan: string, frame: number, registration: stri
     errorMm: knownErrors(body["vertex_error_mm"] as Float32Array),
     taken: null,
   };
-  return { scan: points, mesh };
+  return { scan: points, mesh, registration };
 }

@@ -15,11 +15,13 @@ type WithOptions<Body> = Omit<Body, "options"> & { options?: Partial<Schemas["Tr
 export type RegisterWish = Asked<Schemas["RegisterJobCreate"]>;
 export type TrainWish = WithOptions<Asked<Schemas["TrainJobCreate"], "name">>;
 export type LoopWish = WithOptions<Asked<Schemas["LoopJobCreate"], "name">>;
+export type RegisterMovingWish = Asked<Schemas["RegisterMovingJobCreate"], "moving_scan_id">;
 export type JobWish =
   | Asked<Schemas["JobCreate"], "sequence_id">
   | Asked<Schemas["DetectJobCreate"], "sequence_id">
   | Asked<Schemas["CalibrateJobCreate"], "calibration_id">
   | RegisterWish
+  | RegisterMovingWish
   | TrainWish
   | LoopWish;
 
@@ -28,6 +30,7 @@ const CHANGED: Record<JobWish["kind"], readonly string[]> = {
   track: [],
   detect: [],
   calibrate: ["calibrations"],
+  register_moving: ["moving-scans"],
   register: ["registrations", "hand-models"],
   train: ["registrations", "hand-models"],
   loop: ["registrations", "hand-models"],

@@ -3,7 +3,6 @@ import type { FrameRegistration, MovingRegistration, MovingScan } from "../../ap
 import { formatNumber } from "../../model/format";
 import { DecisionBadge, VerdictBadge } from "../curate/Verdict";
 import classes from "./Moving.module.css";
-import { PRIORS } from "./priors";
 
 const mm = (value: number | null): string => (value === null ? "–" : `${formatNumber(value, 2)} mm`);
 
@@ -11,11 +10,14 @@ interface FramePanelProps {
   scan: MovingScan;
   frame: number;
   found: FrameRegistration | undefined;
+  /** The registration that it was found in. */
+  foundIn: MovingRegistration | undefined;
+  /** The chosen one. */
   registration: MovingRegistration | undefined;
 }
 
-/** What is known of the frame that is shown, and of the registration that it is of. */
-export function FramePanel({ scan, frame, found, registration }: FramePanelProps) {
+/** What is known of the frame that is shown. */
+export function FramePanel({ scan, frame, found, foundIn, registration }: FramePanelProps) {
   const problem = scan.problems.find((one) => one.frame === frame);
   return (
     <section aria-label="The frame">
@@ -27,7 +29,7 @@ export function FramePanel({ scan, frame, found, registration }: FramePanelProps
       )}
       {!problem && !found && (
         <Text size="xs" className="quiet">
-          {registration ? "Not registered here." : "Not registered yet."}
+          {registration ? `Registration ${registration.number} does not have it${registration.frames_done > 0 ? "" : " yet"}.` : "Not registered yet."}
         </Text>
       )}
       {found && (
@@ -46,30 +48,24 @@ export function FramePanel({ scan, frame, found, registration }: FramePanelProps
           ))}
         </ul>
       )}
-      <dl className={classes.facts} style={{ marginTop: 8 }}>
-        {found && (
-          <>
+      {found && (
+        <dl className={classes.facts} style={{ marginTop: 8 }}>
+          <div className={classes.row}>
             <dt>Scan to body, mean</dt>
             <dd>{mm(found.mean_mm)}</dd>
+          </div>
+          <div className={classes.row}>
             <dt>95 % below</dt>
             <dd>{mm(found.p95_mm)}</dd>
-          </>
-        )}
-        {registration && (
-          <>
-            <dt>Registration {registration.number}</dt>
-            <dd>{PRIORS[registration.prior].label}</dd>
-            <dt>Mean of its frames</dt>
-            <dd>{mm(registration.scan_to_mesh_mm)}</dd>
-            <dt>Good, doubtful, bad</dt>
-            <dd>{(["good", "doubtful", "bad"] as const).map((name) => registration.verdicts[name] ?? 0).join(", ")}</dd>
-            <dt>Guessed left, right</dt>
-            <dd>{(["left", "right"] as const).map((hand) => registration.guessed[hand] ?? 0).join(", ")}</dd>
-            <dt>Made</dt>
-            <dd>{[registration.created_by_name, new Date(registration.created_at).toLocaleString()].filter(Boolean).join(", ")}</dd>
-          </>
-        )}
-      </dl>
+          </div>
+          {foundIn && foundIn.id !== registration?.id && (
+            <div className={classes.row}>
+              <dt>Of</dt>
+              <dd>registration {foundIn.number}, which {registration?.number} goes on from</dd>
+            </div>
+          )}
+        </dl>
+      )}
     </section>
   );
 }

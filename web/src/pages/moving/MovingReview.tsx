@@ -3,7 +3,7 @@ import { useCallback, useMemo, useRef, useState } from "react";
 import { useSearchParams } from "react-router";
 import { useKeymap } from "../../actions/useKeymap";
 import { isActive } from "../../api/jobs";
-import { useMovingJobs, useMovingRegistrations, useRegisteredFrames, type FrameRegistration, type MovingScan } from "../../api/movingScans";
+import { useMovingJobs, useMovingRegistrations, type MovingScan } from "../../api/movingScans";
 import { useStage } from "../../canvas/hand3d/useStage";
 import { beginAt, endAt, nextDoubt, type Stretch } from "../../model/stretch";
 import { hasRole, useMe } from "../../state/me";
@@ -13,6 +13,8 @@ import { Failure } from "../parts/Failure";
 import { useLateAddress } from "../parts/useLateAddress";
 import { usePlayback } from "../parts/usePlayback";
 import { AcceptedPanel } from "./AcceptedPanel";
+import { RegistrationFacts } from "./RegistrationFacts";
+import { useChain } from "./useChain";
 import { FramePanel } from "./FramePanel";
 import classes from "./Moving.module.css";
 import { MovingBar } from "./MovingBar";
@@ -25,7 +27,6 @@ import { StretchPanel } from "./StretchPanel";
 import { useMovingCuration } from "./useMovingCuration";
 import { useShownFrame } from "./useShownFrame";
 
-const NO_FRAMES: readonly FrameRegistration[] = [];
 /** The screen shows no more frames a second; faster scans leave some out. */
 const SHOWN_FPS = 30;
 
@@ -39,7 +40,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
   const [jobShown, setJobShown] = useState<string | null>(() => address.get("job"));
   const registration =
     registrations.find((one) => one.id === chosen) ?? registrations.find((one) => one.job_id === jobShown) ?? registrations.find((one) => one.frames_done > 0) ?? registrations[0];
-  const registered = useRegisteredFrames(scan.id, registration?.id, isGrowing).data ?? NO_FRAMES;
+  const { own: registered, shown: bodies, found: foundOf } = useChain(scan.id, registration, registrations, isGrowing);
 
   const last = scan.frame_count - 1;
   const clamp = useCallback((at: number) => Math.min(last, Math.max(0, at)), [last]);
@@ -56,7 +57,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
   const { stage } = parts;
   const control = useLook(stage);
   const pace = isPlaying ? Math.max(1, Math.round(scan.fps / SHOWN_FPS)) : 1;
-  const shown = useShownFrame(stage, scan, registration?.id ?? null, registered, frame, pace, drawn);
+  const shown = useShownFrame(stage, scan, bodies, frame, pace, drawn);
   usePlayback(isPlaying, scan.fps / pace, {
     isReady: () => shown.isDrawn,
     step: () => {
@@ -75,7 +76,9 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
   };
   useLateAddress({ frame: String(frame), ...(registration ? { registration: registration.id } : {}) }, 200);
 
-  const found = registered.find((one) => one.frame === frame);
+  const found = foundOf.get(frame);
+  const foundIn = registrations.find((one) => one.id === bodies.get(frame));
+  const all = useMemo(() => [...foundOf.values()].sort((a, b) => a.frame - b.frame), [foundOf]);
   const curation = useMovingCuration(scan.id, registration?.id);
   const mayDecide = hasRole(useMe(), "reviewer");
   const isInside = registered.length > 0 && stretch.first >= whole.first && stretch.last <= whole.last;
@@ -89,7 +92,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
     step(at - frame);
   };
   const doubt = (direction: 1 | -1): void => {
-    const next = nextDoubt(registered, frame, direction);
+    const next = nextDoubt(all, frame, direction);
     if (next !== null) step(next - frame);
   };
   const once = (act: () => void) => (event: KeyboardEvent): void => {
@@ -127,7 +130,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
         onRegistration={(id) => (setChosen(id), setStretch(null))}
         frame={frame}
         isPlaying={isPlaying}
-        hasDoubts={nextDoubt(registered, frame, 1) !== null}
+        hasDoubts={nextDoubt(all, frame, 1) !== null}
         onPlay={play}
         onStep={step}
         onDoubt={() => doubt(1)}
@@ -141,7 +144,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
           isBusy={!shown.isDrawn}
           hasLegend={control.look.hasErrors && found !== undefined}
           guessed={found?.guessed ?? []}
-          place={`frame ${frame}${registration && found ? ` · registration ${registration.number}` : ""}`}
+          place={`frame ${frame}${foundIn ? ` · registration ${foundIn.number}` : ""}`}
           failure={
             shown.failure && (
               <Failure what={`Frame ${frame} could not be drawn`} error={shown.failure} safe="Go on with the next one; its file is kept." onRetry={shown.retry}>
@@ -152,7 +155,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
         />
         <aside className={classes.panel} aria-label="Registration, decisions and what is accepted" tabIndex={0}>
           {job && <MovingJob job={job} />}
-          <FramePanel scan={scan} frame={frame} found={found} registration={registration} />
+          <FramePanel scan={scan} frame={frame} found={found} foundIn={foundIn} registration={registration} />
           {registrations.length > 0 && (
             <StretchPanel
               stretch={stretch}
@@ -173,9 +176,10 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
             />
           )}
           <AcceptedPanel scan={scan} onRegistration={show} />
+          {registration && <RegistrationFacts registration={registration} parent={registrations.find((one) => one.id === registration.parent_id)} />}
         </aside>
       </div>
-      <MovingTimeline scan={scan} frames={registered} frame={frame} stretch={stretch} onSeek={(to) => step(to - frame)} />
+      <MovingTimeline scan={scan} frames={all} frame={frame} stretch={stretch} onSeek={(to) => step(to - frame)} />
       {dialog && (
         <RegisterMovingDialog
           scan={scan}

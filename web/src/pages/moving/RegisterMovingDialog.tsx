@@ -1,7 +1,8 @@
 import { Group, NumberInput, Radio, Select, Stack, Switch, Text } from "@mantine/core";
 import { useState } from "react";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
-import { useStartMoving, type MovingRegistration, type MovingScan, type Prior, type RegisterMovingWish } from "../../api/movingScans";
+import type { MovingRegistration, MovingScan, Prior } from "../../api/movingScans";
+import { useStartJob, type RegisterMovingWish } from "../../api/startJob";
 import type { Stretch } from "../../model/stretch";
 import { FormDialog } from "../parts/Dialog";
 import { PRIORS } from "./priors";
@@ -27,7 +28,7 @@ const otherThan = (prior: Prior): Prior => (prior === "mixture" ? "gaussian" : "
 
 /** Lay the body onto the frames, from the first on or from a frame of an earlier registration on. */
 export function RegisterMovingDialog({ scan, parent, frames, onClose, onStarted }: RegisterMovingDialogProps) {
-  const start = useStartMoving();
+  const start = useStartJob();
   const [first, setFirst] = useState<number | string>(frames.first);
   const [last, setLast] = useState<number | string>(frames.last);
   const [prior, setPrior] = useState<Prior>(parent ? otherThan(parent.prior) : "mixture");
@@ -45,7 +46,7 @@ export function RegisterMovingDialog({ scan, parent, frames, onClose, onStarted 
     has_velocity: hasVelocity,
     ...(parent ? { parent_id: parent.id } : { population: population as "neutral" }),
   };
-  const check = useJobCheck("/jobs", wish, isWhole);
+  const check = useJobCheck(wish, isWhole);
   const submit = (): void => start.mutate(wish, { onSuccess: (job) => onStarted(job.id) });
   const most = scan.frame_count - 1;
   return (

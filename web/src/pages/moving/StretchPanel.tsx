@@ -83,7 +83,7 @@ export function StretchPanel(props: StretchPanelProps) {
       </div>
       {mayDecide && obstacle === null && (
         <Button size="xs" variant="default" fullWidth mt={8} onClick={onRerun}>
-          Register again from frame {stretch.first} with another prior …
+          Register again from frame {stretch.first} …
         </Button>
       )}
       {standing.length > 0 && (

@@ -1,6 +1,6 @@
-import { useCallback, useEffect, useMemo, useReducer, useRef, type RefObject } from "react";
+import { useEffect, useMemo, useReducer, useRef, type RefObject } from "react";
 import { useBodyFaces } from "../../api/bodies";
-import { fetchFrame, type FrameGeometry, type FrameRegistration, type MovingScan } from "../../api/movingScans";
+import { fetchFrame, type FrameGeometry, type MovingScan } from "../../api/movingScans";
 import { createFrameShelf } from "../../canvas/frameShelf";
 import type { Box, Surface } from "../../canvas/hand3d/geometry";
 import type { Stage } from "../../canvas/hand3d/stage";
@@ -8,14 +8,12 @@ import type { Staged } from "../../canvas/hand3d/staged";
 import { standingUp } from "../../model/standing";
 
 /** About how far the points of a person lie apart that the browser draws, m. */
-const SPACING = 0.007;
+const SPACING = 0.009;
 
 export interface ShownFrame {
   readonly isDrawn: boolean;
   readonly failure: Error | null;
   retry: () => void;
-  /** Whether a frame could be drawn at once. */
-  isReady: (frame: number) => boolean;
 }
 
 /** All that the eye is to see while a person moves. */
@@ -31,12 +29,12 @@ function emptyBody(faces: Uint32Array): Surface {
   return { positions: new Float32Array(3 * count), normals: new Int8Array(3 * count), colors: new Uint8Array(3 * count), index: faces, errorMm: null, taken: null };
 }
 
-/** Draws a frame of a moving scan, with the body of a registration where there is one; frames behind it are fetched ahead. */
+/** Draws a frame of a moving scan, with the body that was laid onto it where there is one; frames behind it are fetched ahead. */
 export function useShownFrame(
   stage: Stage | null,
   scan: MovingScan,
-  registration: string | null,
-  registered: readonly FrameRegistration[],
+  /** Of each frame that has a body, the registration whose it is. */
+  bodies: ReadonlyMap<number, string>,
   frame: number,
   step: number,
   drawn: RefObject<string>,
@@ -45,9 +43,8 @@ export function useShownFrame(
   const { data: faces, error: facesError } = useBodyFaces();
   const staged = useRef<Staged | null>(null);
   const shown = useRef<FrameGeometry | null>(null);
-  const known = useMemo(() => new Set(registered.map((one) => one.frame)), [registered]);
-  const knownNow = useRef(known);
-  knownNow.current = known;
+  const bodiesNow = useRef(bodies);
+  bodiesNow.current = bodies;
   const { id, frame_count, problems } = scan;
   const missing = problems.map((problem) => problem.frame).join();
 
@@ -55,12 +52,12 @@ export function useShownFrame(
     if (!faces) return null;
     const lost = new Set(missing === "" ? [] : missing.split(",").map(Number));
     const frames = Array.from({ length: frame_count }, (_, at) => at).filter((at) => !lost.has(at));
-    const load = (at: number, signal: AbortSignal): Promise<FrameGeometry> => fetchFrame(id, at, knownNow.current.has(at) ? registration : null, faces, signal);
+    const load = (at: number, signal: AbortSignal): Promise<FrameGeometry> => fetchFrame(id, at, bodiesNow.current.get(at) ?? null, faces, signal);
     return createFrameShelf(load, frames);
-  }, [id, registration, faces, frame_count, missing]);
+  }, [id, faces, frame_count, missing]);
 
-  // A frame that was fetched without its body is fetched again when a job has laid it.
-  useEffect(() => shelf?.forget((at, held) => held.mesh === null && registration !== null && known.has(at)), [shelf, registration, known]);
+  // What was fetched without its body, or with another registration's, is fetched again.
+  useEffect(() => shelf?.forget((at, held) => held.registration !== (bodies.get(at) ?? null)), [shelf, bodies]);
   useEffect(() => {
     if (!shelf) return;
     const unwatch = shelf.watch(redraw);
@@ -105,6 +102,5 @@ export function useShownFrame(
     },
     [stage, id],
   );
-  const isReady = useCallback((at: number) => shelf !== null && (shelf.get(at) !== null || shelf.failureOf(at) !== null), [shelf]);
-  return { isDrawn: geometry !== null || isUnusable, failure, retry: () => shelf?.retry(), isReady };
+  return { isDrawn: geometry !== null || isUnusable, failure, retry: () => shelf?.retry() };
 }

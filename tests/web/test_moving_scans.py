@@ -119,7 +119,7 @@ def test_a_moving_scan_is_registered_looked_at_and_curated_by_stretch(
     expect(decisions).to_have_count(0)
     expect(accepted).to_contain_text("Accepted, 0 of 4 frames")
     page.get_by_label("From frame").fill("2")
-    page.get_by_role("button", name="Accept").click()
+    page.get_by_role("button", name="Accept", exact=True).click()
     expect(accepted).to_contain_text("frames 2 to 3")
     expect(accepted).to_contain_text("registration 1, mixture prior")
     told = studio.get(f"/moving-scans/{scan_id}/accepted")
@@ -145,7 +145,7 @@ def test_a_moving_scan_is_registered_looked_at_and_curated_by_stretch(
     choice = page.get_by_role("combobox", name="Registration", exact=True)
     expect(choice).to_have_value("2: no prior, frames 2 to 2", timeout=60_000)
     expect(page.get_by_role("region", name="The job")).to_have_count(0, timeout=120_000)
-    page.get_by_role("button", name="Accept").click()
+    page.get_by_role("button", name="Accept", exact=True).click()
     expect(accepted).to_contain_text("registration 2, no prior")
     told = studio.get(f"/moving-scans/{scan_id}/accepted")
     assert [each["registration_number"] for each in told["stretches"]] == [2, 1], "the frame accepted last counts"

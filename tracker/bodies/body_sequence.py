@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from tracker.bodies.body_registration import (
     BODY_FILE,
@@ -22,6 +23,7 @@ from tracker.bodies.follow_body import BodyFollower, FollowOptions
 from tracker.bodies.register_body import Registrar
 from tracker.bodies.template import (
     choose_template_frames,
+    find_shape,
     make_own_model,
     register_for_template,
     without_shape,
@@ -128,7 +130,7 @@ def register_sequence(
     for number in range(1, len(chunks)):
         _join(sequence, follower, number)
     tell(1.0, "done")
-    return _write_results(sequence, own)
+    return _write_results(sequence, own, find_shape(model, own))
 
 
 def follow_chunk(sequence: Sequence, follower: BodyFollower, number: int):
@@ -261,13 +263,13 @@ def _read(sequence: Sequence, frame: int) -> Scan | None:
         return None
 
 
-def _write_results(sequence: Sequence, model: BlendModel) -> dict[str, Any]:
+def _write_results(sequence: Sequence, model: BlendModel, shape: npt.NDArray[np.float64]) -> dict[str, Any]:
     """`motion.npz` and `summary.json`; frames without a registration keep the pose of the one before."""
     found = [_load(sequence, frame) for frame in range(len(sequence))]
     known = [each for each in found if each is not None]
     if not known:
         raise TrackerError(f"None of {len(sequence)} scans could be registered.")
-    _write_motion(sequence, found, known[0])
+    _write_motion(sequence, found, known[0], shape)
     unread = [sequence.error_file(frame) for frame, each in enumerate(found) if each is None]
     summary = {
         "frames": len(sequence),
@@ -286,10 +288,12 @@ def _write_results(sequence: Sequence, model: BlendModel) -> dict[str, Any]:
     return summary
 
 
-def _write_motion(sequence: Sequence, found: list[BodyRegistration | None], first: BodyRegistration) -> None:
+def _write_motion(
+    sequence: Sequence, found: list[BodyRegistration | None], first: BodyRegistration, shape: npt.NDArray[np.float64]
+) -> None:
     states = [first.state]
     for each in found:
         states.append(each.state if each else states[-1])
     poses = np.array([state.pose for state in states[1:]])
     places = np.array([state.translation for state in states[1:]])
-    save_body_motion(BodyMotion(poses, places, np.zeros(0), sequence.options.fps), sequence.out / MOTION)
+    save_body_motion(BodyMotion(poses, places, shape, sequence.options.fps), sequence.out / MOTION)

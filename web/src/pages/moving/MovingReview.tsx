@@ -49,6 +49,8 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
   const [picked, setStretch] = useState<Stretch | null>(null);
   const whole = useMemo<Stretch>(() => ({ first: registered[0]?.frame ?? 0, last: registered.at(-1)?.frame ?? last }), [registered, last]);
   const stretch = picked ?? whole;
+  /** Where one would register again: the beginning of what was chosen, else the frame that is shown. */
+  const here = picked?.first ?? frame;
   const [isPlaying, setPlaying] = useState(false);
   const [dialog, setDialog] = useState<"anew" | "again" | null>(null);
 
@@ -115,7 +117,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
     "moving.accept": once(() => decide("accept")),
     "moving.reject": once(() => decide("reject")),
     "moving.undo": once(curation.undo),
-    "moving.rerun": once(() => mayDecide && obstacle === null && setDialog("again")),
+    "moving.rerun": once(() => mayDecide && registered.length > 0 && setDialog("again")),
     "moving.whole": () => stage?.reset(),
     "moving.behind": () => stage?.lookFrom("back"),
   });
@@ -144,6 +146,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
           isBusy={!shown.isDrawn}
           hasLegend={control.look.hasErrors && found !== undefined}
           guessed={found?.guessed ?? []}
+          isUnusable={scan.problems.some((one) => one.frame === frame)}
           place={`frame ${frame}${foundIn ? ` · registration ${foundIn.number}` : ""}`}
           failure={
             shown.failure && (
@@ -166,6 +169,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
               obstacle={obstacle}
               mayDecide={mayDecide}
               onDecide={decide}
+              here={here}
               onRerun={() => setDialog("again")}
               canUndo={curation.canUndo}
               onUndo={curation.undo}
@@ -184,7 +188,7 @@ export function MovingReview({ scan }: { scan: MovingScan }) {
         <RegisterMovingDialog
           scan={scan}
           parent={dialog === "again" ? (registration ?? null) : null}
-          frames={dialog === "again" ? { first: stretch.first, last } : { first: 0, last }}
+          frames={dialog === "again" ? { first: here, last } : { first: 0, last }}
           onClose={() => setDialog(null)}
           onStarted={(id) => (setJobShown(id), setChosen(null), setStretch(null), setDialog(null))}
         />

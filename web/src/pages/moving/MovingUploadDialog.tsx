@@ -10,7 +10,7 @@ import { FormFooter } from "../parts/Obstacles";
 
 const FIND_OUT = "";
 const UNITS = [
-  { value: FIND_OUT, label: "Find out by the size" },
+  { value: FIND_OUT, label: "Find out" },
   { value: "1", label: "Metres" },
   { value: "0.01", label: "Centimetres" },
   { value: "0.001", label: "Millimetres" },

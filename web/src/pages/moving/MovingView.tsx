@@ -1,4 +1,5 @@
 import { Button, Text, Tooltip } from "@mantine/core";
+import { IconFileAlert } from "@tabler/icons-react";
 import type { ReactNode } from "react";
 import type { StageParts } from "../../canvas/hand3d/useStage";
 import { errorGradient, SCAN_ERROR_FULL_MM } from "../../model/errorColor";
@@ -15,17 +16,25 @@ interface MovingViewProps {
   guessed: readonly string[];
   /** In the corner: which frame. */
   place: string;
+  /** The frame's file cannot be used. */
+  isUnusable: boolean;
   /** Why nothing can be drawn. */
   failure?: ReactNode;
 }
 
 /** A person in 3D: drag to turn, wheel to come nearer, right drag to move. */
-export function MovingView({ label, parts: { holder, canvas, stage, failure: noStage }, isBusy, hasLegend, guessed, place, failure }: MovingViewProps) {
+export function MovingView({ label, parts: { holder, canvas, stage, failure: noStage }, isBusy, hasLegend, guessed, place, isUnusable, failure }: MovingViewProps) {
   const hint = useHint();
   return (
     <div ref={holder} className={view.pane} role="application" aria-label={label} tabIndex={0} data-picture aria-busy={isBusy}>
       <canvas ref={canvas} className={view.canvas} aria-hidden />
       <div className={classes.place}>{place}</div>
+      {isUnusable && (
+        <div className={classes.unusable} role="status">
+          <IconFileAlert size={40} stroke={1.25} aria-hidden />
+          The file of this frame cannot be used; the others can be.
+        </div>
+      )}
       {guessed.length > 0 && (
         <div className={classes.guessed} role="status">
           <span className={classes.mark} aria-hidden />

@@ -1,6 +1,6 @@
 import { Title } from "@mantine/core";
 import type { MovingRegistration } from "../../api/movingScans";
-import { formatNumber } from "../../model/format";
+import { formatAgo, formatNumber } from "../../model/format";
 import classes from "./Moving.module.css";
 import { PRIORS } from "./priors";
 
@@ -18,7 +18,7 @@ export function RegistrationFacts({ registration, parent }: { registration: Movi
     ["Scan to body, mean", scan_to_mesh_mm === null ? "–" : `${formatNumber(scan_to_mesh_mm, 2)} mm`],
     ["Good, doubtful, bad", (["good", "doubtful", "bad"] as const).map((name) => verdicts[name] ?? 0).join(", ")],
     ["Guessed left, right", (["left", "right"] as const).map((hand) => guessed[hand] ?? 0).join(", ")],
-    ["Made", [created_by_name, new Date(created_at).toLocaleString("en-GB", { dateStyle: "medium", timeStyle: "short" })].filter(Boolean).join(", ")],
+    ["Made", [created_by_name, formatAgo(created_at)].filter(Boolean).join(", ")],
   ];
   return (
     <section aria-label="The registration">

@@ -16,6 +16,8 @@ interface StretchPanelProps {
   obstacle: string | null;
   mayDecide: boolean;
   onDecide: (decision: "accept" | "reject") => void;
+  /** Where one would register again. */
+  here: number;
   onRerun: () => void;
   canUndo: boolean;
   onUndo: () => void;
@@ -30,7 +32,7 @@ const WORDS = { accept: "accepted", reject: "rejected" } as const;
 
 /** Frames from one to another: chosen, accepted, rejected, or registered again. */
 export function StretchPanel(props: StretchPanelProps) {
-  const { stretch, most, onStretch, onBegin, onEnd, obstacle, mayDecide, onDecide, onRerun, canUndo, onUndo, decisions, me, onTakeBack, onSeek } = props;
+  const { stretch, most, onStretch, onBegin, onEnd, obstacle, mayDecide, onDecide, here, onRerun, canUndo, onUndo, decisions, me, onTakeBack, onSeek } = props;
   const hint = useHint();
   const keyOf = useKeyOf();
   const standing = decisions.filter((one) => one.stands && one.decision !== "undo");
@@ -83,7 +85,7 @@ export function StretchPanel(props: StretchPanelProps) {
       </div>
       {mayDecide && obstacle === null && (
         <Button size="xs" variant="default" fullWidth mt={8} onClick={onRerun}>
-          Register again from frame {stretch.first} …
+          Register again from frame {here} …
         </Button>
       )}
       {standing.length > 0 && (

@@ -8,7 +8,7 @@ import type { Staged } from "../../canvas/hand3d/staged";
 import { standingUp } from "../../model/standing";
 
 /** About how far the points of a person lie apart that the browser draws, m. */
-const SPACING = 0.009;
+const SPACING = 0.007;
 
 export interface ShownFrame {
   readonly isDrawn: boolean;

@@ -1,5 +1,5 @@
 import { Spotlight, spotlight, type SpotlightActionData } from "@mantine/spotlight";
-import { IconBriefcase, IconChartBar, IconChecks, IconHandFinger, IconHandStop, IconPencil, IconRoute, IconScan, IconSearch, IconVideo } from "@tabler/icons-react";
+import { IconBriefcase, IconChartBar, IconChecks, IconHandFinger, IconHandStop, IconPencil, IconRoute, IconRun, IconScan, IconSearch, IconVideo } from "@tabler/icons-react";
 import { useNavigate } from "react-router";
 import { useRecordings } from "../../api/recordings";
 import { useTracks } from "../../api/tracks";
@@ -41,6 +41,7 @@ export function Search() {
     { id: "page/recordings", label: "Recordings", leftSection: <IconHandFinger size={18} aria-hidden />, onClick: go("/recordings") },
     { id: "page/tracks", label: "Tracks", leftSection: <IconRoute size={18} aria-hidden />, onClick: go("/tracks") },
     { id: "page/scans", label: "Scans", leftSection: <IconScan size={18} aria-hidden />, onClick: go("/scans") },
+    { id: "page/moving", label: "Moving scans", leftSection: <IconRun size={18} aria-hidden />, onClick: go("/scans/moving") },
     { id: "page/curate", label: "Curate registrations", leftSection: <IconChecks size={18} aria-hidden />, onClick: go("/curate") },
     { id: "page/models", label: "Hand models", leftSection: <IconHandStop size={18} aria-hidden />, onClick: go("/models") },
     { id: "page/evaluations", label: "Evaluations", leftSection: <IconChartBar size={18} aria-hidden />, onClick: go("/evaluations") },

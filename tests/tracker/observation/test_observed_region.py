@@ -81,6 +81,15 @@ def test_a_thinned_observation_is_every_so_many_pixel_with_the_same_rays(stride)
     assert np.allclose((points @ thin.K.T)[:, :2] / points[:, 2:], np.column_stack([columns, rows]), atol=1e-3)
 
 
+@settings(max_examples=20, deadline=None)
+@given(st.integers(50, 20_000))
+def test_an_observation_thinned_to_a_number_has_about_so_many_pixels_or_all(count) -> None:
+    seen = observe(Frame(0, "cam0", None, slope()), CAMERA, Region(0, 0, 120, 100, 0.3, 0.8), RAW)
+    thin = seen.thin_to(count)
+    share = thin.hand_count / min(count, seen.hand_count)
+    assert 0.4 < share < 2.3 and (share == 1.0 or count < seen.hand_count)
+
+
 def test_smoothing_takes_noise_off_a_plane_and_leaves_the_step_beside_it() -> None:
     rng = np.random.default_rng(0)
     depth = np.where(np.arange(160) < 80, 0.5, 0.6).astype(np.float32) + rng.normal(0, 2e-3, (120, 160))

@@ -172,7 +172,7 @@ def _reaching(objective: Objective, reach: float) -> Objective:
 def _bend_fingers(setup: TrackSetup, seen: Observation, pose: Array) -> Array:
     """The pose with every finger in turn at the best of a few bends."""
     scene = setup.scene
-    thin = seen.thin(max(1, round((seen.hand_count / SCORED_PIXELS) ** 0.5)))
+    thin = seen.thin_to(SCORED_PIXELS)
     for hand in setup.hands:
 
         def score(trial: Array, hand: int = hand) -> float:

@@ -111,6 +111,10 @@ class Observation:
             color=None if self.color is None else self.color[every],
         )
 
+    def thin_to(self, count: int) -> Observation:
+        """The same with about `count` hand pixels, or all where there are fewer."""
+        return self.thin(max(1, round((self.hand_count / count) ** 0.5)))
+
     @property
     def hand_count(self) -> int:
         """Pixels that may be hand."""

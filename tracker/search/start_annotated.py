@@ -82,7 +82,7 @@ def start_hand(
     if observation is None or relative is None:
         rest, pose, _ = min(ways, key=lambda way: way[2])
     else:
-        thin = observation.thin(max(1, round((observation.hand_count / SCORED_PIXELS) ** 0.5)))
+        thin = observation.thin_to(SCORED_PIXELS)
         rest, pose, _ = max(ways, key=lambda way: measure_quality(draw(scene.pose_at(way[1]), thin), thin).score)
     return descent.descend(pose, rest, max(0, iterations - FEW_STEPS))[0]
 

@@ -231,7 +231,7 @@ def _fit_fine(frame: Frame, judge: _Judge, how: Preprocessing, pose: Array) -> t
 
 def _bend(scene: Scene, judge: _Judge, seen: Observation, pose: Array) -> Array:
     """Search single fingers, then fit."""
-    thin = seen.thin(max(1, round((seen.hand_count / SCORED_PIXELS) ** 0.5)))
+    thin = seen.thin_to(SCORED_PIXELS)
     pose = search_fingers(pose, 0, scene.models[0], lambda trial: judge.merit(thin, trial))
     return fit_from_afar(scene, seen, pose, Objective.wide(0.03, SOFT), 8)
 

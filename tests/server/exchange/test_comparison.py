@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from server.exchange.comparison import compare_hands, compare_labels
 from tracker import HAND_JOINTS, Annotation, Annotations
@@ -55,3 +57,19 @@ def test_changes_come_in_the_order_of_frames_cameras_and_hands() -> None:
     places = [(2, "cam0", "right"), (0, "cam1", "left"), (0, "cam0", "right"), (0, "cam0", "left")]
     found = compare_labels(Annotations(), Annotations(tuple(make(*place) for place in places)))
     assert [(change.frame, change.camera, change.hand) for change in found] == sorted(places)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_what_is_added_one_way_is_removed_the_other_and_shifts_are_the_same(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+
+    def draw() -> Annotation:
+        visibility = rng.integers(0, 3, (21, 1))
+        return Annotation(0, "cam0", "right", np.hstack([rng.integers(1, 9, (21, 2)) * (visibility > 0), visibility]))
+
+    there, back = compare_hands(old := draw(), new := draw()), compare_hands(new, old)
+    assert there is not None and back is not None
+    assert (there.joints_added, there.joints_removed) == (back.joints_removed, back.joints_added)
+    assert there.joints_moved == back.joints_moved and there.max_shift_px == back.max_shift_px
+    touched = {*there.joints_added, *there.joints_removed, *there.joints_restated, *there.joints_moved}
+    assert touched == {name for name, a, b in zip(HAND_JOINTS, old.points, new.points, strict=True) if (a != b).any()}

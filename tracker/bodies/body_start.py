@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from tracker.bodies.body_fit import BodyFit
 from tracker.bodies.body_state import BodyState, make_state
 from tracker.bodies.limb_search import LimbSearch
+from tracker.geometry.se3 import find_rotations
 from tracker.model.body_hands import NUM_BODY_JOINTS
 from tracker.model.mano_files import BODY_JOINTS
 from tracker.registration.hand_state import HandState
@@ -209,6 +210,5 @@ def _kabsch(source: Array, target: Array, weights: Array) -> tuple[Array, Array]
     """R, t that lay source (N, 3) onto target (N, 3)."""
     share = weights / weights.sum()
     mine, theirs = share @ source, share @ target
-    U, _, Vt = np.linalg.svd((source - mine).T @ ((target - theirs) * share[:, None]))
-    R = Vt.T @ np.diag([1.0, 1.0, np.sign(np.linalg.det(Vt.T @ U.T))]) @ U.T
+    R = find_rotations(((target - theirs) * share[:, None]).T @ (source - mine))
     return R, theirs - R @ mine

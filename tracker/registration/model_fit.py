@@ -8,13 +8,13 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.blend_model import BlendModel
 from tracker.registration.equations import add_model_rows, weigh_robustly
 from tracker.registration.hand_state import HandState
 from tracker.registration.pose_prior import PosePrior
 from tracker.registration.scan_points import ScanPoints
 from tracker.registration.surface_search import MIN_COSINE, Matches, SurfaceSearch
-from tracker.registration.vertex_normals import find_unit_normals
 from tracker.solver.minimize import DenseSystem, TrustRegion, minimize
 
 Array = npt.NDArray[np.float64]

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
 from tracker.capture.scan import Scan
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.blend_model import BlendModel
 from tracker.registration.free_fit import FreeSurface
 from tracker.registration.hand_state import HandState
@@ -16,7 +17,6 @@ from tracker.registration.model_fit import MM, Evaluation, FitSettings, ModelFit
 from tracker.registration.registration import Registration, digest_scan
 from tracker.registration.scan_points import ScanPoints
 from tracker.registration.surface_search import Matches
-from tracker.registration.vertex_normals import find_unit_normals
 
 Array = npt.NDArray[np.float64]
 

@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from tracker.model.kinematics import vertex_jacobian
 from tracker.model.scene import PosedScene
 from tracker.terms.normal_equations import MAX_BONES, MILLIMETRES, NormalEquations, add_row, gather_bones
 from tracker.terms.residual import ResidualBlock
@@ -46,7 +45,7 @@ class PointToPlane:
         residual = np.einsum("ni,ni->n", self.normals, self.points(posed) - self.targets)
         jacobian = np.zeros((self.count, posed.scene.num_dofs))
         for corner in range(3):
-            moves = vertex_jacobian(posed.scene.arrays, posed.bone_vertices, posed.twists, self.ids[:, corner])
+            moves = posed.vertex_jacobian(self.ids[:, corner])
             jacobian += self.barycentric[:, corner, None] * np.einsum("ni,nid->nd", self.normals, moves)
         return ResidualBlock(MILLIMETRES * residual, MILLIMETRES * jacobian, self.weights)
 

@@ -150,12 +150,7 @@ class BodyStart:
         return [self._place(each) for each in chosen]
 
     def _place(self, stiff: Stiff) -> BodyState:
-        state = self.states[stiff.pose]
-        root = state.posed(self.fit.model).joints[0]
-        pose = state.pose.copy()
-        pose[0] = Rotation.from_matrix(stiff.R).as_rotvec()
-        place = stiff.R @ (root - self.clouds[stiff.pose][1]) + stiff.t
-        return BodyState(pose, state.shape, place - root, state.hands)
+        return self.states[stiff.pose].moved(self.fit.model, stiff.R, stiff.t - stiff.R @ self.clouds[stiff.pose][1])
 
     def find_stiff(self, scan: ScanPoints) -> list[Stiff]:
         """Stiff bodies on the scan, the best first."""

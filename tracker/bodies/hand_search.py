@@ -104,7 +104,7 @@ class HandSearch:
         near = np.flatnonzero(np.linalg.norm(scan.points - middle, axis=1) < REACH)
         rest = KDTree(posed.vertices[self.rest[k]])
         ids = near[rest.query(scan.points[near], distance_upper_bound=AWAY)[0] > AWAY]
-        return ScanPoints(np.ascontiguousarray(scan.points[ids]), np.ascontiguousarray(scan.normals[ids]))
+        return scan.chosen(ids)
 
     def is_shown(self, state: BodyState, points: ScanPoints, k: int) -> bool:
         """Whether there are points past the wrist."""

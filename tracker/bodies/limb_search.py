@@ -87,7 +87,7 @@ class LimbSearch:
     def _points_of(self, limb: Limb, state: BodyState, scan: ScanPoints) -> ScanPoints:
         vertices = state.posed(self.model).vertices
         ids = np.flatnonzero(KDTree(vertices[limb.rest]).query(scan.points, distance_upper_bound=AWAY)[0] > AWAY)
-        return ScanPoints(np.ascontiguousarray(scan.points[ids]), np.ascontiguousarray(scan.normals[ids]))
+        return scan.chosen(ids)
 
 
 def _make_limb(model, prior, mixture, size, side: str, is_arm: bool) -> Limb:

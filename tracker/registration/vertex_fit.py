@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
-from scipy.spatial.transform import Rotation
 
 from tracker.geometry.se3 import find_rotations
 from tracker.registration.hand_state import HandState
@@ -48,10 +47,7 @@ def fit_to_vertices(fit: ModelFit, state: HandState, vertices: Array, weight: fl
 
 def _align(fit: ModelFit, state: HandState, vertices: Array) -> HandState:
     """The state with its root turned and moved onto the vertices (Kabsch)."""
-    posed = state.posed(fit.model)
-    mine, theirs = posed.vertices.mean(axis=0), vertices.mean(axis=0)
-    R = find_rotations((vertices - theirs).T @ (posed.vertices - mine))
-    pose = state.pose.copy()
-    pose[0] = (Rotation.from_matrix(R) * Rotation.from_rotvec(pose[0])).as_rotvec()
-    root = posed.joints[0]
-    return HandState(pose, state.shape, state.translation + R @ (root - mine) + theirs - root)
+    own = state.posed(fit.model).vertices
+    mine, theirs = own.mean(axis=0), vertices.mean(axis=0)
+    R = find_rotations((vertices - theirs).T @ (own - mine))
+    return state.moved(fit.model, R, theirs - R @ mine)

@@ -64,4 +64,4 @@ def test_what_another_version_kept_is_refused_in_a_sentence(caplog):
     kept.save(names[1], {**old, "ridge": np.array([1e-4]), "ridges": np.zeros((0, 2))})
     assert find_last(kept, names, "mine") == (0, None)
     assert "stage round-1-joints was kept by another version of Handloom" in caplog.text
-    assert "version 1, this one reads version 2" in caplog.text
+    assert "version 1, this one reads version 3" in caplog.text

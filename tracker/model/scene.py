@@ -122,6 +122,23 @@ class Scene:
         return _stack(self)
 
     @cached_property
+    def bone_pairs(self) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
+        """(N, 2) pairs of bones with weight on a common face, the lower first; (B, B) place of a pair, -1 for none."""
+        arrays = self.arrays
+        bones = len(arrays.parents)
+        follows = np.zeros((len(arrays.vertices), bones), dtype=bool)
+        for slot in range(arrays.weights.shape[1]):
+            used = arrays.weights[:, slot] > 0
+            follows[np.flatnonzero(used), arrays.weight_bones[used, slot]] = True
+        on_face = follows[arrays.faces].any(axis=1).astype(np.int64)
+        on_vertex = follows.astype(np.int64)
+        shared = (np.matmul(on_face.T, on_face) + np.matmul(on_vertex.T, on_vertex)) > 0
+        j, k = np.nonzero(np.triu(shared))
+        places = np.full((bones, bones), -1, dtype=np.int32)
+        places[j, k] = places[k, j] = np.arange(len(j))
+        return np.stack([j, k], axis=1).astype(np.int32), places
+
+    @cached_property
     def pose_blends(self) -> PoseBlendArrays | None:
         """How surfaces at rest change with the pose; None where they do not."""
         parts = []

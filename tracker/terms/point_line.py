@@ -79,6 +79,21 @@ class PointToLine:
         return np.stack([points, feet + along[:, None] * self.directions], axis=1)
 
 
+def find_slack(points: Array, directions: Array, moments: Array, reach: float) -> Array:
+    """(N,) what the weights of points (N, 3), world, m, are divided by, so that one that is told wrongly lets go.
+
+    With the distance r of a point from its line this is (1 + (r / reach)²)², which makes the sum Geman's and McClure's.
+
+    Args:
+        points: (N, 3) world, m.
+        directions: (N, 3) of the lines; moments (N, 3).
+        reach: mm.
+    """
+    (x, y, z), (u, v, w) = points.T, directions.T
+    away = np.linalg.norm(np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1) - moments, axis=1)
+    return (1.0 + (MILLIMETRES * away / reach) ** 2) ** 2
+
+
 @njit(cache=True, nogil=True)
 def _add_rows(
     blocks,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +15,7 @@ from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan_ply import write_ply
 from tracker.errors import RegistrationError, reads
 from tracker.model.npz_arrays import NpzFields, read_foreign_npz
+from tracker.model.npz_files import pack_npz
 from tracker.registration.registration import summarize_distances
 
 Array = npt.NDArray[np.float64]
@@ -89,20 +89,19 @@ def pack_body_registration(registration: BodyRegistration) -> bytes:
         "scan_digest": registration.scan_digest,
         "model_digest": registration.model_digest,
     }
-    buffer = io.BytesIO()
-    np.savez_compressed(
-        buffer,
-        vertices=registration.vertices,
-        model_vertices=registration.model_vertices,
-        poses=state.pose.reshape(1, -1),
-        trans=state.translation[None],
-        betas=state.shape,
-        hands=state.hands,
-        are_shown=np.array(registration.are_shown),
-        scan_to_mesh=registration.scan_to_mesh.astype(np.float32),
-        said=np.array(json.dumps(said)),
+    return pack_npz(
+        {
+            "vertices": registration.vertices,
+            "model_vertices": registration.model_vertices,
+            "poses": state.pose.reshape(1, -1),
+            "trans": state.translation[None],
+            "betas": state.shape,
+            "hands": state.hands,
+            "are_shown": np.array(registration.are_shown),
+            "scan_to_mesh": registration.scan_to_mesh.astype(np.float32),
+            "said": np.array(json.dumps(said)),
+        }
     )
-    return buffer.getvalue()
 
 
 @reads(RegistrationError, NEEDED)

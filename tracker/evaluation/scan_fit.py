@@ -12,11 +12,12 @@ import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
 
 from tracker.model.blend_model import BlendModel, PosedBlend
+from tracker.model.skinning import keep_heaviest
 from tracker.registration.equations import add_model_rows, weigh_robustly
 from tracker.registration.surface_search import SurfaceSearch
 from tracker.solver.minimize import minimize_damped
 from tracker.training.pose_fit import Hands, fit_poses, start_poses
-from tracker.training.rig import Rig, keep_heaviest
+from tracker.training.rig import Rig
 from tracker.training.spaces import compute_rotation_vectors
 
 Array = npt.NDArray[np.float64]

@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from tracker.geometry import se3
 from tracker.geometry.vertex_normals import normals_into
-from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel
+from tracker.model.articulated import ArticulatedModel
 from tracker.model.kinematics import SceneArrays, move_bones_into
 from tracker.model.pose_blend import NEGLIGIBLE, join_pose_blends, stack_pose_blend
-from tracker.model.skinning import PoseBlendArrays, add_pose_blend, skin_into, vertex_rows_into
+from tracker.model.skinning import MAX_WEIGHTS, PoseBlendArrays, add_pose_blend, skin_into, vertex_rows_into
 
 Array = npt.NDArray[np.float64]
 

@@ -24,6 +24,9 @@ Ints = npt.NDArray[np.int32]
 FAST = {"reassoc", "contract"}
 """Sums may be reordered, so that they are vectorised; nothing is assumed of the numbers."""
 
+MAX_WEIGHTS = 4
+"""Bones a vertex of a tracked or trained hand may follow, as game engines and glTF want it."""
+
 
 class PoseBlendArrays(NamedTuple):
     """Pose blend shapes, flat for the kernels.
@@ -192,6 +195,14 @@ def vertex_rows_into(jacobian, ids, rest, Ts, twists, skin, shifts, directions):
             row, a, b, c = jacobian[n, r, D:], R[r, 0], R[r, 1], R[r, 2]
             for s in range(moved):
                 row[s] += a * directions[v, 0, s] + b * directions[v, 1, s] + c * directions[v, 2, s]
+
+
+def keep_heaviest(skinning_weights: Array) -> Array:
+    """Weights (V, B) with the MAX_WEIGHTS largest of each row, scaled to sum to one."""
+    light = np.argsort(-skinning_weights, axis=1, kind="stable")[:, MAX_WEIGHTS:]
+    weights = skinning_weights.copy()
+    np.put_along_axis(weights, light, 0.0, axis=1)
+    return weights / weights.sum(axis=1, keepdims=True)
 
 
 def blend_motions(skinning_weights: Array, Ts: Array) -> Array:

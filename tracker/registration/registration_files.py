@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import json
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +12,7 @@ from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan_ply import write_ply
 from tracker.errors import RegistrationError, reading, reads
 from tracker.model.npz_arrays import NpzFields, read_foreign_npz
+from tracker.model.npz_files import pack_npz
 from tracker.registration.curved_triangles import refine
 from tracker.registration.registration import VERDICTS, Registration, summarize_distances
 
@@ -70,15 +69,7 @@ def pack_registration(registration: Registration) -> bytes:
         ),
     }
     arrays |= {name: np.array(getattr(registration, name)) for name in TEXTS}
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, array in arrays.items():
-            entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            content = io.BytesIO()
-            np.lib.format.write_array(content, np.asarray(array, order="C"), allow_pickle=False)
-            archive.writestr(entry, content.getvalue(), compresslevel=1)
-    return buffer.getvalue()
+    return pack_npz(arrays)
 
 
 @reads(RegistrationError, NEEDED)

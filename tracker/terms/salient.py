@@ -15,6 +15,7 @@ from tracker.detection.detection import Detection
 from tracker.model.scene import PosedScene
 from tracker.rendering import View
 from tracker.terms.look import TermLook
+from tracker.terms.nearby_pixels import find_vertex_pixel
 from tracker.terms.point_point import PointToPoint
 from tracker.terms.residual import FrameContext
 
@@ -142,13 +143,10 @@ def _is_visible(projected, inverse_depth, vertices, within):
     height, width = inverse_depth.shape
     result = np.zeros(len(vertices), dtype=np.bool_)
     for n in range(len(vertices)):
-        inverse = projected[vertices[n], 2]
-        if inverse <= 0.0:
-            continue
-        column, row = int(np.rint(projected[vertices[n], 0])), int(np.rint(projected[vertices[n], 1]))
-        if 0 <= row < height and 0 <= column < width:
+        row, column = find_vertex_pixel(projected, vertices[n], height, width)
+        if row >= 0:
             drawn = inverse_depth[row, column]
-            result[n] = drawn <= 0.0 or 1.0 / inverse <= 1.0 / drawn + within
+            result[n] = drawn <= 0.0 or 1.0 / projected[vertices[n], 2] <= 1.0 / drawn + within
     return result
 
 

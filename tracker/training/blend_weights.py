@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from tracker.model.skinning import MAX_WEIGHTS
 from tracker.training.pose_fit import Poses
-from tracker.training.rig import MOST_BONES, Rig, place
+from tracker.training.rig import Rig, place
 
 Array = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -51,8 +52,8 @@ def fit_blend_weights(
         pull = np.eye(B) - so_far[v][:, None]
         gram = grams[v] + stiffness * pull.T @ pull
         w = find_weights(gram, allowed[v])
-        if np.count_nonzero(w) > MOST_BONES:
-            w = find_weights(gram, w >= np.sort(w)[-MOST_BONES])
+        if np.count_nonzero(w) > MAX_WEIGHTS:
+            w = find_weights(gram, w >= np.sort(w)[-MAX_WEIGHTS])
         weights[v] = w
     return weights
 

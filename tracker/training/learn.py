@@ -9,13 +9,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_array
 
+from tracker.model.skinning import keep_heaviest
 from tracker.training.blend_weights import fit_blend_weights
 from tracker.training.joints import fit_joints
 from tracker.training.options import TrainingOptions
 from tracker.training.pose_fit import Hands, Poses, fit_poses, start_poses
 from tracker.training.pose_shapes import compute_costs, fit_pose_shapes, measure_from_joints
 from tracker.training.regressor import fit_joint_regressor
-from tracker.training.rig import Rig, find_features, keep_heaviest
+from tracker.training.rig import Rig, find_features
 from tracker.training.spaces import align_rigidly
 from tracker.training.templates import fit_templates, unpose, weigh_by_pose
 

@@ -19,9 +19,6 @@ from tracker.model.blend_model import stack_blend
 
 Array = npt.NDArray[np.float64]
 
-MOST_BONES = 4
-"""A vertex follows at most so many bones, as game engines and glTF want it."""
-
 
 @dataclass(frozen=True, eq=False)
 class Rig:
@@ -29,7 +26,7 @@ class Rig:
 
     Attributes:
         parents: (B,) -1 for the root, which is bone 0; a parent before its children.
-        skinning_weights: (V, B) of which at most MOST_BONES a row are not zero; rows sum to one.
+        skinning_weights: (V, B) of which at most MAX_WEIGHTS a row are not zero; rows sum to one.
         directions: Pose blend shapes (V, 3, 9(B-1)), or (V, 3, 0) for none, m.
     """
 
@@ -44,14 +41,6 @@ class Rig:
         nothing = csr_array((num_bones, num_vertices))
         template, unshaped = np.empty((num_vertices, 3)), np.empty((num_vertices, 3, 0))
         return stack_blend(template, unshaped, self.directions, self.skinning_weights, nothing, self.parents)
-
-
-def keep_heaviest(skinning_weights: Array) -> Array:
-    """Weights (V, B) with the MOST_BONES largest of each row, scaled to sum to one."""
-    light = np.argsort(-skinning_weights, axis=1, kind="stable")[:, MOST_BONES:]
-    weights = skinning_weights.copy()
-    np.put_along_axis(weights, light, 0.0, axis=1)
-    return weights / weights.sum(axis=1, keepdims=True)
 
 
 def find_features(rotations: Array) -> Array:

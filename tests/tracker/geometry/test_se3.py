@@ -52,12 +52,12 @@ def test_transform_moves_points_as_the_matrix_does(rng):
 @pytest.mark.parametrize("flip", [1.0, -1.0])
 def test_points_are_laid_onto_others_by_a_rotation_even_where_a_mirror_image_would_fit_better(rng, flip):
     points = rng.normal(size=(30, 3))
-    turns = Rotation.random(4, random_state=1).as_matrix()
+    turns = Rotation.random(4, rng=rng).as_matrix()
     others = np.einsum("nij,pj->npi", turns, points * [1.0, 1.0, flip])
     found = se3.find_rotations(np.einsum("npi,pj->nij", others, points))
     np.testing.assert_allclose(np.linalg.det(found), 1.0)
     if flip > 0.0:
         np.testing.assert_allclose(found, turns, atol=1e-12)
     best = np.einsum("nij,pj,npi->n", found, points, others)
-    for other in Rotation.random(50, random_state=2).as_matrix():
+    for other in Rotation.random(50, rng=rng).as_matrix():
         assert np.all(np.einsum("ij,pj,npi->n", other, points, others) <= best + 1e-9)

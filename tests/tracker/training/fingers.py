@@ -9,7 +9,8 @@ import numpy.typing as npt
 from scipy.sparse import csr_array
 from scipy.spatial.transform import Rotation
 
-from tracker.training.rig import Rig, keep_heaviest, place
+from tracker.model.skinning import keep_heaviest
+from tracker.training.rig import Rig, place
 
 PARENTS = np.array([-1, 0, 1, 2])
 RINGS, AROUND, LENGTH, RADIUS = 25, 10, 0.10, 0.009

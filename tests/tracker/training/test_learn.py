@@ -2,11 +2,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tests.tracker.training.fingers import PARENTS, crude_regressor, make_fingers, make_tube, make_weights
+from tracker.model.skinning import keep_heaviest
 from tracker.training.joints import fit_joints
 from tracker.training.learn import Data, begin, improve_joints, improve_surface
 from tracker.training.options import TrainingOptions
 from tracker.training.pose_fit import Hands, Poses
-from tracker.training.rig import Rig, keep_heaviest, place
+from tracker.training.rig import Rig, place
 
 
 def learn(fingers, rounds, **options):

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from tests.tracker.training.fingers import PARENTS, make_fingers
+from tracker.model.skinning import keep_heaviest
 from tracker.training.linearize import linearize
-from tracker.training.rig import Rig, keep_heaviest, place, turn
+from tracker.training.rig import Rig, place, turn
 
 
 @pytest.mark.parametrize("with_bulges", [False, True])

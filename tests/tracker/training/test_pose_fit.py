@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from tests.tracker.training.fingers import PARENTS, make_fingers
+from tracker.model.skinning import keep_heaviest
 from tracker.training.pose_fit import Hands, Poses, each, fit_poses, start_poses
-from tracker.training.rig import Rig, keep_heaviest
+from tracker.training.rig import Rig
 
 
 @pytest.fixture(scope="module")

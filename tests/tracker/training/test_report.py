@@ -5,11 +5,12 @@ import pytest
 from scipy.sparse import csr_array
 
 from tests.tracker.training.fingers import PARENTS, crude_regressor, make_fingers
+from tracker.model.skinning import keep_heaviest
 from tracker.training.learn import Learnt
 from tracker.training.options import TrainingOptions
 from tracker.training.pose_fit import Poses
 from tracker.training.report import describe_training
-from tracker.training.rig import Rig, keep_heaviest
+from tracker.training.rig import Rig
 from tracker.training.spaces import find_space
 from tracker.training.training_set import TrainingSet
 

@@ -4,7 +4,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from tests.tracker.random_blend import random_blend, random_pose
-from tracker.training.rig import Rig, find_features, keep_heaviest, place, turn
+from tracker.model.skinning import keep_heaviest
+from tracker.training.rig import Rig, find_features, place, turn
 
 
 def test_a_hand_with_the_models_own_joints_is_the_posed_model():

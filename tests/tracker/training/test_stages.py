@@ -4,9 +4,10 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from tests.tracker.training.fingers import PARENTS, crude_regressor, make_fingers
+from tracker.model.skinning import keep_heaviest
 from tracker.training.learn import Learnt
 from tracker.training.pose_fit import Poses
-from tracker.training.rig import Rig, keep_heaviest
+from tracker.training.rig import Rig
 from tracker.training.stages import FIRST, LAST, Stage, find_last, list_stages, pack_stage, unpack_stage
 
 

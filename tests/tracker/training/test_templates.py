@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from tests.tracker.training.fingers import PARENTS, make_fingers
+from tracker.model.skinning import keep_heaviest
 from tracker.training.pose_fit import Poses
-from tracker.training.rig import Rig, find_features, keep_heaviest
+from tracker.training.rig import Rig, find_features
 from tracker.training.templates import fit_templates, unpose, weigh_by_pose
 
 

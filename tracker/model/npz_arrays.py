@@ -151,7 +151,7 @@ class NpzFields:
 
     def _bound(self, name: str, array: npt.NDArray, limit: float) -> npt.NDArray:
         if array.size and not (np.all(np.isfinite(array)) and np.abs(array).max() <= limit):
-            raise self.error(self.path, f"'{name}' with values that are endless or beyond {limit:g}", "sound numbers")
+            raise self.error(self.path, f"'{name}' with values that are infinite or beyond {limit:g}", "sound numbers")
         return array
 
     def take(self, name: str, dtype: np.dtype | None, shape: tuple[int, ...]) -> npt.NDArray:

@@ -13,6 +13,7 @@ from tracker.model.scene import PosedScene, Scene
 from tracker.terms.look import TermLook
 from tracker.terms.point_line import PointToLine, find_slack
 from tracker.terms.residual import FrameContext
+from tracker.terms.surface_rows import span
 
 Array = npt.NDArray[np.float64]
 
@@ -43,11 +44,9 @@ class MarkedJoints:
 
     def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToLine:
         """The same rays whatever the pose, with less weight where the joint is far from its own."""
-        corners = np.repeat(self.ids[:, None], 3, axis=1).astype(np.int32)
-        shares = np.tile([1.0, 0.0, 0.0], (len(self.ids), 1))
         slack = find_slack(posed.vertices[self.ids], self.directions, self.moments, self.reach)
         weights = self.weight * self.beliefs / slack
-        return PointToLine(corners, shares, self.directions, self.moments, weights)
+        return PointToLine(*span(self.ids), self.directions, self.moments, weights)
 
 
 def mark_joints(

@@ -14,6 +14,7 @@ from tracker.terms.nearby_pixels import find_ring_pixel, find_vertex_pixel
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.point_point import PointToPoint
 from tracker.terms.residual import FrameContext
+from tracker.terms.surface_rows import span
 
 
 @dataclass(frozen=True)
@@ -57,13 +58,9 @@ class ModelToData:
         cosine = np.cos(np.deg2rad(self.max_angle))
         count = _find_into(ids, targets, context.drawn, self.stride, self.max_distance, cosine, self.visible_within)
         ids, targets = ids[:count], targets[:count]
-        corners = np.repeat(ids[:, None], 3, axis=1)
-        barycentric = np.zeros((count, 3))
-        barycentric[:, 0] = 1.0
-        weights = np.full(count, self.weight)
         if self.to_plane:
-            return PointToPlane(corners, barycentric, targets, posed.normals[ids], weights)
-        return PointToPoint(corners, barycentric, targets, weights)
+            return PointToPlane(*span(ids), targets, posed.normals[ids], np.full(count, self.weight))
+        return PointToPoint.of_vertices(ids, targets, self.weight)
 
 
 @njit(cache=True, nogil=True)

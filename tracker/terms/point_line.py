@@ -11,35 +11,24 @@ from numba import njit
 from tracker.model.scene import PosedScene
 from tracker.terms.normal_equations import MAX_BONES, MILLIMETRES, NormalEquations, add_row, gather_bones
 from tracker.terms.residual import ResidualBlock
+from tracker.terms.surface_rows import SurfaceRows
 
 Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class PointToLine:
+class PointToLine(SurfaceRows):
     """Surface points and the viewing rays they should lie on.
 
     Attributes:
-        ids: (N, 3) vertices that span each surface point.
-        barycentric: (N, 3) their shares.
         directions: (N, 3) unit direction d of each line, world.
         moments: (N, 3) moment m = x × d of each line, world, m.
         weights: (N,).
     """
 
-    ids: npt.NDArray[np.int32]
-    barycentric: Array
     directions: Array
     moments: Array
     weights: Array
-
-    @property
-    def count(self) -> int:
-        return len(self.ids)
-
-    def points(self, posed: PosedScene) -> Array:
-        """(N, 3) the surface points, world, m."""
-        return np.einsum("nc,nci->ni", self.barycentric, posed.vertices[self.ids])
 
     def linearize(self, posed: PosedScene) -> ResidualBlock:
         residual = np.cross(self.points(posed), self.directions) - self.moments  # (N, 3)

@@ -11,35 +11,24 @@ from numba import njit
 from tracker.model.scene import PosedScene
 from tracker.terms.normal_equations import MAX_BONES, MILLIMETRES, NormalEquations, add_row, gather_bones
 from tracker.terms.residual import ResidualBlock
+from tracker.terms.surface_rows import SurfaceRows
 
 Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class PointToPlane:
+class PointToPlane(SurfaceRows):
     """Surface points and the planes they should lie in; the normals are held fixed.
 
     Attributes:
-        ids: (N, 3) vertices that span each surface point.
-        barycentric: (N, 3) their shares.
         targets: (N, 3) a point of each plane, world, m.
         normals: (N, 3) unit, world.
         weights: (N,).
     """
 
-    ids: npt.NDArray[np.int32]
-    barycentric: Array
     targets: Array
     normals: Array
     weights: Array
-
-    @property
-    def count(self) -> int:
-        return len(self.ids)
-
-    def points(self, posed: PosedScene) -> Array:
-        """(N, 3) the surface points, world, m."""
-        return np.einsum("nc,nci->ni", self.barycentric, posed.vertices[self.ids])
 
     def linearize(self, posed: PosedScene) -> ResidualBlock:
         residual = np.einsum("ni,ni->n", self.normals, self.points(posed) - self.targets)

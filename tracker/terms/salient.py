@@ -82,15 +82,7 @@ class Salient:
             found = self._targets(posed, context.view, detection, fingertip)
             ids.append(fingertip)
             targets.append(found)
-        vertices = np.concatenate(ids).astype(np.int32)
-        barycentric = np.zeros((len(vertices), 3))
-        barycentric[:, 0] = 1.0
-        return PointToPoint(
-            np.repeat(vertices[:, None], 3, axis=1),
-            barycentric,
-            np.concatenate(targets),
-            np.full(len(vertices), self.weight),
-        )
+        return PointToPoint.of_vertices(np.concatenate(ids), np.concatenate(targets), self.weight)
 
     def assign(self, posed: PosedScene, view: View) -> list[tuple[Detection, Ints]]:
         """Detections with the vertices (n,) of the fingertip each belongs to; pairs near enough are left out."""

@@ -136,12 +136,10 @@ class ModelFit:
         sigma = settings.sigma_mm / MM
         reach = 4.0 * sigma
         matches = self.search.match(vertices, scan.points, scan.normals, reach, seeds)
-        weights = np.empty(len(scan.points))
-        is_found = matches.faces >= 0
-        missing = float(np.count_nonzero(~is_found)) * saturated(reach, sigma)
+        weights, total = weigh_matches(matches, reach, sigma)
         scale = len(vertices) / len(scan.points)
-        data = scale * MM * MM * (weigh_robustly(weights, matches.offsets, sigma) + missing)
-        weights *= scale * (is_found & ~matches.on_rim)
+        data = scale * MM * MM * total
+        weights *= scale
         back_weights = back_offsets = np.zeros(0)
         back_normals = np.zeros((0, 3))
         if settings.to_scan > 0.0:
@@ -226,6 +224,14 @@ class ModelFit:
         JtJ[np.arange(last, size), np.arange(last, size)] = shape_weight
         Jtr[last:] = shape_weight * state.shape
         return JtJ, Jtr
+
+
+def weigh_matches(matches: Matches, reach: float, sigma: float) -> tuple[Array, float]:
+    """Weights (N,) of matched points, 0 on the rim and where nothing lies within `reach`, m, and the sum of ρ, m²."""
+    weights, is_found = np.empty(len(matches.faces)), matches.faces >= 0
+    missing = float(np.count_nonzero(~is_found)) * saturated(reach, sigma)
+    total = weigh_robustly(weights, matches.offsets, sigma) + missing
+    return weights * (is_found & ~matches.on_rim), total
 
 
 def saturated(reach: float, sigma: float) -> float:

@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.vertex_normals import find_unit_normals
 from tracker.rendering.zbuffer import render_depth
 
 Array = npt.NDArray[np.float64]

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.distance_weights import with_distance_weights
 from tracker.capture.scan import Scan
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.blend_model import BlendModel
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.hand_state import HandState
@@ -20,7 +21,6 @@ from tracker.registration.register import Registrar
 from tracker.registration.registration import Registration
 from tracker.registration.surface_search import SurfaceSearch
 from tracker.registration.vertex_fit import fit_to_vertices
-from tracker.registration.vertex_normals import find_unit_normals
 from tracker.synthesis.scans.generate import generate_truth
 
 Array = npt.NDArray[np.float64]

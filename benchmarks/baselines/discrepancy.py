@@ -8,8 +8,9 @@ from numba import njit
 
 from tracker.fitting.frame_fit import label_scene
 from tracker.geometry import se3
-from tracker.model.kinematics import move_bones_into, skin_into
+from tracker.model.kinematics import move_bones_into
 from tracker.model.scene import Scene
+from tracker.model.skinning import skin_into
 from tracker.observation import Observation
 from tracker.rendering.zbuffer import project_into, rasterize_into
 
@@ -62,7 +63,7 @@ class Discrepancy:
         self.inverse_depth.fill(0.0)
         self.face.fill(-1)
         move_bones_into(self.Ms, self.twists, arrays, pose)
-        skin_into(self.vertices, self.bone_vertices, self.scene.arrays_at(self.Ms), self.Ms)
+        skin_into(self.vertices, self.bone_vertices, self.scene.surface_at(self.Ms), arrays, self.Ms)
         in_camera = self.vertices @ self.T_camera_world[:3, :3].T + self.T_camera_world[:3, 3]
         project_into(self.projected, in_camera, K[0, 0], K[1, 1], K[0, 2], K[1, 2])
         rasterize_into(self.inverse_depth, self.face, self.projected, arrays.faces, self.scene.open_faces)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.studies.twin_runs import FACES
-from tracker.model.kinematics import normals_into
+from tracker.geometry.vertex_normals import normals_into
 from tracker.model.scene import Scene
 from tracker.synthesis.performance import Performance
 from tracker.synthesis.twin import load_twin

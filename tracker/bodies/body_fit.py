@@ -180,6 +180,12 @@ def hand_columns(size: int, hand: int) -> Ints:
     return NUM_TURNED + hand * size + np.arange(size)
 
 
+def find_parts(model: BlendModel, bones: list[int] | Ints) -> tuple[Ints, Ints]:
+    """Vertices (V',) that follow some bones most, and all others."""
+    is_own = np.isin(model.skinning_weights.argmax(axis=1), bones)
+    return np.flatnonzero(is_own), np.flatnonzero(~is_own)
+
+
 def _faces_of(faces: Ints, ids: Ints, num_vertices: int) -> Ints:
     """(F', 3) the faces between vertices (V',), renumbered."""
     places = np.full(num_vertices, -1)

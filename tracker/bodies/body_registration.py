@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,8 +13,9 @@ import numpy.typing as npt
 from tracker.bodies.body_state import BodyState
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan_ply import write_ply
-from tracker.errors import ModelFileError, RegistrationError, reads
-from tracker.model.npz_arrays import read_foreign_npz
+from tracker.errors import RegistrationError, reads
+from tracker.model.npz_arrays import NpzFields, read_foreign_npz
+from tracker.model.npz_files import pack_npz
 from tracker.registration.registration import summarize_distances
 
 Array = npt.NDArray[np.float64]
@@ -89,20 +89,19 @@ def pack_body_registration(registration: BodyRegistration) -> bytes:
         "scan_digest": registration.scan_digest,
         "model_digest": registration.model_digest,
     }
-    buffer = io.BytesIO()
-    np.savez_compressed(
-        buffer,
-        vertices=registration.vertices,
-        model_vertices=registration.model_vertices,
-        poses=state.pose.reshape(1, -1),
-        trans=state.translation[None],
-        betas=state.shape,
-        hands=state.hands,
-        are_shown=np.array(registration.are_shown),
-        scan_to_mesh=registration.scan_to_mesh.astype(np.float32),
-        said=np.array(json.dumps(said)),
+    return pack_npz(
+        {
+            "vertices": registration.vertices,
+            "model_vertices": registration.model_vertices,
+            "poses": state.pose.reshape(1, -1),
+            "trans": state.translation[None],
+            "betas": state.shape,
+            "hands": state.hands,
+            "are_shown": np.array(registration.are_shown),
+            "scan_to_mesh": registration.scan_to_mesh.astype(np.float32),
+            "said": np.array(json.dumps(said)),
+        }
     )
-    return buffer.getvalue()
 
 
 @reads(RegistrationError, NEEDED)
@@ -113,29 +112,26 @@ def load_body_registration(folder: Path) -> BodyRegistration:
         RegistrationError: With what was found and what is needed.
     """
     path = folder / BODY_FILE if folder.is_dir() else folder
-    try:
-        arrays = read_foreign_npz(path)
-    except ModelFileError as error:
-        raise RegistrationError(path, "a damaged file or no archive", NEEDED) from error
-    said = json.loads(str(arrays["said"].item())[:100_000])
-    vertices = _floats(path, arrays, "vertices", (-1, 3))
+    fields = NpzFields(path, read_foreign_npz(path, RegistrationError), RegistrationError)
+    said = json.loads(fields.text("said", 100_000))
+    vertices = fields.numbers("vertices", (-1, 3), MAX_COORDINATE)
     if len(vertices) > MAX_VERTICES:
         raise RegistrationError(path, f"{len(vertices)} vertices", f"at most {MAX_VERTICES}")
     state = BodyState(
-        _floats(path, arrays, "poses", (1, 156)).reshape(52, 3),
-        _floats(path, arrays, "betas", (-1,)),
-        _floats(path, arrays, "trans", (1, 3))[0],
-        _floats(path, arrays, "hands", (2, -1)),
+        fields.numbers("poses", (1, 156), MAX_COORDINATE).reshape(52, 3),
+        fields.numbers("betas", (-1,), MAX_COORDINATE),
+        fields.numbers("trans", (1, 3), MAX_COORDINATE)[0],
+        fields.numbers("hands", (2, -1), MAX_COORDINATE),
     )
-    shown = arrays["are_shown"].astype(bool)
+    shown = fields.arrays["are_shown"].astype(bool)
     if shown.shape != (2,):
         raise RegistrationError(path, f"'are_shown' {shown.shape}", "two of them")
     return BodyRegistration(
         vertices,
-        _floats(path, arrays, "model_vertices", vertices.shape),
+        fields.numbers("model_vertices", vertices.shape, MAX_COORDINATE),
         state,
         (bool(shown[0]), bool(shown[1])),
-        _floats(path, arrays, "scan_to_mesh", (-1,)),
+        fields.numbers("scan_to_mesh", (-1,), MAX_COORDINATE),
         str(said["verdict"]),
         tuple(str(reason) for reason in said["reasons"]),
         {str(name): float(value) for name, value in said["measures"].items()},
@@ -144,15 +140,3 @@ def load_body_registration(folder: Path) -> BodyRegistration:
         str(said["scan_digest"]),
         str(said["model_digest"]),
     )
-
-
-def _floats(path: Path, arrays: dict[str, npt.NDArray], name: str, shape: tuple[int, ...]) -> Array:
-    array = arrays.get(name)
-    if array is None or array.dtype.kind not in "fiu" or array.ndim != len(shape):
-        raise RegistrationError(path, f"no numbers '{name}' of {len(shape)} dimensions", NEEDED)
-    if any(want not in (-1, have) for want, have in zip(shape, array.shape, strict=True)):
-        raise RegistrationError(path, f"'{name}' {array.shape}", f"{shape}")
-    array = np.ascontiguousarray(array, dtype=np.float64)
-    if array.size and not (np.isfinite(array).all() and np.abs(array).max() <= MAX_COORDINATE):
-        raise RegistrationError(path, f"'{name}' with values beyond {MAX_COORDINATE:g}", "sound numbers")
-    return array

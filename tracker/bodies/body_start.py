@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from tracker.bodies.body_fit import BodyFit
 from tracker.bodies.body_state import BodyState, make_state
 from tracker.bodies.limb_search import LimbSearch
+from tracker.geometry.se3 import find_rotations
 from tracker.model.body_hands import NUM_BODY_JOINTS
 from tracker.model.mano_files import BODY_JOINTS
 from tracker.registration.hand_state import HandState
@@ -149,12 +150,7 @@ class BodyStart:
         return [self._place(each) for each in chosen]
 
     def _place(self, stiff: Stiff) -> BodyState:
-        state = self.states[stiff.pose]
-        root = state.posed(self.fit.model).joints[0]
-        pose = state.pose.copy()
-        pose[0] = Rotation.from_matrix(stiff.R).as_rotvec()
-        place = stiff.R @ (root - self.clouds[stiff.pose][1]) + stiff.t
-        return BodyState(pose, state.shape, place - root, state.hands)
+        return self.states[stiff.pose].moved(self.fit.model, stiff.R, stiff.t - stiff.R @ self.clouds[stiff.pose][1])
 
     def find_stiff(self, scan: ScanPoints) -> list[Stiff]:
         """Stiff bodies on the scan, the best first."""
@@ -209,6 +205,5 @@ def _kabsch(source: Array, target: Array, weights: Array) -> tuple[Array, Array]
     """R, t that lay source (N, 3) onto target (N, 3)."""
     share = weights / weights.sum()
     mine, theirs = share @ source, share @ target
-    U, _, Vt = np.linalg.svd((source - mine).T @ ((target - theirs) * share[:, None]))
-    R = Vt.T @ np.diag([1.0, 1.0, np.sign(np.linalg.det(Vt.T @ U.T))]) @ U.T
+    R = find_rotations(((target - theirs) * share[:, None]).T @ (source - mine))
     return R, theirs - R @ mine

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -63,19 +62,13 @@ class HandSpace:
         return np.einsum("hjxy,hcjy->hjxc", turns, own).reshape(2, 3 * NUM_FINGER_JOINTS, self.size)
 
 
-@lru_cache(maxsize=8)
 def hand_space(model: BlendModel, size: int = 6) -> HandSpace:
     """Of a body with SMPL-H's joints; `size` components for each hand."""
-    means, components = [], []
-    for side in SIDES:
-        fingers = body_hand(model, side).fingers
-        columns = slice(3 * (fingers[0] - 1), 3 * fingers[-1])
-        own = model.pose_components[:, columns]
-        own = own[np.any(own != 0.0, axis=1)]
-        assert 1 <= size <= len(own), f"{size} components of {len(own)}"
-        means.append(model.pose_mean[columns])
-        components.append(own[:size])
-    return HandSpace(np.array(means), np.array(components))
+    hands = [body_hand(model, side) for side in SIDES]
+    components = [hand.components_of(model) for hand in hands]
+    assert all(1 <= size <= len(own) for own in components), f"{size} components of {len(components[0])}"
+    means = np.array([model.pose_mean[hand.columns] for hand in hands])
+    return HandSpace(means, np.array([own[:size] for own in components]))
 
 
 def make_state(model: BlendModel, space: HandSpace, pose: Array | None = None, hands: Array | None = None) -> BodyState:
@@ -87,9 +80,11 @@ def make_state(model: BlendModel, space: HandSpace, pose: Array | None = None, h
         pose: (52, 3) whose first 22 joints count, rad; zero when left out.
         hands: (2, C) or fewer columns; zero, the mean pose, when left out.
     """
-    body = np.zeros((NUM_BODY_JOINTS, 3)) if pose is None else pose
-    still = BodyState(body, np.zeros(model.num_shape), np.zeros(3), np.zeros((2, 0)))
-    return with_hands(still, space, still.hands if hands is None else hands)
+    none = np.zeros((2, 0))
+    state = BodyState(
+        np.zeros((NUM_BODY_JOINTS, 3)) if pose is None else pose, np.zeros(model.num_shape), np.zeros(3), none
+    )
+    return with_hands(state, space, none if hands is None else hands)
 
 
 def with_hands(state: BodyState, space: HandSpace, hands: Array) -> BodyState:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -13,11 +14,12 @@ from tracker.bodies.body_fit import Anchor, BodyFit
 from tracker.bodies.body_registration import BodyRegistration
 from tracker.bodies.body_state import NUM_TURNED, BodyState, with_hands
 from tracker.bodies.hand_mixture import HandMixture, default_mixture
-from tracker.bodies.register_body import BodyOptions, Clock, Registrar, arrange, points_near_hands
+from tracker.bodies.register_body import BodyOptions, Registrar, arrange, points_near_hands
 from tracker.capture.scan import Scan
 from tracker.model.blend_model import BlendModel
 from tracker.registration.free_fit import FreeSettings
 from tracker.registration.model_fit import FitSettings
+from tracker.registration.stage_clock import StageClock
 
 Array = npt.NDArray[np.float64]
 
@@ -95,7 +97,7 @@ class BodyFollower:
 
     def follow(self, scan: Scan, before: BodyRegistration) -> BodyRegistration:
         """The scan behind a registered one."""
-        registrar, clock = self.registrar, Clock()
+        registrar, clock = self.registrar, StageClock(time.perf_counter)
         with clock.measure("body"):
             state = self._follow_body(scan, before)
         with clock.measure("hands"):

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
-from tracker.bodies.body_fit import BodyFit, hand_columns, joint_columns
+from tracker.bodies.body_fit import BodyFit, find_parts, hand_columns, joint_columns
 from tracker.bodies.body_state import SIDES, BodyState, with_hands
 from tracker.bodies.hand_mixture import HandMixture
 from tracker.model.blend_model import BlendModel
@@ -70,12 +70,11 @@ class HandSearch:
         self.hands: list[BodyHand] = [body_hand(model, side) for side in SIDES]
         self.fits: list[BodyFit] = []
         self.rest: list[Ints] = []
-        heaviest = model.skinning_weights.argmax(axis=1)
         for k, hand in enumerate(self.hands):
-            ids = np.flatnonzero(np.isin(heaviest, [hand.elbow, hand.wrist, *hand.fingers]))
+            ids, rest = find_parts(model, [hand.elbow, hand.wrist, *hand.fingers])
             columns = np.concatenate([joint_columns(hand.elbow), joint_columns(hand.wrist), hand_columns(size, k)])
             self.fits.append(BodyFit(model, prior, mixture, size, ids, columns))
-            self.rest.append(np.setdiff1d(np.arange(len(model.template)), ids))
+            self.rest.append(rest)
 
     def find(self, state: BodyState, scan: ScanPoints, sides: tuple[int, ...] = (0, 1)) -> FoundHands:
         """Hands from a state whose arms are about right.
@@ -104,7 +103,7 @@ class HandSearch:
         near = np.flatnonzero(np.linalg.norm(scan.points - middle, axis=1) < REACH)
         rest = KDTree(posed.vertices[self.rest[k]])
         ids = near[rest.query(scan.points[near], distance_upper_bound=AWAY)[0] > AWAY]
-        return ScanPoints(np.ascontiguousarray(scan.points[ids]), np.ascontiguousarray(scan.normals[ids]))
+        return scan.chosen(ids)
 
     def is_shown(self, state: BodyState, points: ScanPoints, k: int) -> bool:
         """Whether there are points past the wrist."""

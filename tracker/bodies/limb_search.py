@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
-from tracker.bodies.body_fit import BodyFit, joint_columns
+from tracker.bodies.body_fit import BodyFit, find_parts, joint_columns
 from tracker.bodies.body_state import SIDES, BodyState
 from tracker.bodies.hand_mixture import HandMixture
 from tracker.model.blend_model import BlendModel
@@ -87,19 +87,18 @@ class LimbSearch:
     def _points_of(self, limb: Limb, state: BodyState, scan: ScanPoints) -> ScanPoints:
         vertices = state.posed(self.model).vertices
         ids = np.flatnonzero(KDTree(vertices[limb.rest]).query(scan.points, distance_upper_bound=AWAY)[0] > AWAY)
-        return ScanPoints(np.ascontiguousarray(scan.points[ids]), np.ascontiguousarray(scan.normals[ids]))
+        return scan.chosen(ids)
 
 
 def _make_limb(model, prior, mixture, size, side: str, is_arm: bool) -> Limb:
     names = ("shoulder", "elbow", "wrist") if is_arm else ("hip", "knee", "ankle", "foot")
     joints = [BODY_JOINTS.index(f"{side}_{name}") for name in names]
     bones = [*joints, *body_hand(model, side).fingers] if is_arm else joints
-    heaviest = model.skinning_weights.argmax(axis=1)
-    ids = np.flatnonzero(np.isin(heaviest, bones))
+    ids, rest = find_parts(model, bones)
     columns = np.concatenate([joint_columns(joint) for joint in joints])
     fit = BodyFit(model, prior, mixture, size, ids, columns)
     sign = 1.0 if side == "left" else -1.0
-    return Limb(fit, joints[0], joints[1], sign, is_arm, np.setdiff1d(np.arange(len(model.template)), ids))
+    return Limb(fit, joints[0], joints[1], sign, is_arm, rest)
 
 
 def _starts(limb: Limb, state: BodyState) -> list[BodyState]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -29,6 +28,7 @@ from tracker.registration.free_fit import FreeFit, FreeSettings, FreeSurface
 from tracker.registration.model_fit import Evaluation, FitSettings
 from tracker.registration.registration import digest_model, digest_scan
 from tracker.registration.scan_points import ScanPoints
+from tracker.registration.stage_clock import StageClock
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
@@ -119,7 +119,7 @@ class Registrar:
             progress: Is told a stage and its share of the whole; what it raises ends the work.
         """
         tell = progress or (lambda stage, share: None)
-        clock = Clock()
+        clock = StageClock(time.perf_counter)
         if start is None:
             with clock.measure("start"):
                 tell("start", 0.0)
@@ -209,7 +209,7 @@ class Registrar:
             surface = free.fit(surface, points.first(count), settings)
         return surface
 
-    def judge(self, scan: Scan, surface: FreeSurface, shown: tuple[bool, bool], clock: Clock) -> BodyRegistration:
+    def judge(self, scan: Scan, surface: FreeSurface, shown: tuple[bool, bool], clock: StageClock) -> BodyRegistration:
         """Distances of every point, and the verdict."""
         found = self.fine.search.match(surface.vertices, scan.points, np.zeros_like(scan.points), reach=10.0)
         state = replace(surface.state, translation=surface.state.translation + surface.offset)
@@ -253,16 +253,3 @@ def points_near_hands(scan: Scan, state: BodyState, model: BlendModel, count: in
     wrists = [joints[body_hand(model, side).wrist] for side in SIDES]
     near = np.min([np.linalg.norm(scan.points - wrist, axis=1) for wrist in wrists], axis=0) < 0.45
     return arrange(scan, np.where(near, 1e3, 1.0), count)
-
-
-class Clock:
-    """Seconds by stage."""
-
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
-
-    @contextmanager
-    def measure(self, stage: str):
-        began = time.perf_counter()
-        yield
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - began

@@ -15,6 +15,7 @@ from tracker.capture.scan import Scan
 from tracker.errors import TrackerError
 from tracker.model.blend_model import BlendModel
 from tracker.model.body_hands import body_hand
+from tracker.model.skinning import blend_motions, take_back
 
 Array = npt.NDArray[np.float64]
 
@@ -23,10 +24,8 @@ def unpose(model: BlendModel, registration: BodyRegistration) -> Array:
     """(V, 3) a registration's surface taken back to the zero pose, without pose blend shapes, m."""
     state = registration.state
     posed = state.posed(model)
-    moved = np.einsum("vb,bxy->vxy", model.skinning_weights, posed.Ts)
-    blended = posed.rest - posed.arrays.shaped
-    back = np.linalg.solve(moved[:, :, :3], (registration.vertices - moved[:, :, 3])[:, :, None])[:, :, 0]
-    return back - blended
+    back = take_back(blend_motions(model.skinning_weights, posed.Ts), registration.vertices)
+    return back - (posed.rest - posed.arrays.shaped)
 
 
 def make_template(model: BlendModel, registrations: list[BodyRegistration]) -> BlendModel:

@@ -12,11 +12,12 @@ import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
 
 from tracker.model.blend_model import BlendModel, PosedBlend
+from tracker.model.skinning import keep_heaviest
 from tracker.registration.equations import add_model_rows, weigh_robustly
 from tracker.registration.surface_search import SurfaceSearch
 from tracker.solver.minimize import minimize_damped
-from tracker.training.motion import sparsen_skinning
-from tracker.training.pose_fit import Hands, Rig, fit_poses, start_poses
+from tracker.training.pose_fit import Hands, fit_poses, start_poses
+from tracker.training.rig import Rig
 from tracker.training.spaces import compute_rotation_vectors
 
 Array = npt.NDArray[np.float64]
@@ -53,7 +54,7 @@ def with_template(model: BlendModel, template: Array) -> BlendModel:
 
 def fit_pose_to_vertices(model: BlendModel, vertices: Array, iterations: int = 20) -> HandFit:
     """The pose, mean shape, that lies nearest to vertices (V, 3), m."""
-    rig = Rig(np.ascontiguousarray(model.parents), sparsen_skinning(model.skinning_weights), model.pose_directions)
+    rig = Rig(np.ascontiguousarray(model.parents), keep_heaviest(model.skinning_weights), model.pose_directions)
     templates, targets, owners = model.template[None], vertices[None], np.zeros(1, dtype=np.int64)
     joints = model.joints_of(model.template)[None]
     hands = Hands(targets, owners, templates, joints, rig)

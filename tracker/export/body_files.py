@@ -15,10 +15,10 @@ from tracker.errors import TrackerError
 from tracker.export.glb_writer import ARRAY_BUFFER, ELEMENT_BUFFER, GlbWriter
 from tracker.export.gltf_animation import add_targets, find_local, find_quaternions
 from tracker.export.pose_morphs import choose_morphs
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.blend_model import BlendModel
 from tracker.model.body_motion import BodyMotion
 from tracker.model.pose_blend import PoseBlend
-from tracker.registration.vertex_normals import find_unit_normals
 
 Array = npt.NDArray[np.float64]
 

@@ -12,6 +12,7 @@ from tracker.fitting.frame_fit import find_residuals
 from tracker.fitting.objective import Objective
 from tracker.model.hand_directions import HandDirections
 from tracker.model.scene import PosedScene, Scene
+from tracker.model.skinning import shift_bones
 from tracker.observation import Observation
 from tracker.solver.elimination import add_shared_rows, solve_definite, subtract_product
 from tracker.terms.normal_equations import MILLIMETRES
@@ -79,15 +80,13 @@ class SceneDirections:
 def shape_derivative(posed: PosedScene, directions: SceneDirections) -> Array:
     """(V, 3, S) derivative of the posed vertices, landmarks included, by each value, world, m.
 
-    With R_j the turn of bone j's motion from rest, a joint that moves by δ at rest moves all that follows it by
-    (R_parent − R_j) δ, and a vertex of the bones j moves by its own Σ κ_j R_j δ besides.
+    Bones shift with their joints at rest (`shift_bones`); a vertex of the bones j moves by its own Σ κ_j R_j δ besides.
     """
     arrays = posed.scene.arrays
     R = posed.Ms[:, :, :3]
-    shifts = np.zeros((len(R), 3, directions.joints.shape[2]))
-    for bone, parent in enumerate(arrays.parents):
-        if parent >= 0:
-            shifts[bone] = shifts[parent] + (R[parent] - R[bone]) @ directions.joints[bone]
+    shifts = shift_bones(
+        posed.Ms, arrays.parents, np.where((arrays.parents < 0)[:, None, None], 0.0, directions.joints)
+    )
     rows = np.repeat(np.arange(len(arrays.weights)), arrays.weights.shape[1])
     weights = csr_matrix((arrays.weights.ravel(), (rows, arrays.weight_bones.ravel())), (len(posed.vertices), len(R)))
     turns = (weights @ R.reshape(-1, 9)).reshape(-1, 3, 3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from tracker.geometry.triangles import compute_squared_distance, meet_line
+from tracker.geometry.triangles import find_closest, meet_line
 
 
 @njit(cache=True, nogil=True)
@@ -153,7 +153,7 @@ def find_distance(fitted, may_meet, own, start, stop, point):
                 for place in range(starts[node], ends[node]):
                     f = order[place]
                     if triangle_may_meet[f, own]:
-                        squared = compute_squared_distance(vertices, faces, f, point[0], point[1], point[2])
-                        best = min(best, squared)
+                        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+                        best = min(best, find_closest(point[0], point[1], point[2], vertices, a, b, c)[0])
             node += 1
     return np.sqrt(best)

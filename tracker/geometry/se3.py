@@ -13,18 +13,31 @@ Array = npt.NDArray[np.float64]
 
 
 @njit(cache=True, nogil=True)
+def rotation_into(R: Array, rotation_vector: Array) -> None:
+    """Write exp of a rotation vector (3,), rad, to the first three rows and columns of R."""
+    x, y, z = rotation_vector[0], rotation_vector[1], rotation_vector[2]
+    angle2 = x * x + y * y + z * z
+    if angle2 < 1e-12:
+        a, b = 1.0 - angle2 / 6.0, 0.5 - angle2 / 24.0
+    else:
+        angle = np.sqrt(angle2)
+        a, b = np.sin(angle) / angle, (1.0 - np.cos(angle)) / angle2
+    R[0, 0], R[0, 1], R[0, 2] = 1.0 - b * (y * y + z * z), b * x * y - a * z, b * x * z + a * y
+    R[1, 0], R[1, 1], R[1, 2] = b * x * y + a * z, 1.0 - b * (x * x + z * z), b * y * z - a * x
+    R[2, 0], R[2, 1], R[2, 2] = b * x * z - a * y, b * y * z + a * x, 1.0 - b * (x * x + y * y)
+
+
+@njit(cache=True, nogil=True)
 def exp_into(T: Array, twist: Array) -> None:
     """Write exp of a (6,) twist to the (4, 4) array T."""
+    rotation_into(T, twist[3:])
     wx, wy, wz = twist[3], twist[4], twist[5]
     theta2 = wx * wx + wy * wy + wz * wz
     if theta2 < 1e-12:
-        a, b, c = 1.0 - theta2 / 6.0, 0.5 - theta2 / 24.0, 1.0 / 6.0 - theta2 / 120.0
+        b, c = 0.5 - theta2 / 24.0, 1.0 / 6.0 - theta2 / 120.0
     else:
         theta = np.sqrt(theta2)
-        a, b, c = np.sin(theta) / theta, (1.0 - np.cos(theta)) / theta2, (theta - np.sin(theta)) / (theta2 * theta)
-    T[0, 0], T[0, 1], T[0, 2] = 1 - b * (wy * wy + wz * wz), b * wx * wy - a * wz, b * wx * wz + a * wy
-    T[1, 0], T[1, 1], T[1, 2] = b * wx * wy + a * wz, 1 - b * (wx * wx + wz * wz), b * wy * wz - a * wx
-    T[2, 0], T[2, 1], T[2, 2] = b * wx * wz - a * wy, b * wy * wz + a * wx, 1 - b * (wx * wx + wy * wy)
+        b, c = (1.0 - np.cos(theta)) / theta2, (theta - np.sin(theta)) / (theta2 * theta)
     vx, vy, vz = twist[0], twist[1], twist[2]
     T[0, 3] = (1 - c * (wy * wy + wz * wz)) * vx + (c * wx * wy - b * wz) * vy + (c * wx * wz + b * wy) * vz
     T[1, 3] = (c * wx * wy + b * wz) * vx + (1 - c * (wx * wx + wz * wz)) * vy + (c * wy * wz - b * wx) * vz
@@ -68,6 +81,13 @@ def inverse(T: Array) -> Array:
 def transform(T: Array, points: Array) -> Array:
     """Move points (..., 3) by the rigid motion T (4, 4)."""
     return points @ T[:3, :3].T + T[:3, 3]
+
+
+def find_rotations(moments: Array) -> Array:
+    """Rotations (..., 3, 3) that lay points on others best (Kabsch), of Σ other pointᵀ (..., 3, 3) about the means."""
+    U, _, Vt = np.linalg.svd(moments)
+    U[..., 2] *= np.linalg.det(U @ Vt)[..., None]
+    return U @ Vt
 
 
 def _hat(omega: Array) -> Array:

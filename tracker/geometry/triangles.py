@@ -108,37 +108,40 @@ def meet_line(vertices, faces, f, x, y, z, dx, dy, dz):
 
 
 @njit(cache=True, nogil=True)
-def compute_squared_distance(vertices, faces, f, x, y, z):
-    """Squared distance, m², from (x, y, z) to triangle f."""
-    a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+def find_closest(px, py, pz, vertices, a, b, c):
+    """Squared distance from p to the triangle a, b, c, and weights of b and c at its closest point."""
     ax, ay, az = vertices[a, 0], vertices[a, 1], vertices[a, 2]
     ux, uy, uz = vertices[b, 0] - ax, vertices[b, 1] - ay, vertices[b, 2] - az
     wx, wy, wz = vertices[c, 0] - ax, vertices[c, 1] - ay, vertices[c, 2] - az
-    px, py, pz = x - ax, y - ay, z - az
+    qx, qy, qz = px - ax, py - ay, pz - az
     uu, uw, ww = ux * ux + uy * uy + uz * uz, ux * wx + uy * wy + uz * wz, wx * wx + wy * wy + wz * wz
-    pu, pw = px * ux + py * uy + pz * uz, px * wx + py * wy + pz * wz
-    det = uu * ww - uw * uw
-    if det > 0.0:
-        beta, gamma = (ww * pu - uw * pw) / det, (uu * pw - uw * pu) / det
-        if beta >= 0.0 and gamma >= 0.0 and beta + gamma <= 1.0:
-            rx, ry, rz = px - beta * ux - gamma * wx, py - beta * uy - gamma * wy, pz - beta * uz - gamma * wz
-            return rx * rx + ry * ry + rz * rz
-    return min(
-        _compute_squared_distance_to_side(px, py, pz, ux, uy, uz),
-        _compute_squared_distance_to_side(px, py, pz, wx, wy, wz),
-        _compute_squared_distance_to_side(px - ux, py - uy, pz - uz, wx - ux, wy - uy, wz - uz),
-    )
-
-
-@njit(cache=True, nogil=True)
-def _compute_squared_distance_to_side(px, py, pz, ex, ey, ez):
-    """Squared distance from p to the segment from the origin to e."""
-    length = ex * ex + ey * ey + ez * ez
-    share = 0.0
-    if length > 0.0:
-        share = min(max((px * ex + py * ey + pz * ez) / length, 0.0), 1.0)
-    rx, ry, rz = px - share * ex, py - share * ey, pz - share * ez
-    return rx * rx + ry * ry + rz * rz
+    uq, wq = ux * qx + uy * qy + uz * qz, wx * qx + wy * qy + wz * qz
+    area = uu * ww - uw * uw
+    t = s = 0.0
+    is_inside = False
+    if area > 0.0:
+        s, t = (ww * uq - uw * wq) / area, (uu * wq - uw * uq) / area
+        is_inside = s >= 0.0 and t >= 0.0 and s + t <= 1.0
+    if not is_inside:  # the nearest point of the three edges
+        best = np.inf
+        side = 0.0 if uu == 0.0 else min(max(uq / uu, 0.0), 1.0)
+        dx, dy, dz = qx - side * ux, qy - side * uy, qz - side * uz
+        best, s, t = dx * dx + dy * dy + dz * dz, side, 0.0
+        side = 0.0 if ww == 0.0 else min(max(wq / ww, 0.0), 1.0)
+        dx, dy, dz = qx - side * wx, qy - side * wy, qz - side * wz
+        square = dx * dx + dy * dy + dz * dz
+        if square < best:
+            best, s, t = square, 0.0, side
+        vx, vy, vz = wx - ux, wy - uy, wz - uz
+        vv = vx * vx + vy * vy + vz * vz
+        side = 0.0 if vv == 0.0 else ((qx - ux) * vx + (qy - uy) * vy + (qz - uz) * vz) / vv
+        side = min(max(side, 0.0), 1.0)
+        dx, dy, dz = qx - ux - side * vx, qy - uy - side * vy, qz - uz - side * vz
+        square = dx * dx + dy * dy + dz * dz
+        if square < best:
+            best, s, t = square, 1.0 - side, side
+    dx, dy, dz = qx - s * ux - t * wx, qy - s * uy - t * wy, qz - s * uz - t * wz
+    return dx * dx + dy * dy + dz * dz, s, t
 
 
 def is_watertight(faces: npt.NDArray[np.int64]) -> bool:

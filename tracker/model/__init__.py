@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tracker.lazy_names import offer
 
 if TYPE_CHECKING:
-    from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
+    from tracker.model.articulated import ArticulatedModel, HandParts, ShapeBasis
     from tracker.model.blend_files import load_blend_model, save_blend_model
     from tracker.model.blend_mirroring import mirror_blend, mirror_blend_pose
     from tracker.model.blend_model import BlendModel, PosedBlend
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from tracker.model.scene import PosedScene, Scene
     from tracker.model.shape import with_shape
     from tracker.model.skeleton import Skeleton
+    from tracker.model.skinning import MAX_WEIGHTS
     from tracker.model.t16_files import load_t16_model, load_t16_motion
 
 __getattr__, __dir__ = offer(__name__)

@@ -98,7 +98,3 @@ class ArticulatedModel:
     def is_closed(self) -> bool:
         """Whether the mesh has no hole, so that its inside is never seen."""
         return is_watertight(self.faces)
-
-
-MAX_WEIGHTS = 4
-"""Bones a vertex may follow; the kernels unroll over this many."""

@@ -1,8 +1,11 @@
-"""Forward model of [R17] Eq. 1-4, as kernels over flat arrays.
+"""Forward model of [R17] Eq. 1-4 and its derivative, as kernels over flat arrays.
 
 Bone b turns by R_b = exp(pose_b) against its parent, about its joint. With G_b the product of rotations from the root
 to b, j_b the joint at rest and g_b the joint posed (g_0 = j_0 + translation), bone b carries a point x of the rest
-surface to G_b (x - j_b) + g_b, and a vertex goes to the sum of that by its skinning weights.
+surface to G_b (x - j_b) + g_b, and a vertex goes to the sum of that by its skinning weights (`skinning`).
+
+Degrees of freedom stand in this order: the root's turn about the axes of the world, the translation, the turn of every
+other bone about the axes of its parent. A turn δ multiplies from the left, R_b <- exp(δ) R_b.
 """
 
 from __future__ import annotations
@@ -13,33 +16,43 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-Array = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
+from tracker.geometry.se3 import rotation_into
+from tracker.model.skinning import (
+    FAST,
+    Array,
+    Ints,
+    PoseBlendArrays,
+    add_pose_blend,
+    shift_bones,
+    skin_into,
+    vertex_rows_into,
+)
 
-FAST = {"reassoc", "contract"}
-"""Sums may be reordered, so that they are vectorised; nothing is assumed of the numbers."""
+CHUNK = 32
+"""Vertices whose derivative is held at a time; it stays in the first caches."""
 
 
 class BlendArrays(NamedTuple):
     """A blend model, flat for the kernels.
 
-    template (V, 3) m; shape_directions (V, 3, S) m; weight_bones and weights (V, W) the bones a vertex follows,
-    heaviest first, padded with weight 0; regressor_starts (B + 1,), regressor_vertices and regressor_values (N,) the
-    rows of the joint regressor; parents (B,); block_starts (V + 1,), block_bones (M,) and blocks (M, 3, 9) the pose
-    blend shapes of each vertex by bone, those that are all zero left out.
+    template (V, 3) m; shape_directions (V, 3, S) m, and what they do to the joints, joint_directions (B, 3, S) m;
+    weight_bones, weights, parents, dof_starts and dofs as in `skinning`; regressor_starts (B + 1,), regressor_vertices
+    and regressor_values (N,) the rows of the joint regressor; blend the pose blend shapes of each vertex, those of a
+    bone that are all zero left out.
     """
 
     template: Array
     shape_directions: Array
+    joint_directions: Array
     weight_bones: Ints
     weights: Array
+    parents: Ints
+    dof_starts: Ints
+    dofs: Ints
     regressor_starts: Ints
     regressor_vertices: Ints
     regressor_values: Array
-    parents: Ints
-    block_starts: Ints
-    block_bones: Ints
-    blocks: Array
+    blend: PoseBlendArrays
 
 
 class PosedArrays(NamedTuple):
@@ -56,6 +69,15 @@ class PosedArrays(NamedTuple):
     Rs: Array
     Ts: Array
     vertices: Array
+
+    @classmethod
+    def empty(cls, num_vertices: int, num_bones: int) -> PosedArrays:
+        """Room for all of it."""
+        per_vertex, per_bone = (num_vertices, 3), (num_bones, 3)
+        return cls(
+            *(np.empty(shape) for shape in (per_vertex, per_vertex, per_bone, per_bone)),
+            *(np.empty(shape) for shape in ((*per_bone, 3), (*per_bone, 4), per_vertex)),
+        )
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
@@ -84,22 +106,7 @@ def regress_into(joints: Array, arrays: BlendArrays, vertices: Array) -> None:
 
 
 @njit(cache=True, nogil=True)
-def rotation_into(R: Array, rotation_vector: Array) -> None:
-    """Write exp of a rotation vector (3,) to R (3, 3)."""
-    x, y, z = rotation_vector[0], rotation_vector[1], rotation_vector[2]
-    angle2 = x * x + y * y + z * z
-    if angle2 < 1e-12:
-        a, b = 1.0 - angle2 / 6.0, 0.5 - angle2 / 24.0
-    else:
-        angle = np.sqrt(angle2)
-        a, b = np.sin(angle) / angle, (1.0 - np.cos(angle)) / angle2
-    R[0, 0], R[0, 1], R[0, 2] = 1.0 - b * (y * y + z * z), b * x * y - a * z, b * x * z + a * y
-    R[1, 0], R[1, 1], R[1, 2] = b * x * y + a * z, 1.0 - b * (x * x + z * z), b * y * z - a * x
-    R[2, 0], R[2, 1], R[2, 2] = b * x * z - a * y, b * y * z + a * x, 1.0 - b * (x * x + y * y)
-
-
-@njit(cache=True, nogil=True)
-def move_bones_into(Ts: Array, joints: Array, Rs: Array, rest: Array, parents: Ints, translation: Array) -> None:
+def move_balls_into(Ts: Array, joints: Array, Rs: Array, rest: Array, parents: Ints, translation: Array) -> None:
     """Write how each bone moves, from its own rotation.
 
     Args:
@@ -129,46 +136,12 @@ def move_bones_into(Ts: Array, joints: Array, Rs: Array, rest: Array, parents: I
 
 
 @njit(cache=True, nogil=True)
-def features_into(features: Array, Rs: Array) -> None:
-    """Write vec(R_b - I) of each bone (B, 9), row by row, [R17] Eq. 4."""
-    for b in range(len(Rs)):
-        for r in range(3):
-            for c in range(3):
-                features[b, 3 * r + c] = Rs[b, r, c] - (1.0 if r == c else 0.0)
-
-
-@njit(cache=True, nogil=True, fastmath=FAST)
-def blend_into(rest: Array, shaped: Array, arrays: BlendArrays, Rs: Array) -> None:
-    """Write the shaped vertices with their pose blend shapes, [R17] Eq. 2-3."""
-    blocks, features = arrays.blocks, np.empty((len(Rs), 9))
-    features_into(features, Rs)
-    for v in range(len(shaped)):
-        x, y, z = shaped[v, 0], shaped[v, 1], shaped[v, 2]
-        for m in range(arrays.block_starts[v], arrays.block_starts[v + 1]):
-            bone = arrays.block_bones[m]
-            for n in range(9):
-                feature = features[bone, n]
-                x += blocks[m, 0, n] * feature
-                y += blocks[m, 1, n] * feature
-                z += blocks[m, 2, n] * feature
-        rest[v, 0], rest[v, 1], rest[v, 2] = x, y, z
-
-
-@njit(cache=True, nogil=True)
-def skin_into(vertices: Array, rest: Array, arrays: BlendArrays, Ts: Array) -> None:
-    """Write the posed vertices by linear blend skinning."""
-    for v in range(len(rest)):
-        x, y, z = rest[v, 0], rest[v, 1], rest[v, 2]
-        sx = sy = sz = 0.0
-        for slot in range(arrays.weights.shape[1]):
-            weight = arrays.weights[v, slot]
-            if weight == 0.0:
-                break
-            T = Ts[arrays.weight_bones[v, slot]]
-            sx += weight * (T[0, 0] * x + T[0, 1] * y + T[0, 2] * z + T[0, 3])
-            sy += weight * (T[1, 0] * x + T[1, 1] * y + T[1, 2] * z + T[1, 3])
-            sz += weight * (T[2, 0] * x + T[2, 1] * y + T[2, 2] * z + T[2, 3])
-        vertices[v, 0], vertices[v, 1], vertices[v, 2] = sx, sy, sz
+def place_into(posed: PosedArrays, arrays: BlendArrays, translation: Array) -> None:
+    """From `shaped`, `joints_rest` and `Rs` to all else; translation (3,) m."""
+    move_balls_into(posed.Ts, posed.joints, posed.Rs, posed.joints_rest, arrays.parents, translation)
+    posed.rest[:] = posed.shaped
+    add_pose_blend(posed.rest, posed.Ts, arrays.parents, arrays.blend)
+    skin_into(posed.vertices, np.empty((0, 1, 3)), posed.rest, arrays, posed.Ts)
 
 
 @njit(cache=True, nogil=True)
@@ -184,9 +157,89 @@ def pose_into(posed: PosedArrays, arrays: BlendArrays, pose: Array, translation:
     regress_into(posed.joints_rest, arrays, posed.shaped)
     for b in range(len(arrays.parents)):
         rotation_into(posed.Rs[b], pose[b])
-    move_bones_into(posed.Ts, posed.joints, posed.Rs, posed.joints_rest, arrays.parents, translation)
-    blend_into(posed.rest, posed.shaped, arrays, posed.Rs)
-    skin_into(posed.vertices, posed.rest, arrays, posed.Ts)
+    place_into(posed, arrays, translation)
+
+
+@njit(cache=True, nogil=True)
+def find_ball_twists(posed: PosedArrays, parents: Ints) -> Array:
+    """(3 + 3B, 6) world twist (u, ω) of each degree of freedom."""
+    twists = np.zeros((3 + 3 * len(parents), 6))
+    for b in range(len(parents)):
+        gx, gy, gz = posed.joints[b, 0], posed.joints[b, 1], posed.joints[b, 2]
+        for axis in range(3):
+            twist = twists[axis] if parents[b] < 0 else twists[3 + 3 * b + axis]
+            for r in range(3):
+                twist[3 + r] = posed.Ts[parents[b], r, axis] if parents[b] >= 0 else (1.0 if r == axis else 0.0)
+            # u = g × ω, so that the joint stays
+            twist[0] = gy * twist[5] - gz * twist[4]
+            twist[1] = gz * twist[3] - gx * twist[5]
+            twist[2] = gx * twist[4] - gy * twist[3]
+            if parents[b] < 0:
+                twists[3 + axis, axis] = 1.0
+    return twists
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def add_blend_rows(jacobian: Array, ids: npt.NDArray[np.integer], posed: PosedArrays, arrays: BlendArrays) -> None:
+    """Add what turns do to vertices (N,) through the pose blend shapes to their derivative (N, 3, 3 + 3B or more)."""
+    Ts, Rs, blend = posed.Ts, posed.Rs, arrays.blend
+    C = np.zeros((3, 3))
+    for n in range(len(ids)):
+        v = ids[n]
+        C[:, :] = 0.0
+        for slot in range(arrays.weights.shape[1]):
+            weight = arrays.weights[v, slot]
+            if weight == 0.0:
+                break
+            bone = arrays.weight_bones[v, slot]
+            for r in range(3):
+                for c in range(3):
+                    C[r, c] += weight * Ts[bone, r, c]
+        first, count = blend.starts[v], blend.starts[v + 1] - blend.starts[v]
+        for m in range(count):
+            bone = blend.bones[first + m]
+            start, Q = 27 * first + 9 * m, Rs[bone]
+            a0, a1, a2 = _turn_block(blend.blocks[start : start + 9], Q)
+            b0, b1, b2 = _turn_block(blend.blocks[start + 9 * count : start + 9 * count + 9], Q)
+            c0, c1, c2 = _turn_block(blend.blocks[start + 18 * count : start + 18 * count + 9], Q)
+            for r in range(3):
+                row, x, y, z = jacobian[n, r, 3 + 3 * bone : 6 + 3 * bone], C[r, 0], C[r, 1], C[r, 2]
+                row[0] += x * a0 + y * b0 + z * c0
+                row[1] += x * a1 + y * b1 + z * c1
+                row[2] += x * a2 + y * b2 + z * c2
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def _turn_block(d, Q):
+    """What turns about x, y, z do to Σ d_k R_k, R (3, 3) being Q: row j changes by row k and row k by -row j."""
+    return (
+        d[6] * Q[1, 0] + d[7] * Q[1, 1] + d[8] * Q[1, 2] - d[3] * Q[2, 0] - d[4] * Q[2, 1] - d[5] * Q[2, 2],
+        d[0] * Q[2, 0] + d[1] * Q[2, 1] + d[2] * Q[2, 2] - d[6] * Q[0, 0] - d[7] * Q[0, 1] - d[8] * Q[0, 2],
+        d[3] * Q[0, 0] + d[4] * Q[0, 1] + d[5] * Q[0, 2] - d[0] * Q[1, 0] - d[1] * Q[1, 1] - d[2] * Q[1, 2],
+    )
+
+
+@njit(cache=True, nogil=True)
+def blend_jacobian_into(jacobian, ids, posed, arrays, with_blend, with_shape):
+    """Write the derivative of vertices (N,): jacobian (N, 3, 3 + 3B + S), or 3 + 3B without the shape's columns.
+
+    Args:
+        jacobian: Out, m.
+        ids: (N,) vertices.
+        posed: The pose.
+        arrays: The model.
+        with_blend: With what turns do through the pose blend shapes.
+        with_shape: With the columns of the shape.
+    """
+    joints, directions = np.empty((len(posed.Ts), 3, 0)), np.empty((len(posed.rest), 3, 0))
+    if with_shape:
+        joints, directions = arrays.joint_directions, arrays.shape_directions
+    shifts, twists = shift_bones(posed.Ts, arrays.parents, joints), find_ball_twists(posed, arrays.parents)
+    for first in range(0, len(ids), CHUNK):
+        rows, own = jacobian[first : first + CHUNK], ids[first : first + CHUNK]
+        vertex_rows_into(rows, own, posed.rest, posed.Ts, twists, arrays, shifts, directions)
+        if with_blend:
+            add_blend_rows(rows, own, posed, arrays)
 
 
 @njit(cache=True, nogil=True)

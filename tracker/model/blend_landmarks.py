@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from tracker.model.hand_axes import HandChains, find_flexion_axis
+from tracker.model.hand_axes import HandChains, find_flexion_axis, unit
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.model.skeleton import Array
 
@@ -34,11 +34,11 @@ def find_landmark_offsets(vertices: Array, faces: npt.NDArray[np.int64], chains:
             ((1, THUMB_BASE_DEPTH), (3, FINGER_DEPTH)) if finger == "thumb" else ((2, FINGER_DEPTH), (3, FINGER_DEPTH))
         ):
             before, joint, after = points[place - 1 : place + 2]
-            along = _unit(_unit(joint - before) + _unit(after - joint))
+            along = unit(unit(joint - before) + unit(after - joint))
             back = chains.dorsal
             if finger == "thumb" and place > 1:  # that of the nail
                 back = np.cross(along, find_flexion_axis(chains, finger))
-            back = _unit(back - (back @ along) * along)
+            back = unit(back - (back @ along) * along)
             inner, outer = _find_skin(vertices[faces], joint, back)
             offsets[1 + 4 * FINGERS.index(finger) + place - 1] = (outer - depth * (outer - inner)) * back
     return offsets
@@ -53,7 +53,3 @@ def _find_skin(triangles: Array, point: Array, direction: Array) -> tuple[float,
     reach = np.einsum("fk,fkx,x->f", shares, triangles[is_hit] - point, direction)
     ahead, behind = reach[reach > 0.0], reach[reach < 0.0]
     return (behind.max(), ahead.min()) if len(ahead) and len(behind) else (0.0, 0.0)
-
-
-def _unit(vector: Array) -> Array:
-    return vector / np.linalg.norm(vector)

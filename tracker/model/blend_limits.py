@@ -64,31 +64,14 @@ class BlendLimits:
         """(K + 1, 3) the pose with these angles (K, 3), its root not turned."""
         return np.concatenate([np.zeros((1, 3)), np.einsum("kax,ka->kx", self.axes, angles)])
 
-    def prior_rows(self, pose: Array) -> tuple[Array, Array]:
-        """Residual of the Gaussian prior and its derivative by turns from the left (`BlendModel.retract`).
 
-        Returns:
-            residual: (K, 3) in standard deviations.
-            jacobian: (K, 3, 3) each joint's rows by its own turn.
-        """
-        rows = self.axes @ turn_jacobian(pose[1:])
-        return (self.angles(pose) - self.mean) / self.deviation, rows / self.deviation[:, :, None]
-
-    def limit_rows(self, pose: Array) -> tuple[Array, Array]:
-        """How far angles are beyond their limits, (K, 3) rad, and the derivative as in `prior_rows`; 0 within them."""
-        angles = self.angles(pose)
-        beyond = angles - np.clip(angles, self.lower, self.upper)
-        return beyond, np.where(beyond[:, :, None] != 0.0, self.axes @ turn_jacobian(pose[1:]), 0.0)
-
-
-def blend_limits(model: BlendModel, shape: Array | None = None) -> BlendLimits:
-    """Worked out from where the joints and tips of a model with MANO's joints are at rest.
+def blend_limits(model: BlendModel) -> BlendLimits:
+    """Worked out from where the joints and tips of a model with MANO's joints are at rest, of its mean shape.
 
     Args:
         model: A hand of 16 joints in MANO's order, near the flat pose at rest.
-        shape: (S,) whose axes; the mean shape's when left out.
     """
-    chains = blend_chains(model, np.zeros(model.num_shape) if shape is None else shape)
+    chains = blend_chains(model, np.zeros(model.num_shape))
     count = model.num_bones - 1
     axes = np.zeros((count, 3, 3))
     mean, deviation = np.zeros((count, 3)), np.zeros((count, 3))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tracker.model.blend_model import BlendModel
-from tracker.model.mirroring import MIRROR, OTHER_SIDE
+from tracker.model.mirroring import MIRROR, OTHER_SIDE, mirror_name, mirror_pose_directions, mirror_provenance
 from tracker.model.skeleton import Array
 
 
@@ -21,28 +21,21 @@ def mirror_blend(model: BlendModel, reflection: Array = MIRROR) -> BlendModel:
         model: A hand.
         reflection: (3,) of which one is -1: (1, -1, 1), the plane y = 0; MANO's two hands are mirrored by (-1, 1, 1).
     """
-    bones = model.num_bones - 1
-    axial = np.tile(-reflection, bones)
-    elements = np.tile(np.outer(reflection, reflection).ravel(), bones)
+    axial = np.tile(-reflection, model.num_bones - 1)
     return replace(
         model,
-        name=_other_name(model.name),
+        name=mirror_name(model.name),
         side=OTHER_SIDE[model.side],
         template=model.template * reflection,
         faces=np.ascontiguousarray(model.faces[:, ::-1]),
         shape_directions=model.shape_directions * reflection[:, None],
-        pose_directions=model.pose_directions * reflection[:, None] * elements,
+        pose_directions=mirror_pose_directions(model.pose_directions, reflection),
         pose_mean=model.pose_mean * axial,
         pose_components=model.pose_components * axial,
-        provenance={**model.provenance, "mirrored": "no" if model.provenance.get("mirrored") == "yes" else "yes"},
+        provenance=mirror_provenance(model.provenance),
     )
 
 
 def mirror_blend_pose(pose: Array, reflection: Array = MIRROR) -> Array:
     """Rotation vectors (..., 3) of the mirrored hand that show the mirror image; translations are mirrored by M."""
     return -pose * reflection
-
-
-def _other_name(name: str) -> str:
-    words = {"right": "left", "left": "right", "Right": "Left", "Left": "Right"}
-    return " ".join(words.get(word, word) for word in name.split(" "))

@@ -9,8 +9,15 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
-from tracker.model.blend_derivatives import joint_jacobian_into, vertex_jacobian_into
-from tracker.model.blend_kernels import BlendArrays, PosedArrays, pose_into, shape_into, turn_into
+from tracker.model.blend_kernels import (
+    BlendArrays,
+    PosedArrays,
+    blend_jacobian_into,
+    pose_into,
+    shape_into,
+    turn_into,
+)
+from tracker.model.pose_blend import stack_pose_blend
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -91,7 +98,14 @@ class BlendModel:
     @cached_property
     def arrays(self) -> BlendArrays:
         """The model as the kernels read it."""
-        return _stack(self)
+        return stack_blend(
+            self.template,
+            self.shape_directions,
+            self.pose_directions,
+            self.skinning_weights,
+            self.joint_regressor,
+            self.parents,
+        )
 
     def shaped(self, shape: Array) -> Array:
         """(V, 3) the unposed template of a person, without pose blend shapes, m."""
@@ -125,20 +139,11 @@ class BlendModel:
         full = np.zeros(self.num_shape)
         if shape is not None:
             full[: len(shape)] = shape
-        num_vertices, bones = len(self.template), self.num_bones
-        posed = PosedArrays(
-            shaped=np.empty((num_vertices, 3)),
-            rest=np.empty((num_vertices, 3)),
-            joints_rest=np.empty((bones, 3)),
-            joints=np.empty((bones, 3)),
-            Rs=np.empty((bones, 3, 3)),
-            Ts=np.empty((bones, 3, 4)),
-            vertices=np.empty((num_vertices, 3)),
-        )
+        posed = PosedArrays.empty(len(self.template), self.num_bones)
         if rest is None:
             shape_into(posed.shaped, self.arrays, full)
         else:
-            assert rest.shape == (num_vertices, 3)
+            assert rest.shape == self.template.shape
             posed.shaped[:] = rest
         pose_into(posed, self.arrays, pose, translation)
         return PosedBlend(self, pose, full, translation, rest is not None, posed)
@@ -218,36 +223,37 @@ class PosedBlend:
             with_blend: With what the pose does through the pose blend shapes. Without it the result is not exact.
         """
         ids = np.arange(len(self.vertices)) if vertex_ids is None else np.asarray(vertex_ids)
-        num_shape = self.model.num_shape if with_shape and not self.is_personal else 0
-        jacobian = np.empty((len(ids), 3, 3 + 3 * self.model.num_bones + num_shape))
-        vertex_jacobian_into(jacobian, self.arrays, self.model.arrays, ids, with_blend, num_shape)
-        return jacobian
-
-    def joint_jacobian(self, with_shape: bool = True) -> Array:
-        """Derivative of the posed joints by the parameters, (B, 3, P), exact, m."""
-        num_shape = self.model.num_shape if with_shape and not self.is_personal else 0
-        jacobian = np.empty((self.model.num_bones, 3, 3 + 3 * self.model.num_bones + num_shape))
-        joint_jacobian_into(jacobian, self.arrays, self.model.arrays, num_shape)
+        with_shape = with_shape and not self.is_personal
+        columns = 3 + 3 * self.model.num_bones + (self.model.num_shape if with_shape else 0)
+        jacobian = np.empty((len(ids), 3, columns))
+        blend_jacobian_into(jacobian, ids, self.arrays, self.model.arrays, with_blend, with_shape)
         return jacobian
 
 
-def _stack(model: BlendModel) -> BlendArrays:
-    most = max(1, int(np.count_nonzero(model.skinning_weights, axis=1).max(initial=1)))
-    order = np.argsort(-np.abs(model.skinning_weights), axis=1, kind="stable")[:, :most]
-    blocks = model.pose_directions.reshape(len(model.template), 3, -1, 9).transpose(0, 2, 1, 3)
-    used = np.any(blocks != 0.0, axis=(2, 3))
-    starts = np.concatenate([[0], np.cumsum(used.sum(axis=1))])
-    regressor = sparse.csr_array(model.joint_regressor)
+def stack_blend(
+    template: Array,
+    shape_directions: Array,
+    pose_directions: Array,
+    skinning_weights: Array,
+    joint_regressor: sparse.csr_array,
+    parents: Ints,
+) -> BlendArrays:
+    """A model as the kernels read it; `BlendModel` has the shapes, without pose blend shapes K is 0."""
+    most = max(1, int(np.count_nonzero(skinning_weights, axis=1).max(initial=1)))
+    order = np.argsort(-np.abs(skinning_weights), axis=1, kind="stable")[:, :most]
+    regressor = sparse.csr_array(joint_regressor)
+    flat = np.ascontiguousarray(shape_directions, dtype=np.float64).reshape(len(template), -1)
     return BlendArrays(
-        template=np.ascontiguousarray(model.template, dtype=np.float64),
-        shape_directions=np.ascontiguousarray(model.shape_directions, dtype=np.float64),
+        template=np.ascontiguousarray(template, dtype=np.float64),
+        shape_directions=flat.reshape(shape_directions.shape),
+        joint_directions=(regressor @ flat).reshape(len(parents), *shape_directions.shape[1:]),
         weight_bones=np.ascontiguousarray(order, dtype=np.int32),
-        weights=np.ascontiguousarray(np.take_along_axis(model.skinning_weights, order, axis=1), dtype=np.float64),
+        weights=np.ascontiguousarray(np.take_along_axis(skinning_weights, order, axis=1), dtype=np.float64),
+        parents=parents.astype(np.int32),
+        dof_starts=np.array([0, *range(6, 4 + 3 * len(parents), 3)], dtype=np.int32),
+        dofs=np.arange(3 + 3 * len(parents), dtype=np.int32),
         regressor_starts=regressor.indptr.astype(np.int32),
         regressor_vertices=regressor.indices.astype(np.int32),
         regressor_values=np.ascontiguousarray(regressor.data, dtype=np.float64),
-        parents=model.parents.astype(np.int32),
-        block_starts=starts.astype(np.int32),
-        block_bones=(np.nonzero(used)[1] + 1).astype(np.int32),
-        blocks=np.ascontiguousarray(blocks[used], dtype=np.float64),
+        blend=stack_pose_blend(pose_directions, np.arange(1, 1 + pose_directions.shape[2] // 9)),
     )

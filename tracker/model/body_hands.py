@@ -43,6 +43,16 @@ class BodyHand:
     R_body_hand: Array
     outwards: Array
 
+    @property
+    def columns(self) -> slice:
+        """Where the fingers' 45 numbers stand in the pose space of the body, which has none for the root."""
+        return slice(3 * (int(self.fingers[0]) - 1), 3 * int(self.fingers[-1]))
+
+    def components_of(self, model: BlendModel) -> Array:
+        """(C, 45) the components of the body's pose space that are this hand's."""
+        own = model.pose_components[:, self.columns]
+        return own[np.any(own != 0.0, axis=1)]
+
 
 def body_hand(model: BlendModel, side: str) -> BodyHand:
     """A hand of a body with SMPL-H's 52 joints; the provenance of a body of our own says which vertices are its."""
@@ -76,13 +86,11 @@ def body_pose(
     pose = np.concatenate([root[None], body, np.zeros((2 * NUM_FINGER_JOINTS, 3))])
     for side in ("left", "right"):
         hand = body_hand(model, side)
-        columns = slice(3 * (hand.fingers[0] - 1), 3 * hand.fingers[-1])
         numbers = hands.get(side, np.zeros(0))
         assert numbers.ndim == 1 and len(numbers) <= 3 * NUM_FINGER_JOINTS
         if len(numbers) < 3 * NUM_FINGER_JOINTS:
-            own = model.pose_components[:, columns]
-            numbers = numbers @ own[np.any(own != 0.0, axis=1)][: len(numbers)]
+            numbers = numbers @ hand.components_of(model)[: len(numbers)]
         if not is_flat_mean:
-            numbers = numbers + model.pose_mean[columns]
+            numbers = numbers + model.pose_mean[hand.columns]
         pose[hand.fingers] = numbers.reshape(-1, 3)
     return pose

@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from tracker.errors import ModelFileError, reads
 from tracker.model.blend_model import Array
 from tracker.model.body_hands import NUM_BODY_JOINTS, NUM_FINGER_JOINTS
-from tracker.model.npz_arrays import read_foreign_npz
+from tracker.model.npz_arrays import NpzFields, read_foreign_npz
 from tracker.model.npz_files import write_plain_npz
 
 NUM_JOINTS = NUM_BODY_JOINTS + 2 * NUM_FINGER_JOINTS
@@ -64,20 +63,17 @@ def load_body_motion(path: Path) -> BodyMotion:
     path = Path(path)
     if not path.is_file():
         raise ModelFileError(path, "no such file", NEEDED)
-    arrays = read_foreign_npz(path)
-    poses = _floats(path, arrays, "poses", (-1, NUMBERS), MAX_ANGLE)
+    fields = NpzFields(path, read_foreign_npz(path))
+    poses = fields.numbers("poses", (-1, NUMBERS), MAX_ANGLE)
     if not 1 <= len(poses) <= MAX_FRAMES:
         raise ModelFileError(path, f"{len(poses)} frames", f"1 to {MAX_FRAMES}")
     count = len(poses)
-    translations = np.zeros((count, 3))
-    if "trans" in arrays:
-        translations = _floats(path, arrays, "trans", (count, 3), MAX_PLACE)
-    shape = _floats(path, arrays, "betas", (-1,), MAX_SHAPE) if "betas" in arrays else np.zeros(0)
+    translations = fields.numbers("trans", (count, 3), MAX_PLACE) if "trans" in fields else np.zeros((count, 3))
+    shape = fields.numbers("betas", (-1,), MAX_SHAPE) if "betas" in fields else np.zeros(0)
     if len(shape) > MAX_SHAPES:
         raise ModelFileError(path, f"{len(shape)} 'betas'", f"at most {MAX_SHAPES}")
-    return BodyMotion(
-        poses.reshape(count, NUM_JOINTS, 3), translations, shape, _read_fps(path, arrays), _read_gender(path, arrays)
-    )
+    poses = poses.reshape(count, NUM_JOINTS, 3)
+    return BodyMotion(poses, translations, shape, _read_fps(fields), _read_gender(fields))
 
 
 def save_body_motion(motion: BodyMotion, path: Path) -> None:
@@ -94,37 +90,20 @@ def save_body_motion(motion: BodyMotion, path: Path) -> None:
     )
 
 
-def _floats(
-    path: Path, arrays: dict[str, npt.NDArray], name: str, shape: tuple[int, ...], limit: float
-) -> npt.NDArray[np.float64]:
-    array = arrays.get(name)
-    wanted = " x ".join("N" if length < 0 else str(length) for length in shape)
-    if array is None or array.dtype.kind not in "fiu":
-        raise ModelFileError(path, f"no numbers '{name}'", NEEDED)
-    if array.ndim != len(shape) or any(want not in (-1, have) for want, have in zip(shape, array.shape, strict=True)):
-        raise ModelFileError(path, f"'{name}', {' x '.join(map(str, array.shape))}", f"'{name}', {wanted}")
-    array = np.ascontiguousarray(array, dtype=np.float64)
-    if array.size and not (np.all(np.isfinite(array)) and np.abs(array).max() <= limit):
-        raise ModelFileError(path, f"'{name}' with values that are infinite or beyond {limit:g}", "sound numbers")
-    return array
-
-
-def _read_fps(path: Path, arrays: dict[str, npt.NDArray]) -> float:
+def _read_fps(fields: NpzFields) -> float:
     for name in ("mocap_framerate", "mocap_frame_rate"):
-        if name in arrays:
-            fps = _floats(path, arrays, name, (), MAX_FPS).item()
+        if name in fields:
+            fps = fields.numbers(name, (), MAX_FPS).item()
             if fps <= 0.0:
-                raise ModelFileError(path, f"'{name}' of {fps:g}", "frames per second above 0")
+                raise ModelFileError(fields.path, f"'{name}' of {fps:g}", "frames per second above 0")
             return fps
     return 30.0
 
 
-def _read_gender(path: Path, arrays: dict[str, npt.NDArray]) -> str:
-    array = arrays.get("gender")
-    if array is None or array.dtype.kind not in "US" or array.ndim != 0:
+def _read_gender(fields: NpzFields) -> str:
+    if "gender" not in fields:
         return "neutral"
-    told = array.item()
-    text = told.decode("ascii", "replace") if isinstance(told, bytes) else str(told)
+    text = fields.text("gender")
     if text not in ("neutral", "male", "female"):
-        raise ModelFileError(path, f"gender {text[:40]!r}", "neutral, male or female")
+        raise ModelFileError(fields.path, f"gender {text[:40]!r}", "neutral, male or female")
     return text

@@ -12,9 +12,10 @@ from scipy.spatial import KDTree
 
 from tracker.errors import ModelFileError, TrackerError
 from tracker.geometry.triangles import is_watertight
-from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
+from tracker.model.articulated import ArticulatedModel, HandParts, ShapeBasis
 from tracker.model.pose_blend import PoseBlend
 from tracker.model.skeleton import Array
+from tracker.model.skinning import keep_heaviest
 
 Faces = npt.NDArray[np.int64]
 
@@ -154,12 +155,7 @@ def closest_on_triangles(point: Array, triangles: Array) -> Array:
 
 def limit_weights(weights: Array) -> Array:
     """Rows (V, B) with the MAX_WEIGHTS heaviest entries of at least LEAST_WEIGHT kept, summing to one."""
-    weights = np.where(weights < LEAST_WEIGHT, 0.0, weights)
-    if weights.shape[1] > MAX_WEIGHTS:
-        light = np.argsort(-weights, axis=1, kind="stable")[:, MAX_WEIGHTS:]
-        weights = weights.copy()
-        np.put_along_axis(weights, light, 0.0, axis=1)
-    return weights / weights.sum(axis=1, keepdims=True)
+    return keep_heaviest(np.where(weights < LEAST_WEIGHT, 0.0, weights))
 
 
 def compute_volume(vertices: Array, faces: Faces) -> float:

@@ -80,6 +80,25 @@ class Gltf:
             raise self.fail(f"accessors[{index}] with numbers that are not finite", "finite numbers")
         return values
 
+    def primitives(self, mesh: Any) -> list[dict[str, Any]]:
+        """Those of a mesh."""
+        found = self.item("meshes", mesh).get("primitives")
+        if not isinstance(found, list) or not all(isinstance(primitive, dict) for primitive in found):
+            raise self.fail("a mesh without primitives", "triangles")
+        return found
+
+    def triangles(self, primitive: dict[str, Any]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+        """Vertices (V, 3) and faces (F, 3) of a primitive of triangles."""
+        attributes = primitive.get("attributes")
+        if primitive.get("mode", 4) != 4 or not isinstance(attributes, dict):
+            raise self.fail("a primitive that is not made of triangles", "triangles (mode 4)")
+        points = self.accessor(attributes.get("POSITION"), "VEC3").astype(np.float64)
+        has_indices = "indices" in primitive
+        ids = self.accessor(primitive["indices"], "SCALAR").ravel() if has_indices else np.arange(len(points))
+        if ids.dtype.kind not in "ui" or len(ids) % 3 or ids.max() >= len(points) or ids.min() < 0:
+            raise self.fail(f"{len(ids)} indices up to {ids.max()} for {len(points)} vertices", "whole triangles")
+        return points, ids.astype(np.int64).reshape(-1, 3)
+
     def _whole(self, entry: dict[str, Any], name: str, default: int) -> int:
         value = entry.get(name, default)
         if type(value) is not int or (value < default and default >= 0 and name != "byteStride") or abs(value) > 2**40:

@@ -128,31 +128,20 @@ def _node_matrix(gltf: Gltf, node: dict[str, Any]) -> Array:
 
 
 def _read_mesh(gltf: Gltf, node: dict[str, Any], num_joints: int) -> tuple[Array, npt.NDArray[np.int64], Array]:
-    primitives = gltf.item("meshes", node["mesh"]).get("primitives")
-    if not isinstance(primitives, list) or not all(isinstance(p, dict) for p in primitives) or not primitives:
-        raise gltf.fail("a mesh without primitives", "triangles")
     vertices, faces, weights, start = [], [], [], 0
-    for primitive in primitives:
-        attributes = primitive.get("attributes")
-        if primitive.get("mode", 4) != 4 or not isinstance(attributes, dict) or "JOINTS_0" not in attributes:
-            raise gltf.fail(
-                "a primitive that is not made of skinned triangles", "triangles with JOINTS_0 and WEIGHTS_0"
-            )
-        points = gltf.accessor(attributes.get("POSITION"), "VEC3").astype(np.float64)
+    for primitive in gltf.primitives(node["mesh"]):
+        points, ids = gltf.triangles(primitive)
+        attributes = primitive["attributes"]
+        if "JOINTS_0" not in attributes:
+            raise gltf.fail("a primitive of triangles that are not skinned", "triangles with JOINTS_0 and WEIGHTS_0")
         if len(points) + start > MAX_VERTICES:
             raise gltf.fail(f"more than {MAX_VERTICES} vertices", "a lighter mesh")
-        ids = (
-            np.arange(len(points))[:, None]
-            if "indices" not in primitive
-            else gltf.accessor(primitive["indices"], "SCALAR")
-        )
-        ids = ids.astype(np.int64).ravel()
-        if len(ids) % 3 or ids.max() >= len(points) or ids.min() < 0:
-            raise gltf.fail(f"{len(ids)} indices up to {ids.max()} for {len(points)} vertices", "whole triangles")
         weights.append(_read_weights(gltf, attributes, len(points), num_joints))
         vertices.append(points)
-        faces.append(ids.reshape(-1, 3) + start)
+        faces.append(ids + start)
         start += len(points)
+    if not vertices:
+        raise gltf.fail("a mesh without primitives", "triangles")
     return np.concatenate(vertices), np.concatenate(faces), np.concatenate(weights)
 
 

@@ -84,13 +84,13 @@ class HandChains:
     @property
     def forward(self) -> Array:
         """(3,) unit, from the wrist to the middle knuckle."""
-        return _unit(self.fingers["middle"][-4] - self.wrist)
+        return unit(self.fingers["middle"][-4] - self.wrist)
 
     @property
     def dorsal(self) -> Array:
         """(3,) unit, square to `forward`, out of the back of the hand."""
         to_thumb = self.fingers["index"][-4] - self.fingers["little"][-4]
-        normal = _unit(np.cross(self.forward, to_thumb).astype(np.float64))
+        normal = unit(np.cross(self.forward, to_thumb).astype(np.float64))
         return normal if self.side == "right" else -normal
 
 
@@ -140,8 +140,8 @@ def derive_hand_joints(chains: HandChains) -> tuple[HandJoint, ...]:
 def find_bone_axes(chains: HandChains, finger: str, number: int) -> dict[str, Array]:
     """(3,) unit axes of flexion, abduction and twist of a finger's bone, square to each other, frame of the chains."""
     lateral, points = find_flexion_axis(chains, finger), chains.fingers[finger]
-    along = _unit(points[number + 1] - points[number])
-    flexion = _unit(lateral - (lateral @ along) * along)
+    along = unit(points[number + 1] - points[number])
+    flexion = unit(lateral - (lateral @ along) * along)
     mirror = 1.0 if chains.side == "right" else -1.0
     return {"flexion": flexion, "abduction": mirror * np.cross(along, flexion), "twist": mirror * along}
 
@@ -153,8 +153,8 @@ def find_flexion_axis(chains: HandChains, finger: str) -> Array:
     bent at rest, the more the further it is bent. The thumb is rolled against the fingers by THUMB_ROLL_DEG.
     """
     points = chains.fingers[finger][-4:]
-    along = _unit(points[3] - points[0])
-    lateral = _unit(np.cross(chains.dorsal, along))
+    along = unit(points[3] - points[0])
+    lateral = unit(np.cross(chains.dorsal, along))
     if finger == "thumb":
         roll = np.radians(-THUMB_ROLL_DEG if chains.side == "right" else THUMB_ROLL_DEG)
         lateral = np.cos(roll) * lateral + np.sin(roll) * np.cross(along, lateral)
@@ -163,7 +163,7 @@ def find_flexion_axis(chains: HandChains, finger: str) -> Array:
     bend = np.cross(bones[0], bones[1]) + np.cross(bones[1], bones[2])
     if bend @ lateral > 0.0:
         lateral = STRAIGHT_TRUST * lateral + bend
-    return _unit(lateral - (lateral @ along) * along)
+    return unit(lateral - (lateral @ along) * along)
 
 
 def _rest_angle(chains: HandChains, finger: str, number: int, motion: str, axis: Array) -> float | None:
@@ -184,5 +184,6 @@ def _rest_angle(chains: HandChains, finger: str, number: int, motion: str, axis:
     return float(np.degrees(np.arctan2(np.cross(before, along) @ axis, before @ along)))
 
 
-def _unit(vector: Array) -> Array:
+def unit(vector: Array) -> Array:
+    """The vector (3,) at length one; zero stays zero."""
     return vector / max(float(np.linalg.norm(vector)), 1e-12)

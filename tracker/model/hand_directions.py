@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracker.model.articulated import ArticulatedModel
+from tracker.model.shape import move_at_rest
 from tracker.model.skeleton import Array
 
 
@@ -49,15 +50,9 @@ class HandDirections:
     def apply(self, model: ArticulatedModel, values: Array) -> ArticulatedModel:
         """The model moved along the directions by values (S,); its shape basis stays as it is."""
         assert values.shape == (len(self.names),) and model.hand is not None
-        Ts = model.skeleton.Ts_model_bone.copy()
-        Ts[:, :3, 3] += np.einsum("s,sbx->bx", values, self.joints)
         marks = model.hand.joint_offsets + np.einsum("s,sjx->jx", values, self.marks)
-        return replace(
-            model,
-            vertices=model.vertices + np.einsum("s,svx->vx", values, self.vertices),
-            skeleton=replace(model.skeleton, Ts_model_bone=Ts),
-            hand=replace(model.hand, joint_offsets=marks),
-        )
+        moved = move_at_rest(model, values, self.vertices, self.joints)
+        return replace(moved, hand=replace(model.hand, joint_offsets=marks))
 
     def of_landmarks(self, model: ArticulatedModel) -> Array:
         """(S, 21, 3) offset of each landmark, model frame, m."""

@@ -14,7 +14,7 @@ from tracker.model.blend_model import BLEND_JOINTS, BlendModel
 from tracker.model.hand_parts import find_tip
 from tracker.model.joints import FINGERS
 from tracker.model.mano_conventions import CONVENTIONS, SMPLH_TIP_VERTICES, TIP_VERTICES, ManoConvention
-from tracker.model.npz_arrays import read_foreign_npz
+from tracker.model.npz_arrays import NpzFields, read_foreign_npz
 from tracker.model.npz_files import MAX_COORDINATE
 from tracker.model.restricted_pickle import read_restricted_pickle
 
@@ -96,17 +96,8 @@ class _Builder:
     def floats(self, name: str, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
         value: Any = self.parts.get(name)
         array = value.toarray() if sparse.issparse(value) else value
-        if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiu":
-            raise ModelFileError(self.path, f"no array '{name}'", NEEDED)
-        fits = array.ndim == len(shape) and all(w in (-1, h) for w, h in zip(shape, array.shape, strict=True))
-        if not fits:
-            wanted = "x".join("N" if length < 0 else str(length) for length in shape)
-            found = "x".join(map(str, array.shape))
-            raise ModelFileError(self.path, f"'{name}', {found}", f"'{name}', {wanted}")
-        array = np.ascontiguousarray(array, dtype=np.float64)
-        if array.size and not (np.all(np.isfinite(array)) and np.abs(array).max() <= MAX_COORDINATE):
-            raise ModelFileError(self.path, f"'{name}' with values beyond {MAX_COORDINATE}", "metres, all finite")
-        return array
+        known = {name: array} if isinstance(array, np.ndarray) else {}
+        return NpzFields(self.path, known).numbers(name, shape, MAX_COORDINATE)
 
     def _side(self, side: str | None) -> str:
         told = side or self.parts.get("side")

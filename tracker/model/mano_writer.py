@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scipy import sparse
 
 from tracker.model.blend_model import BlendModel
-from tracker.model.body_hands import NUM_BODY_JOINTS, NUM_FINGER_JOINTS
+from tracker.model.body_hands import body_hand
 from tracker.model.npz_files import write_plain_npz
 
 
@@ -105,11 +105,9 @@ def _pose_spaces(model: BlendModel) -> dict[str, npt.NDArray[np.float64]]:
     if model.side != "body":
         return _pose_space(model.pose_mean, model.pose_components, "")
     arrays: dict[str, npt.NDArray[np.float64]] = {}
-    for letter, side in (("l", 0), ("r", 1)):
-        first = 3 * (NUM_BODY_JOINTS - 1 + side * NUM_FINGER_JOINTS)
-        own = slice(first, first + 3 * NUM_FINGER_JOINTS)
-        components = model.pose_components[:, own]
-        arrays |= _pose_space(model.pose_mean[own], components[np.any(components != 0.0, axis=1)], letter)
+    for side in ("left", "right"):
+        hand = body_hand(model, side)
+        arrays |= _pose_space(model.pose_mean[hand.columns], hand.components_of(model), side[0])
     return arrays
 
 

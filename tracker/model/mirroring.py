@@ -8,7 +8,6 @@ import numpy as np
 
 from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
-from tracker.model.pose_blend import PoseBlend
 from tracker.model.skeleton import Array
 
 MIRROR = np.array([1.0, -1.0, 1.0])
@@ -26,10 +25,9 @@ def mirror(model: ArticulatedModel) -> ArticulatedModel:
     skeleton = model.skeleton
     Ts = skeleton.Ts_model_bone * np.outer([*MIRROR, 1.0], [*MIRROR, 1.0])
     hand, shape = model.hand, model.shape
-    words = {"right": "left", "left": "right", "Right": "Left", "Left": "Right"}
     return replace(
         model,
-        name=" ".join(words.get(word, word) for word in model.name.split(" ")),
+        name=mirror_name(model.name),
         vertices=model.vertices * MIRROR,
         faces=np.ascontiguousarray(model.faces[:, ::-1]),
         skeleton=replace(skeleton, Ts_model_bone=Ts, dof_axes=-skeleton.dof_axes * MIRROR),
@@ -37,14 +35,28 @@ def mirror(model: ArticulatedModel) -> ArticulatedModel:
         if hand is None
         else replace(hand, side=OTHER_SIDE[hand.side], joint_offsets=hand.joint_offsets * MIRROR + 0.0),
         shape=None if shape is None else replace(shape, vertices=shape.vertices * MIRROR, joints=shape.joints * MIRROR),
-        pose_blend=None if model.pose_blend is None else _mirror_blend(model.pose_blend),
-        provenance={**model.provenance, "mirrored": "no" if model.provenance.get("mirrored") == "yes" else "yes"},
+        pose_blend=None
+        if model.pose_blend is None
+        else replace(model.pose_blend, directions=mirror_pose_directions(model.pose_blend.directions, MIRROR)),
+        provenance=mirror_provenance(model.provenance),
     )
 
 
-def _mirror_blend(blend: PoseBlend) -> PoseBlend:
-    elements = np.tile(np.outer(MIRROR, MIRROR).ravel(), len(blend.bones))
-    return replace(blend, directions=blend.directions * MIRROR[:, None] * elements)
+def mirror_pose_directions(directions: Array, reflection: Array) -> Array:
+    """Pose blend shapes (V, 3, 9K) of a model reflected by (3,) factors of its axes."""
+    elements = np.tile(np.outer(reflection, reflection).ravel(), directions.shape[2] // 9)
+    return directions * reflection[:, None] * elements
+
+
+def mirror_name(name: str) -> str:
+    """The name with left and right exchanged."""
+    words = {"right": "left", "left": "right", "Right": "Left", "Left": "Right"}
+    return " ".join(words.get(word, word) for word in name.split(" "))
+
+
+def mirror_provenance(provenance: dict[str, str]) -> dict[str, str]:
+    """The provenance of the other hand."""
+    return {**provenance, "mirrored": "no" if provenance.get("mirrored") == "yes" else "yes"}
 
 
 def mirror_pose(pose: Array) -> Array:

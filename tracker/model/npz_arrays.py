@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from tracker.errors import ModelFileError, reading
+from tracker.errors import FileError, ModelFileError, reading
 
 MAX_BYTES = 256 * 2**20
 MAX_MEMBERS = 64
@@ -25,7 +25,7 @@ def read_npz_arrays(path: Path) -> dict[str, npt.NDArray]:
     Raises:
         ModelFileError: Not an archive of such arrays, damaged, or too large.
     """
-    return _read_archive(path, _read_member)
+    return _read_archive(path, _read_member, ModelFileError)
 
 
 def list_npz_arrays(path: Path) -> set[str]:
@@ -37,20 +37,24 @@ def list_npz_arrays(path: Path) -> set[str]:
         return set()
 
 
-def read_foreign_npz(path: Path) -> dict[str, npt.NDArray]:
+def read_foreign_npz(path: Path, error: type[FileError] = ModelFileError) -> dict[str, npt.NDArray]:
     """All arrays of numbers and texts of another program's .npz file; pickled objects in it are left out, unread.
 
-    Raises:
-        ModelFileError: Not an archive of arrays, damaged, or too large.
+    Args:
+        path: The file.
+        error: What is raised where it is no archive of arrays, damaged, or too large.
     """
-    return {name: array for name, array in _read_archive(path, _read_foreign_member).items() if array.dtype.kind != "O"}
+    arrays = _read_archive(path, _read_foreign_member, error)
+    return {name: array for name, array in arrays.items() if array.dtype.kind != "O"}
 
 
-def _read_archive(path: Path, read_member: Callable[[zipfile.ZipFile, zipfile.ZipInfo], npt.NDArray]):
-    with reading(ModelFileError, path, NEEDED), zipfile.ZipFile(path) as archive:
+def _read_archive(
+    path: Path, read_member: Callable[[zipfile.ZipFile, zipfile.ZipInfo], npt.NDArray], error: type[FileError]
+) -> dict[str, npt.NDArray]:
+    with reading(error, path, NEEDED), zipfile.ZipFile(path) as archive:
         members = archive.infolist()
         if len(members) > MAX_MEMBERS or sum(member.file_size for member in members) > MAX_BYTES:
-            raise ModelFileError(path, "an archive with too many or too large members", f"at most {MAX_BYTES} bytes")
+            raise error(path, "an archive with too many or too large members", f"at most {MAX_BYTES} bytes")
         return {member.filename.removesuffix(".npy"): read_member(archive, member) for member in members}
 
 
@@ -98,29 +102,42 @@ def _read_foreign_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> n
 
 
 class NpzFields:
-    """Arrays of one file, taken out by name with their kind and shape checked."""
+    """Arrays of one file, taken out by name with their kind and shape checked.
 
-    def __init__(self, path: Path, arrays: dict[str, npt.NDArray]) -> None:
-        self.path = path
-        self.arrays = arrays
+    Args:
+        path: The file.
+        arrays: By name.
+        error: What is raised where one is not as it should be.
+    """
+
+    def __init__(self, path: Path, arrays: dict[str, npt.NDArray], error: type[FileError] = ModelFileError) -> None:
+        self.path, self.arrays, self.error = path, arrays, error
 
     def __contains__(self, name: str) -> bool:
         return name in self.arrays
 
     def floats(self, name: str, shape: tuple[int, ...], limit: float) -> npt.NDArray[np.float64]:
         """float64 of this shape (-1: any length), finite and within ±limit."""
-        array = self._take(name, KINDS["float"], shape)
-        if array.size and not (np.all(np.isfinite(array)) and np.abs(array).max() <= limit):
-            raise ModelFileError(
-                self.path, f"'{name}' with values that are infinite or beyond {limit}", "sound numbers"
-            )
-        return array
+        return self._bound(name, self.take(name, KINDS["float"], shape), limit)
+
+    def numbers(self, name: str, shape: tuple[int, ...], limit: float) -> npt.NDArray[np.float64]:
+        """The same of whatever kind of numbers."""
+        array = self.take(name, None, shape)
+        return self._bound(name, np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape), limit)
+
+    def text(self, name: str, longest: int = 500) -> str:
+        """A single text, as another program wrote it."""
+        array = self.arrays.get(name)
+        if array is None or array.ndim or array.dtype.kind not in "US" or array.itemsize > 4 * longest:
+            raise self.error(self.path, self._describe(name), f"'{name}', a text of at most {longest} letters")
+        told = array.item()
+        return told.decode("ascii", "replace") if isinstance(told, bytes) else str(told)
 
     def integers(self, name: str, shape: tuple[int, ...], low: int, high: int) -> npt.NDArray[np.int64]:
         """int64 of this shape (-1: any length), low <= value < high."""
-        array = self._take(name, KINDS["integer"], shape)
+        array = self.take(name, KINDS["integer"], shape)
         if array.size and (array.min() < low or array.max() >= high):
-            raise ModelFileError(
+            raise self.error(
                 self.path, f"'{name}' from {array.min()} to {array.max()}", f"values from {low} to {high - 1}"
             )
         return array
@@ -129,20 +146,26 @@ class NpzFields:
         """Text array of this length (-1: any)."""
         array = self.arrays.get(name)
         if array is None or array.dtype.kind != "U" or array.ndim != 1 or count not in (-1, len(array)):
-            raise ModelFileError(self.path, self._describe(name), f"'{name}', {'' if count < 0 else count} texts")
+            raise self.error(self.path, self._describe(name), f"'{name}', {'' if count < 0 else count} texts")
         return tuple(str(text) for text in array)
 
-    def _take(self, name: str, dtype: np.dtype, shape: tuple[int, ...]) -> npt.NDArray:
+    def _bound(self, name: str, array: npt.NDArray, limit: float) -> npt.NDArray:
+        if array.size and not (np.all(np.isfinite(array)) and np.abs(array).max() <= limit):
+            raise self.error(self.path, f"'{name}' with values that are infinite or beyond {limit:g}", "sound numbers")
+        return array
+
+    def take(self, name: str, dtype: np.dtype | None, shape: tuple[int, ...]) -> npt.NDArray:
+        """An array of this dtype, or of any kind of numbers where that is None, and shape (-1: any length)."""
         array = self.arrays.get(name)
         fits = (
             array is not None
-            and array.dtype == dtype
+            and (array.dtype == dtype if dtype else array.dtype.kind in "fiu")
             and array.ndim == len(shape)
             and all(want in (-1, have) for want, have in zip(shape, array.shape, strict=True))
         )
         if not fits or array is None:
             wanted = "x".join("N" if length < 0 else str(length) for length in shape)
-            raise ModelFileError(self.path, self._describe(name), f"'{name}', {dtype} {wanted}")
+            raise self.error(self.path, self._describe(name), f"'{name}', {dtype or 'numbers'} {wanted}")
         return array
 
     def _describe(self, name: str) -> str:

@@ -12,11 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from tracker.errors import ModelFileError, reading, reads
-from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel, HandParts, ShapeBasis
+from tracker.model.articulated import ArticulatedModel, HandParts, ShapeBasis
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.model.npz_arrays import NpzFields, read_npz_arrays
 from tracker.model.pose_blend import PoseBlend
 from tracker.model.skeleton import Array, Skeleton
+from tracker.model.skinning import MAX_WEIGHTS
 
 FORMAT = "handloom-model"
 VERSION = "1"
@@ -111,23 +112,26 @@ def write_plain_npz(path: Path, arrays: dict[str, np.ndarray]) -> None:
     """Write arrays as they are; the file appears whole or not at all. Equal arrays give equal bytes."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}.tmp")
     try:
-        _write(temporary, arrays)
+        with temporary.open("wb") as file:
+            file.write(pack_npz(arrays, 9))
+            file.flush()
+            os.fsync(file.fileno())
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
 
 
-def _write(path: Path, arrays: dict[str, np.ndarray]) -> None:
-    with path.open("wb") as file:
-        with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-            for name, array in arrays.items():
-                buffer = io.BytesIO()
-                np.lib.format.write_array(buffer, np.asarray(array, order="C"), version=(1, 0), allow_pickle=False)
-                info = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
-                info.compress_type = zipfile.ZIP_DEFLATED
-                archive.writestr(info, buffer.getvalue())
-        file.flush()
-        os.fsync(file.fileno())
+def pack_npz(arrays: dict[str, np.ndarray], level: int = 1) -> bytes:
+    """The bytes of an .npz, compressed at a level of 1 to 9. Equal arrays give equal bytes: no times are stored."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, array in arrays.items():
+            entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            content = io.BytesIO()
+            np.lib.format.write_array(content, np.asarray(array, order="C"), allow_pickle=False)
+            archive.writestr(entry, content.getvalue(), compresslevel=level)
+    return buffer.getvalue()
 
 
 def _read_weights(fields: NpzFields, num_vertices: int, num_bones: int) -> Array:

@@ -115,7 +115,7 @@ def load_object(
         vertices=mesh.vertices * scale,
         faces=mesh.faces,
         skinning_weights=np.ones((len(mesh.vertices), 1)),
-        skeleton=_single_bone(path.stem, find_middle(mesh.vertices, mesh.faces) * scale),
+        skeleton=Skeleton.of_one_bone(path.stem, find_middle(mesh.vertices, mesh.faces) * scale),
         provenance=provenance,
     )
     return model if max_faces is None else decimate_file(path, model, max_faces)
@@ -171,13 +171,6 @@ def _find_unit(path: Path, vertices: Array, metres_per_unit: float | None) -> tu
     raise ModelFileError(path, f"a size of {size:.4g} units, in no unit that of a thing to hold", needed)
 
 
-def _single_bone(name: str, middle: Array) -> Skeleton:
-    T = np.eye(4)
-    T[:3, 3] = middle
-    none = np.zeros(0)
-    return Skeleton((name,), np.array([-1]), T[None], np.zeros(0, dtype=np.int64), np.zeros((0, 3)), none, none)
-
-
 def _read(path: Path) -> tuple[Array, Faces]:
     suffix = path.suffix.lower()
     assert suffix in OBJECT_SUFFIXES
@@ -203,25 +196,11 @@ def _read_static_gltf(gltf: Gltf) -> tuple[Array, Faces]:
         if not isinstance(node, dict) or "mesh" not in node:
             continue
         T = node_to_world(gltf, number)
-        primitives = gltf.item("meshes", node["mesh"]).get("primitives")
-        if not isinstance(primitives, list) or not all(isinstance(p, dict) for p in primitives):
-            raise gltf.fail("a mesh without primitives", "triangles")
-        for primitive in primitives:
-            points, ids = _read_primitive(gltf, primitive)
+        for primitive in gltf.primitives(node["mesh"]):
+            points, ids = gltf.triangles(primitive)
             if start + len(points) > MAX_VERTICES:
                 raise gltf.fail(f"more than {MAX_VERTICES} vertices", "a lighter mesh")
             vertices.append(points @ T[:3, :3].T + T[:3, 3])
             faces.append(ids + start)
             start += len(points)
     return np.concatenate(vertices), np.concatenate(faces)
-
-
-def _read_primitive(gltf: Gltf, primitive: dict[str, Any]) -> tuple[Array, Faces]:
-    attributes = primitive.get("attributes")
-    if primitive.get("mode", 4) != 4 or not isinstance(attributes, dict):
-        raise gltf.fail("a primitive that is not made of triangles", "triangles (mode 4)")
-    points = gltf.accessor(attributes.get("POSITION"), "VEC3").astype(np.float64)
-    ids = np.arange(len(points)) if "indices" not in primitive else gltf.accessor(primitive["indices"], "SCALAR")
-    if ids.dtype.kind not in "ui" or len(ids.ravel()) % 3 or ids.max() >= len(points):
-        raise gltf.fail(f"{ids.size} indices up to {ids.max()} for {len(points)} vertices", "whole triangles")
-    return points, ids.astype(np.int64).reshape(-1, 3)

@@ -9,9 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.geometry import se3
-from tracker.model.articulated import MAX_WEIGHTS, ArticulatedModel
-from tracker.model.kinematics import SceneArrays, move_bones_into, normals_into, skin_into
-from tracker.model.pose_blend import PoseBlendArrays, add_pose_blend, join_pose_blends, stack_pose_blend
+from tracker.geometry.vertex_normals import normals_into
+from tracker.model.articulated import ArticulatedModel
+from tracker.model.kinematics import SceneArrays, move_bones_into
+from tracker.model.pose_blend import NEGLIGIBLE, join_pose_blends, stack_pose_blend
+from tracker.model.skinning import MAX_WEIGHTS, PoseBlendArrays, add_pose_blend, skin_into, vertex_rows_into
 
 Array = npt.NDArray[np.float64]
 
@@ -120,6 +122,23 @@ class Scene:
         return _stack(self)
 
     @cached_property
+    def bone_pairs(self) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
+        """(N, 2) pairs of bones with weight on a common face, the lower first; (B, B) place of a pair, -1 for none."""
+        arrays = self.arrays
+        bones = len(arrays.parents)
+        follows = np.zeros((len(arrays.vertices), bones), dtype=bool)
+        for slot in range(arrays.weights.shape[1]):
+            used = arrays.weights[:, slot] > 0
+            follows[np.flatnonzero(used), arrays.weight_bones[used, slot]] = True
+        on_face = follows[arrays.faces].any(axis=1).astype(np.int64)
+        on_vertex = follows.astype(np.int64)
+        shared = (np.matmul(on_face.T, on_face) + np.matmul(on_vertex.T, on_vertex)) > 0
+        j, k = np.nonzero(np.triu(shared))
+        places = np.full((bones, bones), -1, dtype=np.int32)
+        places[j, k] = places[k, j] = np.arange(len(j))
+        return np.stack([j, k], axis=1).astype(np.int32), places
+
+    @cached_property
     def pose_blends(self) -> PoseBlendArrays | None:
         """How surfaces at rest change with the pose; None where they do not."""
         parts = []
@@ -129,21 +148,21 @@ class Scene:
             if model.pose_blend is None:
                 continue
             assert model.hand is not None, "only hands have pose blend shapes"
-            sources, places = np.arange(vs.stop - vs.start), np.arange(vs.start, vs.stop)
             marks = np.flatnonzero(model.hand.joint_vertices >= 0)
-            sources = np.concatenate([sources, model.hand.joint_vertices[marks]])
-            places = np.concatenate([places, ls.start + marks])
-            parts.append(stack_pose_blend(model.pose_blend, sources, places, model.skeleton.parents, bs.start))
+            own = model.pose_blend.directions
+            directions = np.concatenate([own, own[model.hand.joint_vertices[marks]]])
+            places = np.concatenate([np.arange(vs.start, vs.stop), ls.start + marks])
+            parts.append(stack_pose_blend(directions, model.pose_blend.bones + bs.start, places, NEGLIGIBLE))
         return join_pose_blends(parts) if parts else None
 
-    def arrays_at(self, Ms: Array) -> SceneArrays:
-        """The scene's arrays with the surfaces at rest as they are at a pose, given by the bones' motions (B, 3, 4)."""
+    def surface_at(self, Ms: Array) -> Array:
+        """(V, 3) the surfaces at rest as they are at a pose, given by the bones' motions (B, 3, 4), m."""
         blends = self.pose_blends
         if blends is None:
-            return self.arrays
+            return self.arrays.vertices
         rest = self.arrays.vertices.copy()
-        add_pose_blend(rest, Ms, np.empty((len(Ms), 9)), blends)
-        return self.arrays._replace(vertices=rest)
+        add_pose_blend(rest, Ms, self.arrays.parents, blends)
+        return rest
 
     def rest_pose(self) -> Array:
         """(D,) every model as in its file."""
@@ -160,7 +179,7 @@ class Scene:
         normals = np.zeros_like(vertices)
         pose = np.ascontiguousarray(pose, dtype=np.float64)
         move_bones_into(Ms, twists, arrays, pose)
-        skin_into(vertices, bone_vertices, self.arrays_at(Ms), Ms)
+        skin_into(vertices, bone_vertices, self.surface_at(Ms), arrays, Ms)
         normals_into(normals, vertices, arrays.faces)
         return PosedScene(self, pose, Ms, twists, vertices, bone_vertices, normals)
 
@@ -204,6 +223,17 @@ class PosedScene:
         """The 21 joints of a hand in the order of HAND_JOINTS, or (B, 3) the joints of an object's bones, world, m."""
         return self.vertices[self.scene.landmark_slices[model]]
 
+    def vertex_jacobian(self, vertex_ids: npt.NDArray[np.integer]) -> Array:
+        """Derivative of the posed vertices (N,) by the pose, their surface at rest held: (N, 3, D), m.
+
+        Root parameters are increments multiplied from the left about the root's joint, as `Scene.retract` applies them.
+        """
+        ids = np.asarray(vertex_ids, dtype=np.int32)
+        jacobian, nothing = np.empty((len(ids), 3, self.scene.num_dofs)), np.empty((len(self.Ms), 3, 0))
+        rest = self.scene.surface_at(self.Ms)
+        vertex_rows_into(jacobian, ids, rest, self.Ms, self.twists, self.scene.arrays, nothing, nothing)
+        return jacobian
+
     def T_world_model(self, model: int) -> Array:
         """(4, 4) motion of the root of one model: its file's coordinates to world, m."""
         T = np.eye(4)
@@ -219,7 +249,7 @@ def _slices(lengths: list[int]) -> tuple[slice, ...]:
 def _stack(scene: Scene) -> SceneArrays:
     vertices, faces, weight_bones, weights, parents, root_joints = [], [], [], [], [], []
     landmarks: list[tuple[Array, npt.NDArray, npt.NDArray]] = []
-    joint_counts, joint_dofs, axes, points, bone_roots = [], [], [], [], []
+    bone_dofs, axes, points = [], [], []
     for model, vs, bs, ps in zip(scene.models, scene.vertex_slices, scene.bone_slices, scene.pose_slices, strict=True):
         skeleton = model.skeleton
         order = np.argsort(-model.skinning_weights, axis=1, kind="stable")[:, :MAX_WEIGHTS]
@@ -234,13 +264,12 @@ def _stack(scene: Scene) -> SceneArrays:
         weights.append(kept / kept.sum(axis=1, keepdims=True))
         parents.append(np.where(skeleton.parents < 0, -1, skeleton.parents + bs.start))
         root_joints.append(skeleton.joints_rest)
-        bone_roots.append(np.full(skeleton.num_bones, ps.start))
         for bone in range(skeleton.num_bones):
+            root = np.arange(6 if skeleton.parents[bone] < 0 else 0)
             own = np.flatnonzero(skeleton.dof_bones == bone)
-            joint_counts.append(len(own))
-            joint_dofs.append(own + ps.start + 6)
-            axes.append(skeleton.dof_axes[own])
-            points.append(np.repeat(skeleton.joints_rest[bone][None], len(own), axis=0))
+            bone_dofs.append(np.concatenate([root, own + 6]) + ps.start)
+            axes.append(np.concatenate([np.zeros((len(root), 3)), skeleton.dof_axes[own]]))
+            points.append(np.repeat(skeleton.joints_rest[bone][None], len(root) + len(own), axis=0))
     for index, (points_rest, bones, own_vertices) in enumerate(landmarks):
         ids = np.where(own_vertices >= 0, own_vertices - scene.vertex_slices[index].start, 0)
         at_bone = np.zeros((len(bones), MAX_WEIGHTS))
@@ -257,12 +286,11 @@ def _stack(scene: Scene) -> SceneArrays:
         weights=np.ascontiguousarray(np.concatenate(weights), dtype=np.float64),
         parents=stacked_parents,
         root_joints=np.ascontiguousarray(np.concatenate(root_joints), dtype=np.float64),
-        joint_starts=np.concatenate([[0], np.cumsum(joint_counts)]).astype(np.int32),
-        joint_dofs=np.concatenate(joint_dofs).astype(np.int32),
+        dof_starts=np.cumsum([0, *(len(own) for own in bone_dofs)]).astype(np.int32),
+        dofs=np.concatenate(bone_dofs).astype(np.int32),
         axes=np.ascontiguousarray(np.concatenate(axes), dtype=np.float64),
         points=np.ascontiguousarray(np.concatenate(points), dtype=np.float64),
-        bone_roots=np.concatenate(bone_roots).astype(np.int32),
-        chains=_chains(stacked_parents, joint_dofs, np.concatenate(bone_roots)),
+        chains=_chains(stacked_parents, bone_dofs),
     )
 
 
@@ -281,10 +309,9 @@ def _landmarks(model: ArticulatedModel, first_bone: int, first_vertex: int) -> t
     )
 
 
-def _chains(parents: npt.NDArray[np.int32], joint_dofs: list, bone_roots: npt.NDArray) -> npt.NDArray[np.int32]:
+def _chains(parents: npt.NDArray[np.int32], bone_dofs: list[npt.NDArray]) -> npt.NDArray[np.int32]:
     chains: list[list[int]] = []
-    for bone, parent in enumerate(parents):
-        above = list(range(bone_roots[bone], bone_roots[bone] + 6)) if parent < 0 else chains[parent]
-        chains.append([*above, *(int(dof) for dof in joint_dofs[bone])])
+    for parent, own in zip(parents, bone_dofs, strict=True):
+        chains.append([*(chains[parent] if parent >= 0 else ()), *own.tolist()])
     longest = max(len(chain) for chain in chains)
     return np.array([chain + [-1] * (longest - len(chain)) for chain in chains], dtype=np.int32)

@@ -21,10 +21,15 @@ def with_shape(model: ArticulatedModel, betas: Array) -> ArticulatedModel:
     """
     assert model.shape is not None, f"{model.name} has no shape basis"
     assert betas.shape == (len(model.shape.names),)
+    return move_at_rest(model, betas, model.shape.vertices, model.shape.joints)
+
+
+def move_at_rest(model: ArticulatedModel, values: Array, vertices: Array, joints: Array) -> ArticulatedModel:
+    """The model with its vertices and joints at rest moved by values (S,) times (S, V, 3) and (S, B, 3), m."""
     Ts = model.skeleton.Ts_model_bone.copy()
-    Ts[:, :3, 3] += np.einsum("s,sbx->bx", betas, model.shape.joints)
+    Ts[:, :3, 3] += np.einsum("s,sbx->bx", values, joints)
     return replace(
         model,
-        vertices=model.vertices + np.einsum("s,svx->vx", betas, model.shape.vertices),
+        vertices=model.vertices + np.einsum("s,svx->vx", values, vertices),
         skeleton=replace(model.skeleton, Ts_model_bone=Ts),
     )

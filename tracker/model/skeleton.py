@@ -44,6 +44,13 @@ class Skeleton:
         assert self.lower.shape == self.upper.shape == (dofs,)
         assert np.all(self.parents < np.arange(bones)), "a parent must come before its children"
 
+    @classmethod
+    def of_one_bone(cls, name: str, joint: Array) -> Skeleton:
+        """A rigid thing's: one bone that turns about a joint (3,), model frame, m."""
+        T, none = np.eye(4), np.zeros(0)
+        T[:3, 3] = joint
+        return cls((name,), np.array([-1]), T[None], np.zeros(0, dtype=np.int64), np.zeros((0, 3)), none, none)
+
     @property
     def num_bones(self) -> int:
         return len(self.bone_names)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from tracker.model.hand_axes import HandChains, find_flexion_axis
+from tracker.model.hand_axes import HandChains, find_flexion_axis, unit
 from tracker.model.skeleton import Array
 
 
@@ -43,10 +43,10 @@ def estimate_joints(vertices: Array, weights: Array, parents: npt.NDArray[np.int
             continue
         child = int(children[0])
         if parent == root and is_branching:
-            joints[bone] = joints[child] + lengths[bone] * _unit(joints[root] - joints[child])
+            joints[bone] = joints[child] + lengths[bone] * unit(joints[root] - joints[child])
             continue
         along = joints[child] - joints[bone]
-        excess = 0.5 * (np.linalg.norm(along) - lengths[bone]) * _unit(along)
+        excess = 0.5 * (np.linalg.norm(along) - lengths[bone]) * unit(along)
         joints[bone] = joints[bone] + excess
         joints[child] = joints[child] - excess
     return joints
@@ -57,7 +57,7 @@ def estimate_frames(joints: Array, ends: Array) -> Array:
     Ts = np.tile(np.eye(4), (len(joints), 1, 1))
     Ts[:, :3, 3] = joints
     for bone, along in enumerate(ends - joints):
-        Ts[bone, :3, :3] = _least_turn(_unit(along))
+        Ts[bone, :3, :3] = _least_turn(unit(along))
     return Ts
 
 
@@ -79,9 +79,9 @@ def turn_to_flexion(
         lateral = find_flexion_axis(chains, finger)
         for bone in bones:
             x = Ts[bone, :3, 0]
-            bend = -_unit(lateral - (lateral @ x) * x)
+            bend = -unit(lateral - (lateral @ x) * x)
             own_x = np.array([1.0, 0.0, 0.0])
-            own = _unit(flexion_axes[bone] * [0.0, 1.0, 1.0])
+            own = unit(flexion_axes[bone] * [0.0, 1.0, 1.0])
             world = np.stack([x, bend, np.cross(x, bend)], axis=1)
             local = np.stack([own_x, own, np.cross(own_x, own)], axis=1)
             Ts[bone, :3, :3] = world @ local.T
@@ -105,7 +105,3 @@ def _least_turn(x: Array) -> Array:
     k = axis / sine
     K = np.array([[0.0, -k[2], k[1]], [k[2], 0.0, -k[0]], [-k[1], k[0], 0.0]])
     return np.eye(3) + sine * K + (1.0 - cosine) * K @ K
-
-
-def _unit(vector: Array) -> Array:
-    return vector / max(float(np.linalg.norm(vector)), 1e-12)

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from tracker.registration.vertex_normals import find_unit_normals
+from tracker.geometry.vertex_normals import find_unit_normals
 
 Array = npt.NDArray[np.float64]
 

@@ -11,9 +11,9 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 
 from tracker.errors import SolveError
-from tracker.registration.equations import add_surface_rows, weigh_robustly
+from tracker.registration.equations import add_surface_rows
 from tracker.registration.hand_state import HandState
-from tracker.registration.model_fit import MM, ModelFit, saturated
+from tracker.registration.model_fit import MM, ModelFit, weigh_matches
 from tracker.registration.scan_points import ScanPoints
 from tracker.registration.surface_search import Matches
 from tracker.solver.block_cholesky import factorize, find_block, find_block_pattern, solve_lower, solve_upper
@@ -120,12 +120,10 @@ class FreeFit:
         reach = 4.0 * sigma
         known = seeds.faces if seeds is not None and len(seeds.faces) == len(scan.points) else None
         matches = fit.search.match(vertices, scan.points, scan.normals, reach, known)
-        weights = np.empty(len(scan.points))
-        is_found = matches.faces >= 0
+        weights, total = weigh_matches(matches, reach, sigma)
         scale = len(vertices) / len(scan.points)
-        missing = float(np.count_nonzero(~is_found)) * saturated(reach, sigma)
-        cost = scale * MM * MM * (weigh_robustly(weights, matches.offsets, sigma) + missing)
-        weights *= scale * MM * MM * (is_found & ~matches.on_rim)
+        cost = scale * MM * MM * total
+        weights *= scale * MM * MM
         model_vertices = fit.pose(state).vertices
         stretch = self.differences @ (vertices - model_vertices) * MM
         cost += settings.coupling * float(np.einsum("ed,ed->", stretch, stretch))

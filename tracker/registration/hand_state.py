@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial.transform import Rotation
 
 from tracker.model.blend_model import BlendModel, PosedBlend
 
@@ -33,3 +35,10 @@ class HandState:
         """The state after a step (P,) in the model's order of parameters."""
         pose, shape, translation = model.retract(self.pose, self.shape, self.translation, step)
         return HandState(pose, shape, translation)
+
+    def moved(self, model: BlendModel, R: Array, t: Array) -> Self:
+        """The state whose vertices are R v + t for the vertices v of this one; R (3, 3), t (3,) m."""
+        root = model.joints_of(model.shaped(self.shape))[0]
+        pose = self.pose.copy()
+        pose[0] = Rotation.from_matrix(R @ Rotation.from_rotvec(pose[0]).as_matrix()).as_rotvec()
+        return replace(self, pose=pose, translation=R @ (root + self.translation) + t - root)

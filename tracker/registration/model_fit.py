@@ -8,13 +8,13 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.blend_model import BlendModel
 from tracker.registration.equations import add_model_rows, weigh_robustly
 from tracker.registration.hand_state import HandState
 from tracker.registration.pose_prior import PosePrior
 from tracker.registration.scan_points import ScanPoints
 from tracker.registration.surface_search import MIN_COSINE, Matches, SurfaceSearch
-from tracker.registration.vertex_normals import find_unit_normals
 from tracker.solver.minimize import DenseSystem, TrustRegion, minimize
 
 Array = npt.NDArray[np.float64]
@@ -24,6 +24,10 @@ MM = 1e3
 
 FIRST_RADIUS, LEAST_RADIUS = 3.0, 1e-3
 """Of the trust region, in parameters scaled to 0.3 rad of a joint."""
+
+
+ALL = 100_000
+"""More vertices than any model has."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +50,7 @@ class FitSettings:
     pose_weight: float = 1.0
     shape_weight: float = 10.0
     tolerance: float = 1e-3
-    back: int = 100_000
+    back: int = ALL
 
 
 class Posed(Protocol):
@@ -56,6 +60,23 @@ class Posed(Protocol):
     def vertices(self) -> Array: ...
 
     def vertex_jacobian(self, vertex_ids: npt.NDArray[np.int64] | None = None) -> Array: ...
+
+
+@dataclass(frozen=True)
+class LookBack:
+    """What N vertices see of a scan.
+
+    Attributes:
+        is_used: (N,) whether a point that looks the same way is within reach.
+        distances: (N,) to the nearest point, m; infinite where none is within reach.
+        along: (N,) the same along the point's normal, where it has one.
+        normals: (N, 3) unit, of the points; towards the vertex where one has none.
+    """
+
+    is_used: npt.NDArray[np.bool_]
+    distances: Array
+    along: Array
+    normals: Array
 
 
 @dataclass(frozen=True)
@@ -70,7 +91,6 @@ class Evaluation:
     back_offsets: Array
     back_normals: Array
     cost: float
-    data_cost: float
 
 
 class ModelFit:
@@ -116,39 +136,38 @@ class ModelFit:
         sigma = settings.sigma_mm / MM
         reach = 4.0 * sigma
         matches = self.search.match(vertices, scan.points, scan.normals, reach, seeds)
-        weights = np.empty(len(scan.points))
-        is_found = matches.faces >= 0
-        missing = float(np.count_nonzero(~is_found)) * saturated(reach, sigma)
+        weights, total = weigh_matches(matches, reach, sigma)
         scale = len(vertices) / len(scan.points)
-        data = scale * MM * MM * (weigh_robustly(weights, matches.offsets, sigma) + missing)
-        weights *= scale * (is_found & ~matches.on_rim)
+        data = scale * MM * MM * total
+        weights *= scale
         back_weights = back_offsets = np.zeros(0)
         back_normals = np.zeros((0, 3))
         if settings.to_scan > 0.0:
-            inner = self.inner[: settings.back]
-            mine = vertices[inner]
-            surface = scan.surface
-            distances, ids = surface.tree.query(mine, distance_upper_bound=reach)
-            is_near = np.asarray(ids < len(surface.points))
-            ids = np.where(is_near, ids, 0)
-            towards = mine - surface.points[ids]
-            normals = surface.normals[ids]
-            mine_normals = find_unit_normals(vertices, self.search.faces)[inner]
-            looks = np.asarray(np.einsum("nd,nd->n", normals, mine_normals) > MIN_COSINE)
-            has_normal = np.asarray(normals.any(axis=1))
-            along = np.where(has_normal, np.einsum("nd,nd->n", towards, normals), distances)
-            back_normals = np.where(has_normal[:, None], normals, towards / np.maximum(distances, 1e-9)[:, None])
-            is_used = is_near & (looks | ~has_normal)
-            back_offsets = np.where(is_used, along, 0.0)
+            back = self.look_back(vertices, scan, reach, settings.back)
+            back_normals, back_offsets = back.normals, np.where(back.is_used, back.along, 0.0)
             # the weight follows the whole distance, so that vertices over a hole do not count as near its rim's plane
-            square = sigma * sigma
-            share = np.where(is_used, square / (square + np.where(is_near, distances, 0.0) ** 2), 0.0)
-            rho = np.where(is_used, np.where(is_near, distances, 0.0) ** 2 * share, saturated(reach, sigma))
-            strength = settings.to_scan * len(self.inner) / len(inner)
+            square, distances = sigma * sigma, np.where(back.is_used, back.distances, 0.0)
+            share = np.where(back.is_used, square / (square + distances**2), 0.0)
+            rho = np.where(back.is_used, distances**2 * share, saturated(reach, sigma))
+            strength = settings.to_scan * len(self.inner) / len(rho)
             data += strength * MM * MM * float(rho.sum())
             back_weights = strength * share * share
         cost = data + self.prior_cost(state, settings.pose_weight, settings.shape_weight)
-        return Evaluation(state, posed, matches, weights, back_weights, back_offsets, back_normals, cost, data)
+        return Evaluation(state, posed, matches, weights, back_weights, back_offsets, back_normals, cost)
+
+    def look_back(self, vertices: Array, scan: ScanPoints, reach: float, most: int = ALL) -> LookBack:
+        """What vertices (V, 3) of the surface off its rim, m, `most` of them evenly spread, see of the scan."""
+        inner, surface = self.inner[:most], scan.surface
+        distances, ids = surface.tree.query(vertices[inner], distance_upper_bound=reach)
+        is_near = np.asarray(ids < len(surface.points))
+        ids = np.where(is_near, ids, 0)
+        towards, normals = vertices[inner] - surface.points[ids], surface.normals[ids]
+        mine = find_unit_normals(vertices, self.search.faces)[inner]
+        looks = np.asarray(np.einsum("nd,nd->n", normals, mine) > MIN_COSINE)
+        has_normal = np.asarray(normals.any(axis=1))
+        along = np.where(has_normal, np.einsum("nd,nd->n", towards, normals), distances)
+        ways = np.where(has_normal[:, None], normals, towards / np.maximum(distances, 1e-9)[:, None])
+        return LookBack(is_near & (looks | ~has_normal), np.asarray(distances), along, ways)
 
     def linearize(self, here: Evaluation, scan: ScanPoints, settings: FitSettings) -> tuple[Array, Array]:
         """JtJ (P, P) and Jtr (P,), half the gradient, in the model's order of parameters."""
@@ -205,6 +224,14 @@ class ModelFit:
         JtJ[np.arange(last, size), np.arange(last, size)] = shape_weight
         Jtr[last:] = shape_weight * state.shape
         return JtJ, Jtr
+
+
+def weigh_matches(matches: Matches, reach: float, sigma: float) -> tuple[Array, float]:
+    """Weights (N,) of matched points, 0 on the rim and where nothing lies within `reach`, m, and the sum of ρ, m²."""
+    weights, is_found = np.empty(len(matches.faces)), matches.faces >= 0
+    missing = float(np.count_nonzero(~is_found)) * saturated(reach, sigma)
+    total = weigh_robustly(weights, matches.offsets, sigma) + missing
+    return weights * (is_found & ~matches.on_rim), total
 
 
 def saturated(reach: float, sigma: float) -> float:

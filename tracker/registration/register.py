@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,6 +24,7 @@ from tracker.registration.pose_prior import PosePrior
 from tracker.registration.registration import VERDICTS, Registration, RegistrationStart, digest_model, digest_scan
 from tracker.registration.scan_frame import ScanFrame, find_scan_frame
 from tracker.registration.scan_points import ScanPoints, arrange_points, find_hand_points
+from tracker.registration.stage_clock import StageClock
 from tracker.registration.start import StartSearch, find_apart
 from tracker.registration.verdict import Verdict, judge, refuse
 from tracker.registration.vertex_fit import fit_to_vertices
@@ -98,7 +98,7 @@ class Registrar:
         options = options or RegistrationOptions()
         tell = progress or (lambda stage, share: None)
         began = time.perf_counter()
-        clock = _Clock()
+        clock = StageClock(time.thread_time)
         with clock.measure("prepare"):
             keep, notes = find_hand_points(scan, options.use_colors)
             fault = _find_fault(scan, keep)
@@ -149,7 +149,7 @@ class Registrar:
         scan: Scan,
         keep: npt.NDArray[np.bool_],
         options: RegistrationOptions,
-        clock: _Clock,
+        clock: StageClock,
     ) -> _Settled:
         """From a start to a judged surface."""
         state = evaluation.state
@@ -171,7 +171,7 @@ class Registrar:
             verdict = judge(self.fit, hand, evaluation, surface, distances, int(keep.sum()))
         return _Settled(side, surface.vertices, last, distances, verdict)
 
-    def _look_again(self, scans: dict[str, ScanPoints], clock: _Clock) -> list[tuple[str, Evaluation]]:
+    def _look_again(self, scans: dict[str, ScanPoints], clock: StageClock) -> list[tuple[str, Evaluation]]:
         """Side and state of starts about as good as the best of a thorough search, each another arrangement.
 
         The search looks into grids along the axes. It looks at the scan turned, so that what the first look missed
@@ -245,16 +245,3 @@ def _find_fault(scan: Scan, keep: npt.NDArray[np.bool_]) -> str | None:
     if fault := find_size_fault(float(measure_size(scan.points[keep])[0])):
         return f"the scan {fault}; needed {SIZES_NEEDED}: give its unit (metres per unit), or crop what is not a hand"
     return None
-
-
-class _Clock:
-    """Processor seconds by stage."""
-
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
-
-    @contextmanager
-    def measure(self, stage: str):
-        began = time.thread_time()
-        yield
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.thread_time() - began

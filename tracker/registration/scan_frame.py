@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
 
 from tracker.capture.scan import Scan
 from tracker.model.blend_model import BlendModel
@@ -70,7 +69,4 @@ def _move(model: BlendModel, state: HandState, R: Array, t: Array, side: str) ->
     if side == "left":
         mirror = np.diag([-1.0, 1.0, 1.0])
         R, t = mirror @ R @ mirror, mirror @ t
-    root = model.joints_of(model.shaped(state.shape))[0]
-    pose = state.pose.copy()
-    pose[0] = Rotation.from_matrix(R @ Rotation.from_rotvec(pose[0]).as_matrix()).as_rotvec()
-    return HandState(pose, state.shape, R @ (root + state.translation) + t - root)
+    return state.moved(model, R, t)

@@ -60,6 +60,10 @@ class ScanPoints:
     def tree(self) -> KDTree:
         return KDTree(self.points)
 
+    def chosen(self, ids: npt.NDArray[np.integer]) -> ScanPoints:
+        """Those of the points (n,)."""
+        return ScanPoints(np.ascontiguousarray(self.points[ids]), np.ascontiguousarray(self.normals[ids]))
+
     def mirrored(self) -> ScanPoints:
         """The points seen in the mirror x = 0."""
         flip = np.array([-1.0, 1.0, 1.0])

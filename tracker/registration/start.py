@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial.transform import Rotation
 
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.blend_limits import BlendLimits
 from tracker.registration.hand_state import HandState
 from tracker.registration.model_fit import Evaluation, FitSettings, ModelFit
@@ -17,7 +18,6 @@ from tracker.registration.nearest_grid import NearestGrid, build_nearest_grid
 from tracker.registration.rigid_search import Placing, StiffHand, place_stiffly
 from tracker.registration.scan_points import ScanPoints
 from tracker.registration.start_poses import CURLS, START_POSES, THUMBS, curl_finger, make_start_pose, turn_thumb
-from tracker.registration.vertex_normals import find_unit_normals
 
 Array = npt.NDArray[np.float64]
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from numba import njit
 
 from tracker.geometry.triangle_tree import Filter, build_triangle_tree, fit_tree
+from tracker.geometry.triangles import find_closest
 from tracker.registration.curved_triangles import find_bulges, find_height
 
 Array = npt.NDArray[np.float64]
@@ -66,7 +67,6 @@ class SurfaceSearch:
         normals: Array,
         reach: float,
         seeds: Ints | None = None,
-        min_cosine: float = MIN_COSINE,
     ) -> Matches:
         """Closest points on the mesh at `vertices`.
 
@@ -76,7 +76,6 @@ class SurfaceSearch:
             normals: (N, 3) unit; zero matches whatever way the triangle looks.
             reach: Largest distance that is looked for, m.
             seeds: (N,) triangles to begin with, such as those of the last pose.
-            min_cosine: Least cosine between the normals.
         """
         fitted = fit_tree(self._tree, self._filter, vertices, self.faces)
         count = len(points)
@@ -111,7 +110,6 @@ class SurfaceSearch:
             self.is_rim_edge,
             self.is_rim_vertex,
             reach,
-            min_cosine,
         )
         return found
 
@@ -141,43 +139,6 @@ def find_face_normals(normals, vertices, faces):
 
 
 @njit(cache=True, nogil=True)
-def find_closest(px, py, pz, vertices, a, b, c):
-    """Squared distance from p to the triangle a, b, c, and weights of b and c at its closest point."""
-    ax, ay, az = vertices[a, 0], vertices[a, 1], vertices[a, 2]
-    ux, uy, uz = vertices[b, 0] - ax, vertices[b, 1] - ay, vertices[b, 2] - az
-    wx, wy, wz = vertices[c, 0] - ax, vertices[c, 1] - ay, vertices[c, 2] - az
-    qx, qy, qz = px - ax, py - ay, pz - az
-    uu, uw, ww = ux * ux + uy * uy + uz * uz, ux * wx + uy * wy + uz * wz, wx * wx + wy * wy + wz * wz
-    uq, wq = ux * qx + uy * qy + uz * qz, wx * qx + wy * qy + wz * qz
-    area = uu * ww - uw * uw
-    t = s = 0.0
-    is_inside = False
-    if area > 0.0:
-        s, t = (ww * uq - uw * wq) / area, (uu * wq - uw * uq) / area
-        is_inside = s >= 0.0 and t >= 0.0 and s + t <= 1.0
-    if not is_inside:  # the nearest point of the three edges
-        best = np.inf
-        side = 0.0 if uu == 0.0 else min(max(uq / uu, 0.0), 1.0)
-        dx, dy, dz = qx - side * ux, qy - side * uy, qz - side * uz
-        best, s, t = dx * dx + dy * dy + dz * dz, side, 0.0
-        side = 0.0 if ww == 0.0 else min(max(wq / ww, 0.0), 1.0)
-        dx, dy, dz = qx - side * wx, qy - side * wy, qz - side * wz
-        square = dx * dx + dy * dy + dz * dz
-        if square < best:
-            best, s, t = square, 0.0, side
-        vx, vy, vz = wx - ux, wy - uy, wz - uz
-        vv = vx * vx + vy * vy + vz * vz
-        side = 0.0 if vv == 0.0 else ((qx - ux) * vx + (qy - uy) * vy + (qz - uz) * vz) / vv
-        side = min(max(side, 0.0), 1.0)
-        dx, dy, dz = qx - ux - side * vx, qy - uy - side * vy, qz - uz - side * vz
-        square = dx * dx + dy * dy + dz * dz
-        if square < best:
-            best, s, t = square, 1.0 - side, side
-    dx, dy, dz = qx - s * ux - t * wx, qy - s * uy - t * wy, qz - s * uz - t * wz
-    return dx * dx + dy * dy + dz * dz, s, t
-
-
-@njit(cache=True, nogil=True)
 def _box_distance(boxes, n, x, y, z):
     dx = max(boxes[n, 0] - x, 0.0, x - boxes[n, 3])
     dy = max(boxes[n, 1] - y, 0.0, y - boxes[n, 4])
@@ -189,7 +150,7 @@ def _box_distance(boxes, n, x, y, z):
 def _match_into(
     found, weights, directions, offsets, heights, on_rim,
     points, normals, vertices, faces, face_normals, bulges, boxes, order, starts, ends, skip, rim_edges, rim_vertices,
-    reach, min_cosine,
+    reach,
 ):  # fmt: skip
     stack = np.empty(128, dtype=np.int32)
     near = np.empty(128)
@@ -201,7 +162,7 @@ def _match_into(
         seed = found[p]
         if seed >= 0:
             cosine = mx * face_normals[seed, 0] + my * face_normals[seed, 1] + mz * face_normals[seed, 2]
-            if is_free or cosine > min_cosine:
+            if is_free or cosine > MIN_COSINE:
                 square, s, t = find_closest(x, y, z, vertices, faces[seed, 0], faces[seed, 1], faces[seed, 2])
                 if square < best:
                     best, face, share_b, share_c = square, seed, s, t
@@ -216,7 +177,7 @@ def _match_into(
                 for place in range(starts[node], ends[node]):
                     f = order[place]
                     cosine = mx * face_normals[f, 0] + my * face_normals[f, 1] + mz * face_normals[f, 2]
-                    if is_free or cosine > min_cosine:
+                    if is_free or cosine > MIN_COSINE:
                         square, s, t = find_closest(x, y, z, vertices, faces[f, 0], faces[f, 1], faces[f, 2])
                         if square < best:
                             best, face, share_b, share_c = square, f, s, t

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
 
 from tracker.capture.scan import Scan
 from tracker.model.blend_model import BlendModel
@@ -16,7 +15,6 @@ from tracker.registration.model_fit import MM, Evaluation, FitSettings, ModelFit
 from tracker.registration.registration import Registration, digest_scan
 from tracker.registration.scan_points import ScanPoints
 from tracker.registration.surface_search import Matches
-from tracker.registration.vertex_normals import find_unit_normals
 
 Array = npt.NDArray[np.float64]
 
@@ -140,10 +138,7 @@ def turn_over(model: BlendModel, state: HandState) -> HandState:
     mirror = np.diag([-1.0, 1.0, 1.0])
     turn = mirror @ (np.eye(3) - 2.0 * np.outer(palm, palm))
     center = posed.vertices.mean(axis=0)
-    root = model.joints_of(model.shaped(state.shape))[0]
-    pose = state.pose.copy()
-    pose[0] = Rotation.from_matrix(turn @ Rotation.from_rotvec(pose[0]).as_matrix()).as_rotvec()
-    return HandState(pose, state.shape, turn @ (root + state.translation - center) + mirror @ center - root)
+    return state.moved(model, turn, (mirror - turn) @ center)
 
 
 def _cost(fit: ModelFit, scan: ScanPoints, state: HandState) -> float:
@@ -205,16 +200,9 @@ def _robust_mean(matches: Matches, beside: npt.NDArray[np.bool_]) -> float:
 
 def _look_back(fit: ModelFit, scan: ScanPoints, vertices: Array) -> tuple[float, float]:
     """Share of vertices that see no scan, and their mean robust cost, mm²."""
-    surface = scan.surface
-    distances, ids = surface.tree.query(vertices[fit.inner], distance_upper_bound=0.016)
-    is_near = np.asarray(ids < len(surface.points))
-    ids = np.where(is_near, ids, 0)
-    normals = surface.normals[ids]
-    mine = find_unit_normals(vertices, fit.search.faces)[fit.inner]
-    looks = (np.einsum("nd,nd->n", normals, mine) > 0.25) | ~normals.any(axis=1)
-    along = np.einsum("nd,nd->n", normals, vertices[fit.inner] - surface.points[ids])
-    r2 = np.where(is_near & looks, (MM * np.where(normals.any(axis=1), along, distances)) ** 2, 1e6)
-    is_seen = is_near & looks & (np.where(is_near, distances, 1.0) < 4e-3)
+    back = fit.look_back(vertices, scan, 0.016)
+    r2 = np.where(back.is_used, (MM * back.along) ** 2, 1e6)
+    is_seen = back.is_used & (back.distances < 4e-3)
     return float(1.0 - is_seen.mean()), float((16.0 * r2 / (16.0 + r2)).mean())
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import cho_factor, cho_solve
-from scipy.spatial.transform import Rotation
 
+from tracker.geometry.se3 import find_rotations
 from tracker.registration.hand_state import HandState
 from tracker.registration.model_fit import MM, ModelFit
 
@@ -28,19 +28,14 @@ def fit_to_vertices(fit: ModelFit, state: HandState, vertices: Array, weight: fl
     if vertices.shape != model.template.shape:
         return state
     state = _align(fit, state, vertices)
-    first, last = 6, 3 + 3 * len(model.parents)
-    shape_ids = np.arange(last, model.num_parameters)
     for _ in range(ITERATIONS):
         posed = state.posed(model)
         J = posed.vertex_jacobian().reshape(-1, model.num_parameters) * (fit.scales * MM)
         residual = (posed.vertices - vertices).ravel() * MM
         H, g = J.T @ J, J.T @ residual
-        _, prior_JtJ, prior_Jtr = fit.prior.linearize(state.pose[1:])
-        scales = fit.scales[first:last]
-        H[first:last, first:last] += weight * prior_JtJ * scales[:, None] * scales
-        g[first:last] += weight * prior_Jtr * scales
-        H[shape_ids, shape_ids] += weight
-        g[shape_ids] += weight * state.shape
+        prior_JtJ, prior_Jtr = fit.prior_equations(state, weight, weight)
+        H += prior_JtJ * fit.scales[:, None] * fit.scales
+        g += prior_Jtr * fit.scales
         H[np.diag_indices_from(H)] *= 1.0 + 1e-6
         step = -cho_solve(cho_factor(H, lower=True), g)
         length = float(np.abs(step).max())
@@ -52,12 +47,7 @@ def fit_to_vertices(fit: ModelFit, state: HandState, vertices: Array, weight: fl
 
 def _align(fit: ModelFit, state: HandState, vertices: Array) -> HandState:
     """The state with its root turned and moved onto the vertices (Kabsch)."""
-    posed = state.posed(fit.model)
-    mine, theirs = posed.vertices.mean(axis=0), vertices.mean(axis=0)
-    U, _, Vt = np.linalg.svd((posed.vertices - mine).T @ (vertices - theirs))
-    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(Vt.T @ U.T))])
-    R = Vt.T @ flip @ U.T
-    pose = state.pose.copy()
-    pose[0] = (Rotation.from_matrix(R) * Rotation.from_rotvec(pose[0])).as_rotvec()
-    root = posed.joints[0]
-    return HandState(pose, state.shape, state.translation + R @ (root - mine) + theirs - root)
+    own = state.posed(fit.model).vertices
+    mine, theirs = own.mean(axis=0), vertices.mean(axis=0)
+    R = find_rotations((vertices - theirs).T @ (own - mine))
+    return state.moved(fit.model, R, theirs - R @ mine)

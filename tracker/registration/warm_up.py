@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tracker.capture.scan import Scan
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.register import Registrar
-from tracker.registration.vertex_normals import find_unit_normals
 
 
 def warm_up_registration() -> None:

@@ -15,6 +15,7 @@ from tracker.terms.normal_equations import MILLIMETRES
 from tracker.terms.penetration import find_swallowed
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
+from tracker.terms.surface_rows import span
 
 REACH = 4.0
 """A field ends this many circumradii from its triangle; two crossing triangles of about one size are within three."""
@@ -74,15 +75,8 @@ class Collision:
         ids = np.concatenate([ids, inside.ids[swallowed]])
         push = np.concatenate([push, swallowed_push]) / MILLIMETRES
         normals = posed.normals[ids]
-        barycentric = np.zeros((len(ids), 3))
-        barycentric[:, 0] = 1.0
-        return PointToPlane(
-            np.repeat(ids[:, None], 3, axis=1),
-            barycentric,
-            posed.vertices[ids] - push[:, None] * normals,
-            normals,
-            np.full(len(ids), self.weight),
-        )
+        targets = posed.vertices[ids] - push[:, None] * normals
+        return PointToPlane(*span(ids), targets, normals, np.full(len(ids), self.weight))
 
 
 def compute_repulsion(vertices, normals, faces, pairs, sigma_mm: float, to_mm: float):

@@ -13,7 +13,7 @@ from tracker.observation.depth_edges import find_fall
 from tracker.observation.observation import HAND
 from tracker.terms.drawn_frame import Matches
 from tracker.terms.look import TermLook
-from tracker.terms.nearby_pixels import find_nearby_pixels
+from tracker.terms.nearby_pixels import find_nearby_pixels, find_vertex_pixel
 from tracker.terms.point_line import PointToLine
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -150,13 +150,10 @@ def _find_vertex_pixels(projected, inverse_depth):
     height, width = inverse_depth.shape
     vertex_at = np.full((height, width), -1, dtype=np.int32)
     for v in range(len(projected)):
-        inverse = projected[v, 2]
-        if inverse <= 0.0:
+        row, column = find_vertex_pixel(projected, v, height, width)
+        if row < 0:
             continue
-        column, row = int(np.rint(projected[v, 0])), int(np.rint(projected[v, 1]))
-        if row < 0 or column < 0 or row >= height or column >= width:
-            continue
-        drawn = inverse_depth[row, column]
+        inverse, drawn = projected[v, 2], inverse_depth[row, column]
         if drawn <= 0.0 or 1.0 / inverse > 1.0 / drawn + VISIBLE_WITHIN:
             continue
         if vertex_at[row, column] < 0 or inverse > projected[vertex_at[row, column], 2]:

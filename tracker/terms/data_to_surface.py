@@ -11,6 +11,7 @@ from numba import njit
 from tracker.model.scene import PosedScene
 from tracker.terms.drawn_frame import Matches
 from tracker.terms.look import TermLook
+from tracker.terms.nearby_pixels import find_ring_pixel
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import FrameContext
 from tracker.terms.surface_point import barycentric_into
@@ -85,14 +86,7 @@ def _find_into(matches, drawn, stride, max_distance, min_cosine):
                     break
                 for side in range(2 * ring + 1 if ring > 0 else 1):
                     for edge in range(4 if ring > 0 else 1):
-                        if edge == 0:
-                            r, c = row - ring, column - ring + side
-                        elif edge == 1:
-                            r, c = row + ring, column - ring + side
-                        elif edge == 2:
-                            r, c = row - ring + side, column - ring
-                        else:
-                            r, c = row - ring + side, column + ring
+                        r, c = find_ring_pixel(row, column, ring, side, edge)
                         if r < 0 or c < 0 or r >= height or c >= width:
                             continue
                         f = face[r, c]

@@ -14,9 +14,9 @@ from tracker.model.scene import PosedScene
 from tracker.observation.image_flow import ImageFlow
 from tracker.rendering import render_view
 from tracker.terms.look import TermLook
-from tracker.terms.normal_equations import MILLIMETRES
-from tracker.terms.point_line import PointToLine
+from tracker.terms.point_line import PointToLine, find_slack
 from tracker.terms.residual import FrameContext
+from tracker.terms.surface_point import find_shares
 
 Array = npt.NDArray[np.float64]
 
@@ -34,7 +34,7 @@ JUMP = 0.008
 class Flow:
     """Pull points of the surface to where the image has taken them: E = Σ wᵢ |v_i(θ) × d_i − m_i|², [T16] Eq. 8, 19.
 
-    The weight of a point falls with its distance r from its ray as (1 + (r / reach)²)⁻², Geman and McClure's ρ.
+    The weight of a point falls with its distance from its ray (`find_slack`).
 
     Differs from the paper: distances are of the surface point from the viewing ray, mm, not px (as in `Contours`).
 
@@ -59,8 +59,7 @@ class Flow:
     def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToLine:
         """The same rays whatever the pose, with less weight where the point is far from its own."""
         points = np.einsum("nc,nci->ni", self.barycentric, posed.vertices[self.ids])
-        away = MILLIMETRES * np.linalg.norm(np.cross(points, self.directions) - self.moments, axis=1)
-        weights = self.weight / (1.0 + (away / self.reach) ** 2) ** 2
+        weights = self.weight / find_slack(points, self.directions, self.moments, self.reach)
         return PointToLine(self.ids, self.barycentric, self.directions, self.moments, weights)
 
 
@@ -81,30 +80,14 @@ def follow_surface(before: PosedScene, flow: ImageFlow, stride: int = STRIDE) ->
     is_chosen[stride // 2 :: stride, stride // 2 :: stride] = True
     rows, columns = np.nonzero(is_chosen & is_inside & np.isfinite(flow.now[:, :, 0]))
     ids = before.scene.arrays.faces[view.face[rows, columns]]
-    barycentric = find_shares(view.projected[ids], columns.astype(np.float64), rows.astype(np.float64))
+    barycentric = find_shares(ids, view.projected, columns, rows)
     pixels = flow.now[rows, columns].astype(np.float64)
     rays = np.column_stack([(pixels - flow.K[:2, 2]) / flow.K[[0, 1], [0, 1]], np.ones(len(pixels))])
     directions = rays @ flow.T_world_camera[:3, :3].T
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     origin = np.broadcast_to(flow.T_world_camera[:3, 3], directions.shape)
     moments = np.asarray(np.cross(origin, directions), dtype=np.float64)
-    return Flow(np.ascontiguousarray(ids, dtype=np.int32), barycentric, directions, moments)
-
-
-def find_shares(corners: Array, columns: Array, rows: Array) -> Array:
-    """(N, 3) perspective-correct shares of the corners of faces at pixels inside them, as `barycentric_into` has them.
-
-    Args:
-        corners: (N, 3, 3) column px, row px and inverse depth 1/m of each face's corners.
-        columns: (N,) px.
-        rows: (N,) px.
-    """
-    (xa, ya, za), (xb, yb, zb), (xc, yc, zc) = (corners[:, corner].T for corner in range(3))
-    area = (xb - xa) * (yc - ya) - (yb - ya) * (xc - xa)
-    wb = ((columns - xa) * (yc - ya) - (rows - ya) * (xc - xa)) / area
-    wc = ((xb - xa) * (rows - ya) - (yb - ya) * (columns - xa)) / area
-    shares = np.stack([(1.0 - wb - wc) * za, wb * zb, wc * zc], axis=1)
-    return shares / shares.sum(axis=1, keepdims=True)
+    return Flow(ids, barycentric, directions, moments)
 
 
 def join_flows(parts: Sequence[Flow], weight: float | None = None) -> Flow:

@@ -11,9 +11,9 @@ import numpy.typing as npt
 from tracker.capture.camera import Camera
 from tracker.model.scene import PosedScene, Scene
 from tracker.terms.look import TermLook
-from tracker.terms.normal_equations import MILLIMETRES
-from tracker.terms.point_line import PointToLine
+from tracker.terms.point_line import PointToLine, find_slack
 from tracker.terms.residual import FrameContext
+from tracker.terms.surface_rows import span
 
 Array = npt.NDArray[np.float64]
 
@@ -22,8 +22,7 @@ Array = npt.NDArray[np.float64]
 class MarkedJoints:
     """Keep landmarks on rays: E = Σ wᵢ ρ(|v × d − m|), as [T16] Eq. 8 measures the distance.
 
-    Where `reach` is finite the weight of a ray falls with its distance r from the joint as (1 + (r / reach)²)⁻², which
-    is Geman and McClure's ρ: a joint that is told wrongly lets go.
+    Where `reach` is finite the weight of a ray falls with its distance from the joint (`find_slack`).
 
     Attributes:
         ids: (N,) vertices of the scene.
@@ -45,12 +44,9 @@ class MarkedJoints:
 
     def find(self, posed: PosedScene, context: FrameContext | None = None) -> PointToLine:
         """The same rays whatever the pose, with less weight where the joint is far from its own."""
-        corners = np.repeat(self.ids[:, None], 3, axis=1).astype(np.int32)
-        shares = np.tile([1.0, 0.0, 0.0], (len(self.ids), 1))
-        (x, y, z), (u, v, w) = posed.vertices[self.ids].T, self.directions.T
-        away = np.linalg.norm(np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1) - self.moments, axis=1)
-        weights = self.weight * self.beliefs / (1.0 + (MILLIMETRES * away / self.reach) ** 2) ** 2
-        return PointToLine(corners, shares, self.directions, self.moments, weights)
+        slack = find_slack(posed.vertices[self.ids], self.directions, self.moments, self.reach)
+        weights = self.weight * self.beliefs / slack
+        return PointToLine(*span(self.ids), self.directions, self.moments, weights)
 
 
 def mark_joints(

@@ -10,9 +10,11 @@ from numba import njit
 
 from tracker.model.scene import PosedScene
 from tracker.terms.look import TermLook
+from tracker.terms.nearby_pixels import find_ring_pixel, find_vertex_pixel
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.point_point import PointToPoint
 from tracker.terms.residual import FrameContext
+from tracker.terms.surface_rows import span
 
 
 @dataclass(frozen=True)
@@ -56,13 +58,9 @@ class ModelToData:
         cosine = np.cos(np.deg2rad(self.max_angle))
         count = _find_into(ids, targets, context.drawn, self.stride, self.max_distance, cosine, self.visible_within)
         ids, targets = ids[:count], targets[:count]
-        corners = np.repeat(ids[:, None], 3, axis=1)
-        barycentric = np.zeros((count, 3))
-        barycentric[:, 0] = 1.0
-        weights = np.full(count, self.weight)
         if self.to_plane:
-            return PointToPlane(corners, barycentric, targets, posed.normals[ids], weights)
-        return PointToPoint(corners, barycentric, targets, weights)
+            return PointToPlane(*span(ids), targets, posed.normals[ids], np.full(count, self.weight))
+        return PointToPoint.of_vertices(ids, targets, self.weight)
 
 
 @njit(cache=True, nogil=True)
@@ -78,13 +76,10 @@ def _find_into(ids, targets, drawn, stride, max_distance, min_cosine, visible_wi
     height, width = labels.shape
     count = 0
     for v in range(0, len(vertices), stride):
-        inverse = projected[v, 2]
-        if inverse <= 0.0:
+        row, column = find_vertex_pixel(projected, v, height, width)
+        if row < 0:
             continue
-        column, row = int(np.rint(projected[v, 0])), int(np.rint(projected[v, 1]))
-        if row < 0 or column < 0 or row >= height or column >= width:
-            continue
-        at = drawn.inverse_depth[row, column]
+        inverse, at = projected[v, 2], drawn.inverse_depth[row, column]
         if at > 0.0 and 1.0 / inverse > 1.0 / at + visible_within:
             continue
         nx, ny, nz = vertex_normals[v, 0], vertex_normals[v, 1], vertex_normals[v, 2]
@@ -102,14 +97,7 @@ def _find_into(ids, targets, drawn, stride, max_distance, min_cosine, visible_wi
                 break
             for side in range(2 * ring + 1 if ring > 0 else 1):
                 for edge in range(4 if ring > 0 else 1):
-                    if edge == 0:
-                        r, c = row - ring, column - ring + side
-                    elif edge == 1:
-                        r, c = row + ring, column - ring + side
-                    elif edge == 2:
-                        r, c = row - ring + side, column - ring
-                    else:
-                        r, c = row - ring + side, column + ring
+                    r, c = find_ring_pixel(row, column, ring, side, edge)
                     if r < 0 or c < 0 or r >= height or c >= width or labels[r, c] & wanted == 0:
                         continue
                     dx, dy, dz = points[r, c, 0] - x, points[r, c, 1] - y, points[r, c, 2] - z

@@ -16,8 +16,7 @@ from tracker.model.scene import PosedScene
 from tracker.rendering.seen_nails import NailPlaces
 from tracker.terms.look import TermLook
 from tracker.terms.marked_joints import find_rays
-from tracker.terms.normal_equations import MILLIMETRES
-from tracker.terms.point_line import PointToLine
+from tracker.terms.point_line import PointToLine, find_slack
 from tracker.terms.residual import FrameContext
 
 Array = npt.NDArray[np.float64]
@@ -78,8 +77,7 @@ class Nails:
             moments.append(np.cross(origin, rays)[is_used])
         nails = np.concatenate(chosen) if chosen else np.zeros(0, dtype=np.int64)
         d, m = (np.concatenate(parts) if parts else np.zeros((0, 3)) for parts in (directions, moments))
-        away = MILLIMETRES * np.linalg.norm(np.cross(points[nails], d) - m, axis=1)
-        weights = self.weight / (1.0 + (away / self.reach) ** 2) ** 2
+        weights = self.weight / find_slack(points[nails], d, m, self.reach)
         return PointToLine(self.places.ids[nails], self.places.shares[nails], d, m, weights)
 
     def assign(self, view: SeenNails, points: Array) -> npt.NDArray[np.int64]:

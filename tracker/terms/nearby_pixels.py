@@ -1,4 +1,4 @@
-"""The pixels around a pixel, nearest first."""
+"""The pixels around a pixel, nearest first, and that of a vertex."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
+from numba import njit
 
 
 @lru_cache(maxsize=16)
@@ -19,3 +20,32 @@ def find_nearby_pixels(radius: int) -> npt.NDArray[np.int32]:
     nearby = np.ascontiguousarray(steps[order], dtype=np.int32)
     nearby.setflags(write=False)
     return nearby
+
+
+@njit(cache=True, nogil=True)
+def find_ring_pixel(row, column, ring, side, edge):
+    """Row and column of a pixel `ring` px around another: edges 0 to 3, sides 0 to 2 ring."""
+    if edge == 0:
+        return row - ring, column - ring + side
+    if edge == 1:
+        return row + ring, column - ring + side
+    if edge == 2:
+        return row - ring + side, column - ring
+    return row - ring + side, column + ring
+
+
+@njit(cache=True, nogil=True)
+def find_vertex_pixel(projected, v, height, width):
+    """Row and column of the pixel that a vertex projects into; -1 where it is not in sight.
+
+    Args:
+        projected: (V, 3) column px, row px, inverse depth 1/m, 0 where a vertex is not in front.
+        v: The vertex.
+        height: Of the image, px.
+        width: px.
+    """
+    if projected[v, 2] > 0.0:
+        column, row = int(np.rint(projected[v, 0])), int(np.rint(projected[v, 1]))
+        if 0 <= row < height and 0 <= column < width:
+            return row, column
+    return -1, -1

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from tracker.model.scene import PosedScene, Scene
+from tracker.model.scene import PosedScene
 
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -50,7 +50,7 @@ class NormalEquations:
     @classmethod
     def at(cls, posed: PosedScene) -> NormalEquations:
         """An empty sum at a posed scene."""
-        pairs, pair_index = _pairs(posed.scene)
+        pairs, pair_index = posed.scene.bone_pairs
         return cls(posed, pairs, pair_index, np.zeros((len(pairs), 6, 6)), np.zeros((len(pair_index), 6)))
 
     def add(self, other: NormalEquations) -> None:
@@ -69,27 +69,6 @@ class NormalEquations:
             JtJ, Jtr, self.blocks, self.gradients, self.pairs, self.posed.scene.arrays.chains, self.posed.twists
         )
         return JtJ, Jtr
-
-
-def _pairs(scene: Scene) -> tuple[Ints, Ints]:
-    """Pairs of bones that have weight on a common face or vertex."""
-    cached = scene.__dict__.get("_bone_pairs")
-    if cached is None:
-        arrays = scene.arrays
-        bones = len(arrays.parents)
-        follows = np.zeros((len(arrays.vertices), bones), dtype=bool)
-        for slot in range(arrays.weights.shape[1]):
-            used = arrays.weights[:, slot] > 0
-            follows[np.flatnonzero(used), arrays.weight_bones[used, slot]] = True
-        on_face = follows[arrays.faces].any(axis=1).astype(np.int64)
-        on_vertex = follows.astype(np.int64)
-        shared = (np.matmul(on_face.T, on_face) + np.matmul(on_vertex.T, on_vertex)) > 0
-        j, k = np.nonzero(np.triu(shared))
-        pair_index = np.full((bones, bones), -1, dtype=np.int32)
-        pair_index[j, k] = pair_index[k, j] = np.arange(len(j))
-        cached = np.stack([j, k], axis=1).astype(np.int32), pair_index
-        scene.__dict__["_bone_pairs"] = cached
-    return cached
 
 
 @njit(cache=True, nogil=True)

@@ -8,45 +8,33 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from tracker.model.kinematics import vertex_jacobian
 from tracker.model.scene import PosedScene
 from tracker.terms.normal_equations import MAX_BONES, MILLIMETRES, NormalEquations, add_row, gather_bones
 from tracker.terms.residual import ResidualBlock
+from tracker.terms.surface_rows import SurfaceRows
 
 Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class PointToLine:
+class PointToLine(SurfaceRows):
     """Surface points and the viewing rays they should lie on.
 
     Attributes:
-        ids: (N, 3) vertices that span each surface point.
-        barycentric: (N, 3) their shares.
         directions: (N, 3) unit direction d of each line, world.
         moments: (N, 3) moment m = x × d of each line, world, m.
         weights: (N,).
     """
 
-    ids: npt.NDArray[np.int32]
-    barycentric: Array
     directions: Array
     moments: Array
     weights: Array
-
-    @property
-    def count(self) -> int:
-        return len(self.ids)
-
-    def points(self, posed: PosedScene) -> Array:
-        """(N, 3) the surface points, world, m."""
-        return np.einsum("nc,nci->ni", self.barycentric, posed.vertices[self.ids])
 
     def linearize(self, posed: PosedScene) -> ResidualBlock:
         residual = np.cross(self.points(posed), self.directions) - self.moments  # (N, 3)
         jacobian = np.zeros((self.count, 3, posed.scene.num_dofs))
         for corner in range(3):
-            moves = vertex_jacobian(posed.scene.arrays, posed.bone_vertices, posed.twists, self.ids[:, corner])
+            moves = posed.vertex_jacobian(self.ids[:, corner])
             turned = np.cross(moves, self.directions[:, :, None], axis=1)
             jacobian += self.barycentric[:, corner, None, None] * turned
         return ResidualBlock(
@@ -78,6 +66,21 @@ class PointToLine:
         feet = np.cross(self.directions, self.moments)  # nearest point of each line to the origin
         along = np.einsum("ni,ni->n", points - feet, self.directions)
         return np.stack([points, feet + along[:, None] * self.directions], axis=1)
+
+
+def find_slack(points: Array, directions: Array, moments: Array, reach: float) -> Array:
+    """(N,) what the weights of points (N, 3), world, m, are divided by, so that one that is told wrongly lets go.
+
+    With the distance r of a point from its line this is (1 + (r / reach)²)², which makes the sum Geman's and McClure's.
+
+    Args:
+        points: (N, 3) world, m.
+        directions: (N, 3) of the lines; moments (N, 3).
+        reach: mm.
+    """
+    (x, y, z), (u, v, w) = points.T, directions.T
+    away = np.linalg.norm(np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1) - moments, axis=1)
+    return (1.0 + (MILLIMETRES * away / reach) ** 2) ** 2
 
 
 @njit(cache=True, nogil=True)

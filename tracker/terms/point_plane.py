@@ -8,45 +8,33 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from tracker.model.kinematics import vertex_jacobian
 from tracker.model.scene import PosedScene
 from tracker.terms.normal_equations import MAX_BONES, MILLIMETRES, NormalEquations, add_row, gather_bones
 from tracker.terms.residual import ResidualBlock
+from tracker.terms.surface_rows import SurfaceRows
 
 Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class PointToPlane:
+class PointToPlane(SurfaceRows):
     """Surface points and the planes they should lie in; the normals are held fixed.
 
     Attributes:
-        ids: (N, 3) vertices that span each surface point.
-        barycentric: (N, 3) their shares.
         targets: (N, 3) a point of each plane, world, m.
         normals: (N, 3) unit, world.
         weights: (N,).
     """
 
-    ids: npt.NDArray[np.int32]
-    barycentric: Array
     targets: Array
     normals: Array
     weights: Array
-
-    @property
-    def count(self) -> int:
-        return len(self.ids)
-
-    def points(self, posed: PosedScene) -> Array:
-        """(N, 3) the surface points, world, m."""
-        return np.einsum("nc,nci->ni", self.barycentric, posed.vertices[self.ids])
 
     def linearize(self, posed: PosedScene) -> ResidualBlock:
         residual = np.einsum("ni,ni->n", self.normals, self.points(posed) - self.targets)
         jacobian = np.zeros((self.count, posed.scene.num_dofs))
         for corner in range(3):
-            moves = vertex_jacobian(posed.scene.arrays, posed.bone_vertices, posed.twists, self.ids[:, corner])
+            moves = posed.vertex_jacobian(self.ids[:, corner])
             jacobian += self.barycentric[:, corner, None] * np.einsum("ni,nid->nd", self.normals, moves)
         return ResidualBlock(MILLIMETRES * residual, MILLIMETRES * jacobian, self.weights)
 

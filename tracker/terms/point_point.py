@@ -11,40 +11,32 @@ from tracker.model.scene import PosedScene
 from tracker.terms.normal_equations import NormalEquations
 from tracker.terms.point_plane import PointToPlane
 from tracker.terms.residual import ResidualBlock
+from tracker.terms.surface_rows import SurfaceRows, span
 
 Array = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class PointToPoint:
+class PointToPoint(SurfaceRows):
     """Surface points and the points they should meet: three planes each.
 
     Attributes:
-        ids: (N, 3) vertices that span each surface point.
-        barycentric: (N, 3) their shares.
         targets: (N, 3) world, m.
         weights: (N,).
     """
 
-    ids: npt.NDArray[np.int32]
-    barycentric: Array
     targets: Array
     weights: Array
 
     @classmethod
     def of_vertices(cls, vertices: npt.NDArray[np.integer], targets: Array, weight: float = 1.0) -> PointToPoint:
         """Vertices (N,) that should meet targets (N, 3) world, m."""
-        ids = np.repeat(np.asarray(vertices, dtype=np.int32)[:, None], 3, axis=1)
-        return cls(ids, np.tile([1.0, 0.0, 0.0], (len(ids), 1)), targets, np.full(len(ids), weight))
+        return cls(*span(vertices), targets, np.full(len(vertices), weight))
 
     @property
     def weight(self) -> float:
         """Each correspondence has its own."""
         return 1.0
-
-    @property
-    def count(self) -> int:
-        return len(self.ids)
 
     def find(self, posed: PosedScene, context: object = None) -> PointToPoint:
         """As a term: these correspondences, at every pose."""
@@ -68,5 +60,4 @@ class PointToPoint:
         equations.count -= 2 * self.count  # a correspondence counts once, whatever its rows
 
     def segments(self, posed: PosedScene) -> Array:
-        points = np.einsum("nc,nci->ni", self.barycentric, posed.vertices[self.ids])
-        return np.stack([points, self.targets], axis=1)
+        return np.stack([self.points(posed), self.targets], axis=1)

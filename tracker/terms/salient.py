@@ -15,6 +15,7 @@ from tracker.detection.detection import Detection
 from tracker.model.scene import PosedScene
 from tracker.rendering import View
 from tracker.terms.look import TermLook
+from tracker.terms.nearby_pixels import find_vertex_pixel
 from tracker.terms.point_point import PointToPoint
 from tracker.terms.residual import FrameContext
 
@@ -81,15 +82,7 @@ class Salient:
             found = self._targets(posed, context.view, detection, fingertip)
             ids.append(fingertip)
             targets.append(found)
-        vertices = np.concatenate(ids).astype(np.int32)
-        barycentric = np.zeros((len(vertices), 3))
-        barycentric[:, 0] = 1.0
-        return PointToPoint(
-            np.repeat(vertices[:, None], 3, axis=1),
-            barycentric,
-            np.concatenate(targets),
-            np.full(len(vertices), self.weight),
-        )
+        return PointToPoint.of_vertices(np.concatenate(ids), np.concatenate(targets), self.weight)
 
     def assign(self, posed: PosedScene, view: View) -> list[tuple[Detection, Ints]]:
         """Detections with the vertices (n,) of the fingertip each belongs to; pairs near enough are left out."""
@@ -142,13 +135,10 @@ def _is_visible(projected, inverse_depth, vertices, within):
     height, width = inverse_depth.shape
     result = np.zeros(len(vertices), dtype=np.bool_)
     for n in range(len(vertices)):
-        inverse = projected[vertices[n], 2]
-        if inverse <= 0.0:
-            continue
-        column, row = int(np.rint(projected[vertices[n], 0])), int(np.rint(projected[vertices[n], 1]))
-        if 0 <= row < height and 0 <= column < width:
+        row, column = find_vertex_pixel(projected, vertices[n], height, width)
+        if row >= 0:
             drawn = inverse_depth[row, column]
-            result[n] = drawn <= 0.0 or 1.0 / inverse <= 1.0 / drawn + within
+            result[n] = drawn <= 0.0 or 1.0 / projected[vertices[n], 2] <= 1.0 / drawn + within
     return result
 
 

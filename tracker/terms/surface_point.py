@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 
@@ -33,3 +34,12 @@ def barycentric_into(barycentric, face_vertices, projected, column, row):
     wc *= projected[c, 2]
     total = wa + wb + wc
     barycentric[0], barycentric[1], barycentric[2] = wa / total, wb / total, wc / total
+
+
+@njit(cache=True, nogil=True)
+def find_shares(ids, projected, columns, rows):
+    """(N, 3) the shares of the vertices (N, 3) of faces at pixels inside them; columns and rows (N,) px."""
+    shares = np.empty((len(ids), 3))
+    for n in range(len(ids)):
+        barycentric_into(shares[n], ids[n], projected, columns[n], rows[n])
+    return shares

@@ -6,16 +6,9 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from tracker.model.blend_kernels import move_bones_into
-from tracker.training.motion import (
-    MOST_BONES,
-    SparseSkinning,
-    compute_features,
-    correct_rest,
-    fill_skinning,
-    sparsen_skinning,
-)
-from tracker.training.pose_fit import Poses, Rig
+from tracker.model.skinning import MAX_WEIGHTS
+from tracker.training.pose_fit import Poses
+from tracker.training.rig import Rig, place
 
 Array = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -29,8 +22,8 @@ def fit_blend_weights(
     joints: Array,
     rig: Rig,
     stiffness: float,
-) -> SparseSkinning:
-    """The weights that bring the templates onto their targets in the least squares sense.
+) -> Array:
+    """The weights (V, B) that bring the templates onto their targets in the least squares sense.
 
     A vertex may follow the bone it follows most and the neighbours of that bone in the skeleton.
 
@@ -43,18 +36,12 @@ def fit_blend_weights(
     V, B = targets.shape[1], len(rig.parents)
     grams = np.zeros((V, B, B))
     for n, person in enumerate(owners):
-        _add_gram(
-            templates[person],
-            joints[person],
-            rig.parents,
-            rig.directions,
-            targets[n],
-            poses.rotations[n],
-            poses.translations[n],
-            grams,
-        )
+        posed = place(rig, templates[person], joints[person], poses.rotations[n], poses.translations[n])
+        moved = posed.rest @ posed.Ts[:, :, :3].transpose(0, 2, 1) + posed.Ts[:, None, :, 3]  # (B, V, 3)
+        away = (moved - targets[n]).transpose(1, 0, 2)
+        grams += away @ away.transpose(0, 2, 1)
     grams *= 1e6 / len(targets)
-    so_far = fill_skinning(rig.skinning, B)
+    so_far = rig.skinning_weights
     near = np.eye(B, dtype=bool)
     for b, parent in enumerate(rig.parents):
         if parent >= 0:
@@ -65,10 +52,10 @@ def fit_blend_weights(
         pull = np.eye(B) - so_far[v][:, None]
         gram = grams[v] + stiffness * pull.T @ pull
         w = find_weights(gram, allowed[v])
-        if np.count_nonzero(w) > MOST_BONES:
-            w = find_weights(gram, w >= np.sort(w)[-MOST_BONES])
+        if np.count_nonzero(w) > MAX_WEIGHTS:
+            w = find_weights(gram, w >= np.sort(w)[-MAX_WEIGHTS])
         weights[v] = w
-    return sparsen_skinning(weights)
+    return weights
 
 
 def find_weights(gram: Array, allowed: npt.NDArray[np.bool_]) -> Array:
@@ -125,22 +112,3 @@ def solve_nonnegative(G, c):
             if not is_free.any():
                 break
     return u
-
-
-@njit(cache=True, nogil=True)
-def _add_gram(template, joints, parents, directions, target, rotations, translation, grams):
-    B, V = len(parents), len(target)
-    Ts, posed = np.empty((B, 3, 4)), np.empty((B, 3))
-    move_bones_into(Ts, posed, rotations, joints, parents, translation)
-    features = compute_features(rotations)
-    rest, away = np.empty((V, 3)), np.empty((B, 3))
-    correct_rest(template, directions, features, rest)
-    for v in range(V):
-        for b in range(B):
-            T = Ts[b]
-            for i in range(3):
-                moved = T[i, 0] * rest[v, 0] + T[i, 1] * rest[v, 1] + T[i, 2] * rest[v, 2] + T[i, 3]
-                away[b, i] = moved - target[v, i]
-        for a in range(B):
-            for b in range(B):
-                grams[v, a, b] += away[a, 0] * away[b, 0] + away[a, 1] * away[b, 1] + away[a, 2] * away[b, 2]

@@ -26,7 +26,7 @@ from tracker.training.training_set import TrainingSet
 
 log = logging.getLogger(__name__)
 
-VERSION = 2
+VERSION = 3
 """Of what a stage leaves. Raise it when stages change: what an older program has kept is then refused."""
 
 Arrays = Mapping[str, npt.NDArray]

@@ -14,10 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.training.linearize import linearize
-from tracker.training.motion import turn
-from tracker.training.pose_fit import Hands, Poses, Rig, each
+from tracker.training.pose_fit import Hands, Poses, each
+from tracker.training.rig import PosedHand, Rig, place_at, turn
 
 Array = npt.NDArray[np.float64]
+
+TOLERANCE = 1e-6
+"""A person's fit ends when a step brings less than this share of the cost."""
 
 
 def fit_joints(
@@ -47,11 +50,12 @@ def fit_joints(
         if len(mine):
             pose = rotations[mine], translations[mine]
             template, joints = hands.templates[person], hands.joints[person]
-            pose, found[person], costs = _fit_person(
+            here, found[person] = _fit_person(
                 pose, hands.targets[mine], template, joints, expected[person], stiffness, hands.rig, iterations
             )
-            rotations[mine], translations[mine] = pose
-            errors[mine] = np.sqrt(costs / hands.targets.shape[1])
+            for n, hand in zip(mine, here, strict=True):
+                rotations[n], translations[n] = hand.rotations, hand.translation
+                errors[n] = np.sqrt(hand.cost / hands.targets.shape[1])
 
     each(fit, len(hands.templates), threads, progress)
     return Poses(rotations, translations, errors), found
@@ -63,19 +67,18 @@ def _fit_person(pose, targets, template, joints, expected, stiffness, rig: Rig, 
     P, D = 3 * B + 3, 6 * B + 3
     stiff = stiffness * len(targets)
 
-    def evaluate(turns, shifts, at, H, g):
-        return np.array(
-            [
-                linearize(template, at, rig.parents, *rig.skinning, rig.directions, target, R, t, True, H[n], g[n])
-                for n, (target, R, t) in enumerate(zip(targets, turns, shifts, strict=True))
-            ]
-        )
+    def put(poses: list[tuple[Array, Array]], at: Array) -> list[PosedHand]:
+        return [place_at(rig, template, at, pose, target) for pose, target in zip(poses, targets, strict=True)]
+
+    def measure(hands: list[PosedHand], at: Array) -> float:
+        return sum(hand.cost for hand in hands) + stiff * float(np.sum((at - expected) ** 2))
 
     H, g = np.empty((len(targets), D, D)), np.empty((len(targets), D))
-    none, nothing = np.empty((len(targets), 0, 0)), np.empty((len(targets), 0))
-    costs = evaluate(rotations, translations, joints, H, g)
+    here = put(list(zip(rotations, translations, strict=True)), joints)
+    total = measure(here, joints)
     for _ in range(iterations):
-        total = costs.sum() + stiff * np.sum((joints - expected) ** 2)
+        for n, hand in enumerate(here):
+            linearize(H[n], g[n], hand.arrays, rig.arrays, targets[n])
         own = H[:, :P, :P] + 1e-9 * np.eye(P)
         gains = np.linalg.solve(own, np.concatenate([H[:, :P, P:], g[:, :P, None]], axis=2))
         S = (H[:, P:, P:] - np.swapaxes(H[:, :P, P:], 1, 2) @ gains[:, :, :-1]).sum(0) + stiff * np.eye(3 * B)
@@ -84,18 +87,16 @@ def _fit_person(pose, targets, template, joints, expected, stiffness, rig: Rig, 
         step = -np.linalg.solve(S, s)
         steps = -gains[:, :, -1] - gains[:, :, :-1] @ step
         for share in (1.0, 0.3, 0.1):
-            turns, shifts = rotations.copy(), translations + share * steps[:, 3 * B : P]
             at = joints + share * step.reshape(B, 3)
-            for n in range(len(targets)):
-                for b in range(B):
-                    turn(turns[n, b], *(share * steps[n, 3 * b : 3 * b + 3]))
-            new = evaluate(turns, shifts, at, none, nothing)
-            if new.sum() + stiff * np.sum((at - expected) ** 2) < total:
+            moved = [turn(hand.rotations, hand.translation, share * steps[n]) for n, hand in enumerate(here)]
+            there = put(moved, at)
+            cost = measure(there, at)
+            if cost < total:
                 break
         else:
             break
-        rotations, translations, joints, costs = turns, shifts, at, new
-        if total - (new.sum() + stiff * np.sum((at - expected) ** 2)) < 1e-4 * total:
+        is_done = total - cost < TOLERANCE * total
+        here, joints, total = there, at, cost
+        if is_done:
             break
-        evaluate(rotations, translations, joints, H, g)
-    return (rotations, translations), joints, costs
+    return here, joints

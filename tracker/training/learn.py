@@ -9,13 +9,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_array
 
+from tracker.model.skinning import keep_heaviest
 from tracker.training.blend_weights import fit_blend_weights
 from tracker.training.joints import fit_joints
-from tracker.training.motion import compute_features, fill_skinning, sparsen_skinning
 from tracker.training.options import TrainingOptions
-from tracker.training.pose_fit import Hands, Poses, Rig, fit_poses, start_poses
+from tracker.training.pose_fit import Hands, Poses, fit_poses, start_poses
 from tracker.training.pose_shapes import compute_costs, fit_pose_shapes, measure_from_joints
 from tracker.training.regressor import fit_joint_regressor
+from tracker.training.rig import Rig, find_features
 from tracker.training.spaces import align_rigidly
 from tracker.training.templates import fit_templates, unpose, weigh_by_pose
 
@@ -67,7 +68,7 @@ def begin(
     """
     targets, owners = data.targets, data.owners
     S = int(owners.max()) + 1
-    rig = Rig(parents, sparsen_skinning(skinning_weights), np.zeros((*template.shape, 0)))
+    rig = Rig(parents, keep_heaviest(skinning_weights), np.zeros((*template.shape, 0)))
     templates = np.tile(template, (S, 1, 1))
     joints = np.tile(regressor @ template, (S, 1, 1))
     poses = start_poses(Hands(targets, owners, templates, joints, rig))
@@ -112,15 +113,14 @@ def improve_surface(
     progress("templates", 0.0)
     templates = fit_templates(poses, targets, owners, even, joints, rig)
     roots = joints[:, 0]
-    palm = fill_skinning(rig.skinning, len(rig.parents))[:, 0]
+    palm = rig.skinning_weights[:, 0]
     templates, joints, turned = align_rigidly(templates, joints, palm)
     poses = _turn_poses(poses, owners, turned, roots, joints[:, 0])
     progress("blend weights", 0.0)
-    rig = replace(
-        rig, skinning=fit_blend_weights(poses, targets, templates, owners, joints, rig, options.weight_stiffness)
-    )
+    weights = fit_blend_weights(poses, targets, templates, owners, joints, rig, options.weight_stiffness)
+    rig = replace(rig, skinning_weights=weights)
     progress("joint regressor", 0.0)
-    regressor = fit_joint_regressor(templates, joints, fill_skinning(rig.skinning, len(rig.parents)), rig.parents)
+    regressor = fit_joint_regressor(templates, joints, rig.skinning_weights, rig.parents)
     if is_last:
         joints = np.stack([regressor @ own for own in templates])
     hands = Hands(targets, owners, templates, joints, rig)
@@ -128,15 +128,10 @@ def improve_surface(
     if options.with_pose_shapes:
         progress("pose blend shapes", 0.0)
         costs = compute_costs(measure_from_joints(templates.mean(0), regressor))
-        rest, features = unpose(poses, targets, owners, joints, rig), find_features(poses)
+        rest, features = unpose(poses, targets, owners, joints, rig), find_features(poses.rotations)
         rig = replace(rig, directions=fit_pose_shapes(features, rest, owners, costs, options.ridge))
     templates = fit_templates(poses, targets, owners, even, joints, rig)
     return Learnt(templates, joints, poses, rig, regressor)
-
-
-def find_features(poses: Poses) -> Array:
-    """(N, 9(B-1)) features of Eq. 4."""
-    return np.stack([compute_features(rotations) for rotations in poses.rotations])
 
 
 def _turn_poses(poses: Poses, owners: Integers, turned: Array, before: Array, after: Array) -> Poses:

@@ -8,13 +8,18 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from tracker.geometry.se3 import find_rotations
+from tracker.solver.damped_step import compute_damped_step
+from tracker.solver.minimize import minimize_damped
 from tracker.training.linearize import linearize
-from tracker.training.motion import SparseSkinning, turn
+from tracker.training.rig import PosedHand, Rig, place_at, turn
 
 Array = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
+
+LONGEST_TURN = 0.5
+"""Of a joint in one step about any axis, rad."""
 
 
 @dataclass(frozen=True)
@@ -24,15 +29,6 @@ class Poses:
     rotations: Array
     translations: Array
     errors: Array
-
-
-@dataclass(frozen=True)
-class Rig:
-    """What all registrations share: parents (B,), skinning, directions (V, 3, 9(B-1)) or (V, 3, 0)."""
-
-    parents: Integers
-    skinning: SparseSkinning
-    directions: Array
 
 
 @dataclass(frozen=True)
@@ -59,22 +55,20 @@ def start_poses(hands: Hands) -> Poses:
     """
     targets, owners, templates, joints, rig = hands.targets, hands.owners, hands.templates, hands.joints, hands.rig
     N, B = len(targets), len(rig.parents)
-    strongest = rig.skinning.bones[:, 0]
+    weights = rig.skinning_weights
+    strongest = weights.argmax(axis=1)
     rotations = np.empty((N, B, 3, 3))
     for b in range(B):
-        chosen = np.flatnonzero((strongest == b) & (rig.skinning.weights[:, 0] > 0.5))
+        chosen = np.flatnonzero((strongest == b) & (weights[:, b] > 0.5))
         if len(chosen) < 4:
-            chosen = np.flatnonzero((rig.skinning.bones == b).any(1) & (rig.skinning.weights[:, 0] > 0.0))
+            chosen = np.flatnonzero(weights[:, b] > 0.0)
         source = templates[:, chosen] - templates[:, chosen].mean(1, keepdims=True)
         moved = targets[:, chosen] - targets[:, chosen].mean(1, keepdims=True)
-        U, _, Vt = np.linalg.svd(np.einsum("nvi,nvj->nij", moved, source[owners]))
-        U[:, :, 2] *= np.linalg.det(U @ Vt)[:, None]
-        rotations[:, b] = U @ Vt
+        rotations[:, b] = find_rotations(np.einsum("nvi,nvj->nij", moved, source[owners]))
     local = rotations.copy()
     for b in range(1, B):
         local[:, b] = np.swapaxes(rotations[:, rig.parents[b]], 1, 2) @ rotations[:, b]
-    weight = rig.skinning.weights * (rig.skinning.bones == 0)
-    palm = weight.sum(1) / weight.sum()
+    palm = weights[:, 0] / weights[:, 0].sum()
     centres = np.einsum("v,svi->si", palm, templates)[owners]
     root = joints[owners, 0]
     translations = (
@@ -98,23 +92,15 @@ def fit_poses(
         iterations: At most, each.
         progress: Told the share done; may raise to cancel.
     """
-    rig, (N, V) = hands.rig, hands.targets.shape[:2]
+    N, V = hands.targets.shape[:2]
     rotations, translations = start.rotations.copy(), start.translations.copy()
     errors = np.empty(N)
 
     def fit(n: int) -> None:
-        cost = _fit(
-            hands.templates[hands.owners[n]],
-            hands.joints[hands.owners[n]],
-            rig.parents,
-            *rig.skinning,
-            rig.directions,
-            hands.targets[n],
-            rotations[n],
-            translations[n],
-            iterations,
-        )
-        errors[n] = np.sqrt(cost / V)
+        hand = hands.templates[hands.owners[n]], hands.joints[hands.owners[n]]
+        found = _fit(hands.rig, *hand, hands.targets[n], (rotations[n], translations[n]), iterations)
+        rotations[n], translations[n] = found.rotations, found.translation
+        errors[n] = np.sqrt(found.cost / V)
 
     each(fit, N, threads, progress)
     return Poses(rotations, translations, errors)
@@ -131,46 +117,21 @@ def each(work: Callable[[int], None], count: int, threads: int, progress: Callab
                 progress(last / count)
 
 
-@njit(cache=True, nogil=True)
-def _fit(template, joints, parents, bones, weights, directions, target, rotations, translation, iterations):
-    """Levenberg-Marquardt; rotations and translation are changed in place. Returns the sum of squared distances, m²."""
-    B = len(parents)
-    D = 3 * B + 3
-    H, g = np.empty((D, D)), np.empty(D)
-    none, nothing = np.empty((0, 0)), np.empty(0)
-    trial, moved = rotations.copy(), translation.copy()
-    cost = linearize(
-        template, joints, parents, bones, weights, directions, target, rotations, translation, False, H, g
-    )  # fmt: skip
-    damping = 1e-6
-    for _ in range(iterations):
-        gain = 0.0
-        for _attempt in range(6):
-            damped = H.copy()
-            for a in range(D):
-                damped[a, a] = H[a, a] * (1.0 + damping) + 1e-12
-            step = -np.linalg.solve(damped, g)
-            trial[:] = rotations
-            moved[:] = translation
-            for b in range(B):
-                x, y, z = step[3 * b], step[3 * b + 1], step[3 * b + 2]
-                size = np.sqrt(x * x + y * y + z * z)
-                shrink = 1.0 if size < 0.5 else 0.5 / size
-                turn(trial[b], shrink * x, shrink * y, shrink * z)
-            for i in range(3):
-                moved[i] += step[3 * B + i]
-            new = linearize(
-                template, joints, parents, bones, weights, directions, target, trial, moved, False, none, nothing
-            )  # fmt: skip
-            if new < cost:
-                gain = cost - new
-                cost = new
-                rotations[:] = trial
-                translation[:] = moved
-                damping = max(1e-9, 0.1 * damping)
-                break
-            damping = max(1e-6, 10.0 * damping)
-        if gain <= 1e-5 * cost:
-            break
-        linearize(template, joints, parents, bones, weights, directions, target, rotations, translation, False, H, g)
-    return cost
+def _fit(
+    rig: Rig, template: Array, joints: Array, target: Array, start: tuple[Array, Array], iterations: int
+) -> PosedHand:
+    D = 3 * len(joints) + 3
+    limits = np.full(D, LONGEST_TURN)
+    limits[3:6] = np.inf
+
+    def find_equations(here: PosedHand) -> tuple[Array, Array]:
+        H, g = np.empty((D, D)), np.empty(D)
+        linearize(H, g, here.arrays, rig.arrays, target)
+        return H, g
+
+    def step(here: PosedHand, equations: tuple[Array, Array], damping: float) -> PosedHand:
+        pose = turn(here.rotations, here.translation, compute_damped_step(*equations, damping, limits))
+        return place_at(rig, template, joints, pose, target)
+
+    first = place_at(rig, template, joints, start, target)
+    return minimize_damped(first, find_equations, step, iterations, 1e-5)

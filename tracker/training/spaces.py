@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tracker.geometry.se3 import find_rotations
+
 Array = npt.NDArray[np.float64]
 
 
@@ -65,8 +67,7 @@ def align_rigidly(templates: Array, joints: Array, anchor: Array, rounds: int = 
         centre = share @ mean
         for s in range(len(templates)):
             own = share @ templates[s]
-            U, _, Vt = np.linalg.svd(((mean - centre) * share[:, None]).T @ (templates[s] - own))
-            R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
+            R = find_rotations(((mean - centre) * share[:, None]).T @ (templates[s] - own))
             templates[s] = (templates[s] - own) @ R.T + centre
             joints[s] = (joints[s] - own) @ R.T + centre
             turned[s] = R @ turned[s]

@@ -12,8 +12,8 @@ from scipy.sparse import csr_array
 
 from tracker.training.checkpoints import VERSION, Checkpoints
 from tracker.training.learn import Learnt
-from tracker.training.motion import SparseSkinning
-from tracker.training.pose_fit import Poses, Rig
+from tracker.training.pose_fit import Poses
+from tracker.training.rig import Rig
 
 log = logging.getLogger(__name__)
 
@@ -71,8 +71,7 @@ def pack_stage(stage: Stage, key: str) -> dict[str, npt.NDArray]:
         "translations": learnt.poses.translations,
         "pose_errors": learnt.poses.errors,
         "parents": learnt.rig.parents,
-        "bones": learnt.rig.skinning.bones,
-        "weights": learnt.rig.skinning.weights,
+        "skinning_weights": learnt.rig.skinning_weights,
         "directions": learnt.rig.directions,
         "regressor_data": learnt.regressor.data,
         "regressor_indices": learnt.regressor.indices,
@@ -94,7 +93,7 @@ def unpack_stage(arrays: Mapping[str, npt.NDArray]) -> Stage:
         templates=arrays["templates"],
         joints=arrays["joints"],
         poses=Poses(arrays["rotations"], arrays["translations"], arrays["pose_errors"]),
-        rig=Rig(arrays["parents"], SparseSkinning(arrays["bones"], arrays["weights"]), arrays["directions"]),
+        rig=Rig(arrays["parents"], arrays["skinning_weights"], arrays["directions"]),
         regressor=csr_array(parts, shape=shape),
     )
     seconds = zip(arrays["seconds_names"].tolist(), arrays["seconds"].tolist(), strict=True)

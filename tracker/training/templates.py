@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
-from tracker.model.blend_kernels import move_bones_into
-from tracker.training.motion import blend, compute_features, correct_rest
-from tracker.training.pose_fit import Poses, Rig
+from tracker.model.skinning import blend_motions, take_back
+from tracker.training.pose_fit import Poses
+from tracker.training.rig import Rig, place
 
 Array = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -37,58 +36,19 @@ def fit_templates(poses: Poses, targets: Array, owners: Integers, weights: Array
     """
     V = targets.shape[1]
     squares, sides = np.zeros((len(joints), V, 3, 3)), np.zeros((len(joints), V, 3))
+    nowhere = np.zeros((V, 3))
     for n, person in enumerate(owners):
-        _add(
-            joints[person],
-            rig.parents,
-            *rig.skinning,
-            rig.directions,
-            targets[n],
-            poses.rotations[n],
-            poses.translations[n],
-            weights[n],
-            squares[person],
-            sides[person],
-        )
+        posed = place(rig, nowhere, joints[person], poses.rotations[n], poses.translations[n])  # its blend shapes alone
+        A = blend_motions(rig.skinning_weights, posed.Ts)[:, :, :3]
+        squares[person] += weights[n] * (A.transpose(0, 2, 1) @ A)
+        sides[person] += weights[n] * np.einsum("vij,vi->vj", A, targets[n] - posed.vertices)
     return np.asarray(np.linalg.solve(squares, sides[..., None])[..., 0], dtype=np.float64)
 
 
 def unpose(poses: Poses, targets: Array, owners: Integers, joints: Array, rig: Rig) -> Array:
     """(N, V, 3) the targets in the rest pose, m: what template and blend shapes together should be."""
-    rest = np.empty_like(targets)
+    rest, nowhere = np.empty_like(targets), np.zeros(targets.shape[1:])
     for n, person in enumerate(owners):
-        _unpose(
-            joints[person], rig.parents, *rig.skinning, targets[n], poses.rotations[n], poses.translations[n], rest[n]
-        )
+        posed = place(rig, nowhere, joints[person], poses.rotations[n], poses.translations[n])
+        rest[n] = take_back(blend_motions(rig.skinning_weights, posed.Ts), targets[n])
     return rest
-
-
-@njit(cache=True, nogil=True)
-def _add(joints, parents, bones, weights, directions, target, rotations, translation, weight, squares, sides):
-    B, V = len(parents), len(target)
-    Ts, posed = np.empty((B, 3, 4)), np.empty((B, 3))
-    move_bones_into(Ts, posed, rotations, joints, parents, translation)
-    features = compute_features(rotations)
-    A, b, correction = np.empty((V, 3, 3)), np.empty((V, 3)), np.empty((V, 3))
-    blend(bones, weights, Ts, A, b)
-    correct_rest(np.zeros((V, 3)), directions, features, correction)
-    for v in range(V):
-        for i in range(3):
-            left = target[v, i] - b[v, i]
-            for j in range(3):
-                left -= A[v, i, j] * correction[v, j]
-            for j in range(3):
-                sides[v, j] += weight * A[v, i, j] * left
-                for k in range(3):
-                    squares[v, j, k] += weight * A[v, i, j] * A[v, i, k]
-
-
-@njit(cache=True, nogil=True)
-def _unpose(joints, parents, bones, weights, target, rotations, translation, rest):
-    B, V = len(parents), len(target)
-    Ts, posed = np.empty((B, 3, 4)), np.empty((B, 3))
-    move_bones_into(Ts, posed, rotations, joints, parents, translation)
-    A, b = np.empty((V, 3, 3)), np.empty((V, 3))
-    blend(bones, weights, Ts, A, b)
-    for v in range(V):
-        rest[v] = np.linalg.solve(A[v], target[v] - b[v])

@@ -15,7 +15,6 @@ from tracker.model.blend_model import BlendModel
 from tracker.training.checkpoints import Checkpoints, NoCheckpoints, compute_key
 from tracker.training.learn import Data, Learnt, begin, improve_joints, improve_surface
 from tracker.training.local_shapes import find_local_shapes
-from tracker.training.motion import fill_skinning
 from tracker.training.options import TrainingOptions
 from tracker.training.pose_fit import Hands, fit_poses
 from tracker.training.report import describe_training
@@ -199,7 +198,7 @@ def _assemble(learnt: Learnt, initial: BlendModel, training_set: TrainingSet, op
         template=template,
         shape_directions=shape_directions,
         pose_directions=directions,
-        skinning_weights=fill_skinning(learnt.rig.skinning, B),
+        skinning_weights=learnt.rig.skinning_weights,
         joint_regressor=learnt.regressor,
         pose_mean=pose_space.mean,
         pose_components=pose_space.components,

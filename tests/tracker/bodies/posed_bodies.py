@@ -10,11 +10,11 @@ from tracker.bodies.body_registration import BodyRegistration
 from tracker.bodies.body_state import BodyState, hand_space, make_state
 from tracker.bodies.body_verdict import BodyVerdict
 from tracker.capture.scan import Scan
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.body_hands import body_hand
 from tracker.model.body_model import body_model
 from tracker.model.mano_files import BODY_JOINTS
 from tracker.registration.scan_points import ScanPoints
-from tracker.registration.vertex_normals import find_unit_normals
 
 MODEL = body_model()
 SPACE = hand_space(MODEL, 6)

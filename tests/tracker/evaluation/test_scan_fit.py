@@ -13,10 +13,10 @@ from tracker.evaluation.scan_fit import (
     with_template,
     without_pose_shapes,
 )
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.curved_triangles import find_bulges
 from tracker.registration.surface_search import SurfaceSearch
-from tracker.registration.vertex_normals import find_unit_normals
 
 
 @pytest.fixture(scope="module")

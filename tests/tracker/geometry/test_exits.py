@@ -7,7 +7,7 @@ from tests.tracker.geometry.test_triangle_tree import all_allowed, soup
 from tests.tracker.toys import tube
 from tracker.geometry.exits import count_windings, find_distance, find_exits
 from tracker.geometry.triangle_tree import Filter, FittedTree, build_triangle_tree, fit_tree
-from tracker.geometry.triangles import compute_squared_distance
+from tracker.geometry.triangles import find_closest
 
 
 def closed_tube(radius=0.01):
@@ -78,5 +78,5 @@ def test_distance_is_that_to_the_nearest_of_all_triangles(rng):
     for _ in range(50):
         point = rng.uniform(-0.05, 0.15, size=3)
         others = np.flatnonzero(tree.groups != 0)
-        expected = min(compute_squared_distance(vertices, faces, f, *point) for f in others)
+        expected = min(find_closest(*point, vertices, *faces[f])[0] for f in others)
         assert find_distance(fitted, may_meet, 0, 0, 4, point) == pytest.approx(np.sqrt(expected))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from tracker.geometry import se3
 
@@ -46,3 +47,17 @@ def test_transform_moves_points_as_the_matrix_does(rng):
     T, points = se3.exp(rng.normal(size=6)), rng.normal(size=(5, 3))
     homogeneous = np.c_[points, np.ones(5)] @ T.T
     np.testing.assert_allclose(se3.transform(T, points), homogeneous[:, :3])
+
+
+@pytest.mark.parametrize("flip", [1.0, -1.0])
+def test_points_are_laid_onto_others_by_a_rotation_even_where_a_mirror_image_would_fit_better(rng, flip):
+    points = rng.normal(size=(30, 3))
+    turns = Rotation.random(4, rng=rng).as_matrix()
+    others = np.einsum("nij,pj->npi", turns, points * [1.0, 1.0, flip])
+    found = se3.find_rotations(np.einsum("npi,pj->nij", others, points))
+    np.testing.assert_allclose(np.linalg.det(found), 1.0)
+    if flip > 0.0:
+        np.testing.assert_allclose(found, turns, atol=1e-12)
+    best = np.einsum("nij,pj,npi->n", found, points, others)
+    for other in Rotation.random(50, rng=rng).as_matrix():
+        assert np.all(np.einsum("ij,pj,npi->n", other, points, others) <= best + 1e-9)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from trimesh.triangles import closest_point
 
-from tracker.geometry.triangles import compute_squared_distance, do_triangles_cross, meet_line
+from tracker.geometry.triangles import do_triangles_cross, find_closest, meet_line
 
 PAIR = np.array([[0, 1, 2], [3, 4, 5]], dtype=np.int32)
 
@@ -81,10 +81,12 @@ def test_a_line_meets_a_triangle_where_its_plane_says(rng):
 def test_distance_to_a_triangle_is_the_distance_to_its_closest_point(rng):
     for _ in range(500):
         points, query = rng.normal(size=(3, 3)), rng.normal(size=3) * 2
-        expected = np.linalg.norm(closest_point(points[None], query[None])[0] - query)
-        assert np.sqrt(compute_squared_distance(points, PAIR, 0, *query)) == pytest.approx(expected, abs=1e-9)
+        closest = closest_point(points[None], query[None])[0]
+        squared, b, c = find_closest(*query, points, 0, 1, 2)
+        assert np.sqrt(squared) == pytest.approx(np.linalg.norm(closest - query), abs=1e-9)
+        assert np.array([1.0 - b - c, b, c]) @ points == pytest.approx(closest, abs=1e-9)
 
 
 def test_distance_to_a_triangle_without_area_is_that_to_its_longest_side():
     points = np.array([[0, 0, 0], [1, 0, 0], [0.5, 0, 0]], dtype=float)
-    assert compute_squared_distance(points, PAIR, 0, 0.5, 2.0, 0.0) == pytest.approx(4.0)
+    assert find_closest(0.5, 2.0, 0.0, points, 0, 1, 2)[0] == pytest.approx(4.0)

@@ -132,10 +132,8 @@ def test_the_landmarks_jacobian_leaves_out_only_what_pose_blend_shapes_do():
     scene = Scene((hand, articulated_of(random_blend(side="left"))))
     pose = np.concatenate([random_angles(model, n) for n, model in enumerate(scene.models)])
     posed = scene.pose_at(pose)
-    from tracker.model.kinematics import vertex_jacobian
-
     ids = np.arange(0, len(posed.vertices), 37).astype(np.int32)
-    jacobian = vertex_jacobian(scene.arrays, posed.bone_vertices, posed.twists, ids)
+    jacobian = posed.vertex_jacobian(ids)
     exact = np.zeros_like(jacobian)
     for column in range(scene.num_dofs):
         step = np.zeros(scene.num_dofs)

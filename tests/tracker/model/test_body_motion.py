@@ -37,15 +37,15 @@ def test_what_amass_writes_beside_the_poses_does_no_harm(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("changes", "what"),
     [
-        ({"poses": np.zeros((2, 165))}, "'poses', 2 x 165"),
+        ({"poses": np.zeros((2, 165))}, "'poses', float64 2x165"),
         ({"poses": np.zeros((0, 156))}, "0 frames"),
         ({"poses": np.full((2, 156), np.nan)}, "'poses' with values"),
         ({"poses": np.full((2, 156), 1e6)}, "'poses' with values"),
-        ({"poses": np.array([{"a": 1}], dtype=object)}, "no numbers 'poses'"),
-        ({"trans": np.zeros((3, 3))}, "'trans', 3 x 3"),
+        ({"poses": np.array([{"a": 1}], dtype=object)}, "no 'poses'"),
+        ({"trans": np.zeros((3, 3))}, "'trans', float64 3x3"),
         ({"betas": np.zeros(1000)}, "1000 'betas'"),
         ({"mocap_framerate": np.array(0.0)}, "'mocap_framerate' of 0"),
-        ({"mocap_framerate": np.zeros(2)}, "'mocap_framerate', 2"),
+        ({"mocap_framerate": np.zeros(2)}, "'mocap_framerate', float64 2"),
         ({"gender": np.array("robot")}, "gender 'robot'"),
     ],
 )

@@ -8,7 +8,6 @@ import pytest
 from tests.tracker.toys import tube
 from tracker.geometry import se3
 from tracker.model.default_hand import default_hand
-from tracker.model.kinematics import vertex_jacobian
 from tracker.model.scene import Scene
 
 
@@ -59,7 +58,7 @@ def test_vertex_jacobian_agrees_with_finite_differences(rng):
     pose = random_pose(scene, rng)
     posed = scene.pose_at(pose)
     ids = np.arange(len(posed.vertices), dtype=np.int32)
-    jacobian = vertex_jacobian(scene.arrays, posed.bone_vertices, posed.twists, ids)
+    jacobian = posed.vertex_jacobian(ids)
     step = 1e-6
     for dof in range(scene.num_dofs):
         delta = np.zeros(scene.num_dofs)

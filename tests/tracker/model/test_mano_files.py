@@ -319,16 +319,16 @@ def test_smplh_s_fingertips_are_within_its_6890_vertices():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"weights": None}, "no array 'weights'"),
+        ({"weights": None}, "no 'weights'"),
         ({"v_template": np.full((778, 3), np.nan)}, "'v_template' with values"),
-        ({"posedirs": np.zeros((778, 3, 207))}, "'posedirs', 778x3x207"),
+        ({"posedirs": np.zeros((778, 3, 207))}, "'posedirs', float64 778x3x207"),
         ({"weights": np.full((778, 24), 1 / 24)}, "24 joints"),
         ({"weights": np.full((778, 16), 0.5)}, "sum to one"),
         ({"f": np.full((4, 3), 778)}, "faces"),
         ({"kintree_table": np.zeros((2, 16), dtype=np.uint32) + 20}, "one tree"),
         ({"kintree_table": np.zeros((3, 16))}, "kintree_table"),
-        ({"J_regressor": np.zeros((24, 778))}, "'J_regressor', 24x778"),
-        ({"hands_components": np.zeros((45, 44))}, "'hands_components', 45x44"),
+        ({"J_regressor": np.zeros((24, 778))}, "'J_regressor', float64 24x778"),
+        ({"hands_components": np.zeros((45, 44))}, "'hands_components', float64 45x44"),
     ],
 )
 def test_a_wrong_array_is_named(tmp_path, change, message):

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.curved_triangles import find_bulges, find_middles, refine
 from tracker.registration.surface_search import SurfaceSearch
-from tracker.registration.vertex_normals import find_unit_normals
 from tracker.synthesis.scans.generate import ScanOptions, generate_truth
 from tracker.synthesis.scans.tissue import vertex_normals
 

@@ -50,7 +50,7 @@ def test_without_normals_every_point_finds_the_nearest_of_all_triangles(problem)
 
 def test_with_normals_it_finds_the_nearest_of_those_that_look_the_same_way(problem):
     hand, search, points, normals, (distances, face_normals) = problem
-    found = search.match(hand.template, points, normals, reach=1.0, min_cosine=0.25)
+    found = search.match(hand.template, points, normals, reach=1.0)
     allowed = np.where(normals @ face_normals.T > 0.25, distances, np.inf)
     assert np.abs(found.offsets + found.heights) == pytest.approx(allowed.min(axis=1), abs=1e-12)
 

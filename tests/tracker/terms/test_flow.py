@@ -14,9 +14,9 @@ from tracker.fitting.objective import Objective
 from tracker.geometry import se3
 from tracker.observation.image_flow import ImageFlow
 from tracker.rendering import render_view
-from tracker.terms.flow import Flow, find_shares, follow_surface, join_flows
+from tracker.terms.flow import Flow, follow_surface, join_flows
 from tracker.terms.normal_equations import NormalEquations
-from tracker.terms.surface_point import barycentric_into
+from tracker.terms.surface_point import find_shares
 
 VIEWS = [replace(look_from(angle), distortion=np.zeros(0)) for angle in (0.0, 0.8, 1.6)]
 
@@ -44,22 +44,11 @@ def flows(poses) -> list[ImageFlow]:
         view = render_view(before, camera.K, camera.T_world_camera, camera.height, camera.width)
         rows, columns = np.nonzero(view.face >= 0)
         ids = SCENE.arrays.faces[view.face[rows, columns]]
-        shares = find_shares(view.projected[ids], columns.astype(float), rows.astype(float))
+        shares = find_shares(ids, view.projected, columns, rows)
         ends = np.full((camera.height, camera.width, 2), np.nan, dtype=np.float32)
         ends[rows, columns] = camera.project(np.einsum("nc,nci->ni", shares, now.vertices[ids]))
         found.append(ImageFlow(camera.K, camera.T_world_camera, ends))
     return found
-
-
-def test_shares_are_those_of_the_kernel(poses, rng):
-    view = render_view(SCENE.pose_at(poses[0]), VIEWS[0].K, VIEWS[0].T_world_camera, 480, 640)
-    rows, columns = np.nonzero(view.face >= 0)
-    faces = SCENE.arrays.faces[view.face[rows, columns]]
-    plain = find_shares(view.projected[faces], columns.astype(float), rows.astype(float))
-    for place in rng.integers(len(rows), size=50):
-        one = np.zeros(3)
-        barycentric_into(one, faces[place], view.projected, columns[place], rows[place])
-        np.testing.assert_allclose(plain[place], one, atol=1e-9)
 
 
 def test_flow_takes_the_hand_to_where_it_is(poses, flows):

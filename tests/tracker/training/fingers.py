@@ -9,8 +9,8 @@ import numpy.typing as npt
 from scipy.sparse import csr_array
 from scipy.spatial.transform import Rotation
 
-from tracker.model.blend_kernels import move_bones_into
-from tracker.training.motion import blend, compute_features, correct_rest, sparsen_skinning
+from tracker.model.skinning import keep_heaviest
+from tracker.training.rig import Rig, place
 
 PARENTS = np.array([-1, 0, 1, 2])
 RINGS, AROUND, LENGTH, RADIUS = 25, 10, 0.10, 0.009
@@ -64,7 +64,6 @@ def make_fingers(people: int = 4, poses: int = 20, with_bulges: bool = True, see
     rng = np.random.default_rng(seed)
     tube, faces = make_tube()
     weights = make_weights(tube[:, 0], 0.008)
-    skinning = sparsen_skinning(weights)
     base = np.array([[0.0, 0, 0], [0.03, 0, 0.001], [0.055, 0, 0.001], [0.078, 0, 0.001]])
     directions = np.zeros((len(tube), 3, 27))
     if with_bulges:
@@ -72,6 +71,7 @@ def make_fingers(people: int = 4, poses: int = 20, with_bulges: bool = True, see
             near = np.exp(-(((tube[:, 0] - at) / 0.008) ** 2))
             directions[:, 2, 9 * k + 2] = 0.002 * near * np.sign(tube[:, 2])
             directions[:, 0, 9 * k + 6] = 0.001 * near
+    rig = Rig(PARENTS, keep_heaviest(weights), directions)
     scales = np.stack([rng.uniform(0.85, 1.2, people), *[rng.uniform(0.8, 1.25, people)] * 2], axis=1)
     templates, joints = tube * scales[:, None], base * scales[:, None]
     owners = np.repeat(np.arange(people), poses)
@@ -86,24 +86,11 @@ def make_fingers(people: int = 4, poses: int = 20, with_bulges: bool = True, see
     translations = rng.normal(0.0, 0.3, (count, 3))
     targets, posed = np.empty((count, *tube.shape)), np.empty((count, 4, 3))
     for n, person in enumerate(owners):
-        targets[n], posed[n] = pose(
-            templates[person], joints[person], PARENTS, skinning, directions, rotations[n], translations[n]
-        )
+        hand = place(rig, templates[person], joints[person], rotations[n], translations[n])
+        targets[n], posed[n] = hand.vertices, hand.joints
     return Fingers(
         targets, owners, templates, joints, posed, rotations, translations, weights, directions, faces
     )  # fmt: skip
-
-
-def pose(template, joints, parents, skinning, directions, rotations, translation):
-    """Posed vertices (V, 3) and joints (B, 3) by the kernels that training uses."""
-    B, V = len(joints), len(template)
-    Ts, q = np.empty((B, 3, 4)), np.empty((B, 3))
-    move_bones_into(Ts, q, rotations, joints, parents, translation)
-    features = compute_features(rotations)
-    rest, A, b = np.empty((V, 3)), np.empty((V, 3, 3)), np.empty((V, 3))
-    correct_rest(template, directions, features, rest)
-    blend(*skinning, Ts, A, b)
-    return np.einsum("vij,vj->vi", A, rest) + b, q
 
 
 def crude_regressor(template: npt.NDArray) -> csr_array:

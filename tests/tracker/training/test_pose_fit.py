@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from tests.tracker.training.fingers import PARENTS, make_fingers
-from tracker.training.motion import fill_skinning, sparsen_skinning
-from tracker.training.pose_fit import Hands, Poses, Rig, each, fit_poses, start_poses
+from tracker.model.skinning import keep_heaviest
+from tracker.training.pose_fit import Hands, Poses, each, fit_poses, start_poses
+from tracker.training.rig import Rig
 
 
 @pytest.fixture(scope="module")
@@ -18,7 +19,7 @@ def fingers():
 
 @pytest.fixture(scope="module")
 def rig(fingers):
-    return Rig(PARENTS, sparsen_skinning(fingers.weights), fingers.directions)
+    return Rig(PARENTS, keep_heaviest(fingers.weights), fingers.directions)
 
 
 @pytest.fixture(scope="module")
@@ -78,10 +79,10 @@ def test_progress_is_told_and_may_cancel():
     assert len(done) == 100
 
 
-def test_skinning_kept_sparse_keeps_the_four_largest_weights():
+def test_the_four_largest_weights_are_kept():
     rng = np.random.default_rng(1)
     weights = rng.dirichlet(np.full(7, 0.5), 50)
-    full = fill_skinning(sparsen_skinning(weights), 7)
+    full = keep_heaviest(weights)
     assert full.sum(1) == pytest.approx(np.ones(50)) and ((full > 0.0).sum(1) <= 4).all()
     for row, kept in zip(weights, full, strict=True):
         largest = np.sort(np.argsort(-row, kind="stable")[:4])

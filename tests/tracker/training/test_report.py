@@ -5,11 +5,12 @@ import pytest
 from scipy.sparse import csr_array
 
 from tests.tracker.training.fingers import PARENTS, crude_regressor, make_fingers
+from tracker.model.skinning import keep_heaviest
 from tracker.training.learn import Learnt
-from tracker.training.motion import sparsen_skinning
 from tracker.training.options import TrainingOptions
-from tracker.training.pose_fit import Poses, Rig
+from tracker.training.pose_fit import Poses
 from tracker.training.report import describe_training
+from tracker.training.rig import Rig
 from tracker.training.spaces import find_space
 from tracker.training.training_set import TrainingSet
 
@@ -22,7 +23,7 @@ def report():
     fingers = make_fingers(people=2, poses=3)
     regressor = csr_array(crude_regressor(fingers.templates[0]))
     poses = Poses(fingers.rotations, fingers.translations, ERRORS)
-    rig = Rig(PARENTS, sparsen_skinning(fingers.weights), fingers.directions)
+    rig = Rig(PARENTS, keep_heaviest(fingers.weights), fingers.directions)
     learnt = Learnt(fingers.templates, fingers.joints, poses, rig, regressor)
     names = np.array(["Ada"] * 3 + ["Bob"] * 3)
     used = TrainingSet(fingers.targets, names, np.array(["flat", "fist", "pinch"] * 2), np.zeros(6, dtype=bool))

@@ -4,9 +4,10 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from tests.tracker.training.fingers import PARENTS, crude_regressor, make_fingers
+from tracker.model.skinning import keep_heaviest
 from tracker.training.learn import Learnt
-from tracker.training.motion import sparsen_skinning
-from tracker.training.pose_fit import Poses, Rig
+from tracker.training.pose_fit import Poses
+from tracker.training.rig import Rig
 from tracker.training.stages import FIRST, LAST, Stage, find_last, list_stages, pack_stage, unpack_stage
 
 
@@ -26,7 +27,7 @@ class Kept:
 def make_stage(errors: tuple[float, ...] = (0.002, 0.001)) -> Stage:
     fingers = make_fingers(people=2, poses=3)
     poses = Poses(fingers.rotations, fingers.translations, np.linspace(0.0, 0.001, 6))
-    rig = Rig(PARENTS, sparsen_skinning(fingers.weights), fingers.directions)
+    rig = Rig(PARENTS, keep_heaviest(fingers.weights), fingers.directions)
     regressor = csr_array(crude_regressor(fingers.templates[0]))
     learnt = Learnt(fingers.templates, fingers.joints, poses, rig, regressor)
     return Stage(learnt, errors, {"poses": 1.25, "templates": 0.5})
@@ -64,4 +65,4 @@ def test_what_another_version_kept_is_refused_in_a_sentence(caplog):
     kept.save(names[1], {**old, "ridge": np.array([1e-4]), "ridges": np.zeros((0, 2))})
     assert find_last(kept, names, "mine") == (0, None)
     assert "stage round-1-joints was kept by another version of Handloom" in caplog.text
-    assert "version 1, this one reads version 2" in caplog.text
+    assert "version 1, this one reads version 3" in caplog.text

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.tracker.training.fingers import PARENTS, make_fingers
-from tracker.training.learn import find_features
-from tracker.training.motion import sparsen_skinning
-from tracker.training.pose_fit import Poses, Rig
+from tracker.model.skinning import keep_heaviest
+from tracker.training.pose_fit import Poses
+from tracker.training.rig import Rig, find_features
 from tracker.training.templates import fit_templates, unpose, weigh_by_pose
 
 
@@ -22,7 +22,7 @@ def poses(fingers):
 
 @pytest.fixture(scope="module")
 def rig(fingers):
-    return Rig(PARENTS, sparsen_skinning(fingers.weights), fingers.directions)
+    return Rig(PARENTS, keep_heaviest(fingers.weights), fingers.directions)
 
 
 def test_true_poses_give_the_true_templates_whatever_the_weights(fingers, poses, rig):
@@ -41,7 +41,9 @@ def test_a_registration_without_weight_counts_for_nothing(fingers, poses, rig):
 
 def test_unposed_registrations_are_template_and_blend_shapes_together(fingers, poses, rig):
     rest = unpose(poses, fingers.targets, fingers.owners, fingers.joints, rig)
-    expected = fingers.templates[fingers.owners] + np.einsum("vin,mn->mvi", fingers.directions, find_features(poses))
+    expected = fingers.templates[fingers.owners] + np.einsum(
+        "vin,mn->mvi", fingers.directions, find_features(poses.rotations)
+    )
     assert rest == pytest.approx(expected, abs=1e-9)
 
 

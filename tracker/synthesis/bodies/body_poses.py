@@ -7,9 +7,9 @@ import numpy.typing as npt
 from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.body_hands import body_hand
 from tracker.model.mano_files import BODY_JOINTS, SMPLH_JOINTS
-from tracker.registration.vertex_normals import find_unit_normals
 from tracker.synthesis.bodies.hand_poses import MIRRORED, load_hand_poses
 from tracker.synthesis.bodies.person import Person
 

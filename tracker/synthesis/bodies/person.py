@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy import sparse
 
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.blend_model import BlendModel
 from tracker.model.body_hands import body_hand
 from tracker.model.body_model import SEXES, body_model
-from tracker.registration.vertex_normals import find_unit_normals
 from tracker.synthesis.scans.bones import dual_quaternions, skin
 
 Array = npt.NDArray[np.float64]

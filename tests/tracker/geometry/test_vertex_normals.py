@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.vertex_normals import find_unit_normals
 
 
 def test_they_are_those_of_plain_numpy():

@@ -182,7 +182,7 @@ export const KEYMAP = [
     ["moving.turnDown", "Turn down", "Shift+Down"],
     ["moving.nearer", "Nearer", "+", "="],
     ["moving.farther", "Farther", "-"],
-    ["moving.leave", "Leave the picture for the tools", "Esc"],
+    ["moving.leave", "Move the focus from the picture to the tools", "Esc"],
   ]),
 ] as const satisfies readonly KeyBinding[];
 

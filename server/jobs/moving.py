@@ -31,7 +31,7 @@ def find_moving_obstacles(session: Session, storage: Storage, asked: RegisterMov
     if last >= row.frame_count:
         return [f"“{row.name}” has no frame {last}; it has 0 to {row.frame_count - 1}."]
     if asked.first_frame > last:
-        return [f"The first frame, {asked.first_frame}, lies behind the last one, {last}."]
+        return [f"The first frame, {asked.first_frame}, is after the last one, {last}."]
     if not list_usable(row, asked.first_frame, last):
         return [f"None of the frames {asked.first_frame} to {last} of “{row.name}” can be used. Choose others."]
     if parent is None:

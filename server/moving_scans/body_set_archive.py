@@ -123,8 +123,8 @@ def _check(storage: Storage, name: str, member: Accepted) -> Path:
     folder = storage.folder(AREA, member.frame_registration_id)
     if not (folder / BODY).is_file() or compute_digest(folder / BODY) != member.digest:
         raise DamagedFrameError(
-            f"Frame {member.frame} of “{name}” is not what was accepted. Bring {AREA}/{member.frame_registration_id} "
-            "back from a backup; nothing was written."
+            f"Frame {member.frame} of “{name}” was changed after it was accepted. Restore "
+            f"{AREA}/{member.frame_registration_id} from a backup; nothing was written."
         )
     return folder
 

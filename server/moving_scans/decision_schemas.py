@@ -33,7 +33,7 @@ class StretchDecisionMake(BaseModel):
     @model_validator(mode="after")
     def _is_in_order(self) -> StretchDecisionMake:
         if self.first_frame > self.last_frame:
-            raise ValueError("`first_frame` lies behind `last_frame`")
+            raise ValueError("`first_frame` is after `last_frame`")
         return self
 
 

@@ -52,12 +52,14 @@ def undo(
         raise NotFoundError(f"There is no decision {decision_id} about a stretch.")
     _hold(session, decision.moving_scan_id)
     if decision.account_id != account_id:
-        raise ForbiddenError("Only who made a decision takes it back. Decide yourself instead: the last one counts.")
+        raise ForbiddenError(
+            "Only its author can undo a decision. Make a decision of your own instead: the last one counts."
+        )
     if decision.decision == "undo":
         raise ConflictError("This is an undo already; decide again instead.")
     repeated = select(StretchDecisionRow.operation_id).where(StretchDecisionRow.undoes_id == decision_id)
     if (taken := session.scalar(repeated)) is not None and taken != operation_id:
-        raise ConflictError("This decision was taken back already.")
+        raise ConflictError("This decision was already undone.")
     made = StretchDecisionRow(
         account_id=account_id,
         decision="undo",
@@ -118,7 +120,7 @@ def _add(
 
 def _reused(operation_id: uuid.UUID) -> InvalidError:
     return InvalidError(
-        f"The operation {operation_id} was another decision before; nothing was stored. Make a new operation_id for "
+        f"The operation {operation_id} belongs to another decision; nothing was stored. Make a new operation_id for "
         "each decision."
     )
 

@@ -16,14 +16,14 @@ FramesPerSecond = Annotated[Number, Field(ge=0.1, le=1000.0)]
 
 
 class MovingScanOptions(BaseModel):
-    """What the files of an upload do not tell."""
+    """What the files of an upload do not say."""
 
     model_config = ConfigDict(extra="forbid")
 
     name: Name | None = Field(default=None, description="Left out: that of the folder or of the zip.")
     subject: Label = ""
     fps: FramesPerSecond = 60.0
-    metres_per_unit: UnitScale | None = Field(default=None, description="Left out: told by the size of a person.")
+    metres_per_unit: UnitScale | None = Field(default=None, description="Left out: recognised by the size of a person.")
 
 
 class MovingScanPatch(BaseModel):
@@ -51,14 +51,14 @@ class MovingScanOut(BaseModel):
 
     id: uuid.UUID
     name: str
-    subject: str = Field(description="Who is scanned; empty when nobody said.")
+    subject: str = Field(description="Who is scanned; empty when unknown.")
     fps: float
     frame_count: int
     usable_count: int = Field(description="Frames whose files can be used.")
     point_count: int = Field(description="Of the frame with the most.")
     byte_count: int
     metres_per_unit: float
-    is_unit_guessed: bool = Field(description="Nobody said the unit; the size told it.")
+    is_unit_guessed: bool = Field(description="The unit was not given; it was recognised by the size.")
     box_m: list[list[float]] = Field(description="Around all frames: the lowest x, y, z and the highest.")
     problems: list[FrameProblem] = Field(description="Frames that cannot be used.")
     notes: list[str] = Field(description="What was noticed when they came.")

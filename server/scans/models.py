@@ -53,7 +53,7 @@ class ScanRow(Base):
     first_metres_per_unit: Mapped[float | None]
     """As it was uploaded; None likewise."""
     is_unit_guessed: Mapped[bool] = mapped_column(default=False)
-    """Nobody said the unit; the size told it."""
+    """The unit was not given; it was recognised by the size."""
     notes: Mapped[list[Any]]
     """What was noticed when it was read, sentences."""
     revision: Mapped[int] = mapped_column(default=1)

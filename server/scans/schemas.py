@@ -59,7 +59,7 @@ class ScanOut(BaseModel):
     metres_per_unit: float | None = Field(
         description="Length of the file's unit. Null: found from the size by an earlier version, and never confirmed."
     )
-    is_unit_guessed: bool = Field(description="Nobody said the unit; the size told it.")
+    is_unit_guessed: bool = Field(description="The unit was not given; it was recognised by the size.")
     notes: list[str] = Field(description="What was noticed when it was read.")
     revision: int = Field(description="Of what is cropped and of the unit; 1 is the scan as it was uploaded.")
     removed_count: int = Field(description="Points that are cropped, of an object, or loose.")

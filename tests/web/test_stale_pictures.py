@@ -116,7 +116,7 @@ def test_nothing_is_changed_in_a_picture_that_is_not_on_the_screen(
     assert picture.element.get_attribute("data-drawn") == "0", "the picture of frame 10 has not come"
     expect(note_of(page)).to_contain_text("Waiting for the picture of frame 10")
     expect(note_of(page)).to_contain_text("That had no effect")
-    expect(page.get_by_test_id("next-click")).to_contain_text("Not taken: the picture of frame 10 is on its way")
+    expect(page.get_by_test_id("next-click")).to_contain_text("No effect: the picture of frame 10 is on its way")
     screenshots.take(page, "stale-picture")
     picture.click(200, 200, button="right")
     picture.drag((250, 220), (300, 300))

@@ -44,7 +44,7 @@ class ObjectReport:
         name: Its name.
         size_m: Sides of the box around it, or empty when its file knows its unit.
         metres_per_unit: Of its file.
-        is_guessed: Nobody said the unit; the size told it.
+        is_guessed: The unit was not given; it was recognised by the size.
     """
 
     name: str

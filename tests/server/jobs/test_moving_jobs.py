@@ -108,7 +108,7 @@ def test_what_cannot_be_registered_is_refused_before_it_is_queued(
     nobody = uuid.uuid4()
     refused = {
         "has no frame 4; it has 0 to 3": {"last_frame": 4},
-        "lies behind the last one": {"first_frame": 3, "last_frame": 2},
+        "is after the last one": {"first_frame": 3, "last_frame": 2},
         "None of the frames 1 to 1": {"first_frame": 1, "last_frame": 1},
         f"There is no registration {nobody}": {"parent_id": nobody},
         f"moving scan {nobody} does not exist": {"moving_scan_id": nobody},

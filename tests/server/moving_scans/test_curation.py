@@ -171,7 +171,7 @@ def test_decisions_are_reviewers_own_made_once_and_of_frames_that_are_there(cura
     again = curated.decide(curated.rob, curated.first, "accept", 0, 1, operation_id=operation)
     assert (made.status_code, again.status_code) == (201, 200) and made.json() == again.json()
     other = curated.decide(curated.rob, curated.first, "reject", 0, 1, operation_id=operation)
-    assert other.status_code == 422 and "was another decision before" in other.json()["detail"]
+    assert other.status_code == 422 and "belongs to another decision" in other.json()["detail"]
     assert curated.undo(sue, made.json()).status_code == 403
     assert curated.undo(curated.rob, made.json()).status_code == 201
     assert curated.undo(curated.rob, made.json()).status_code == 409
@@ -225,7 +225,7 @@ def test_accepted_frames_are_kept_with_their_lineage_and_written_for_other_progr
     damaged = curated.studio.settings.data_dir / AREA / str(name_frame(uuid.UUID(curated.first), 1)) / "body.npz"
     damaged.write_bytes(b"other")
     answer = curated.studio.client.get(f"{API}/body-sets/{told['id']}/archive.zip")
-    assert answer.status_code == 409 and "Frame 1 of “For the model” is not what was accepted" in answer.text
+    assert answer.status_code == 409 and "Frame 1 of “For the model” was changed after it was accepted" in answer.text
     assert not list(curated.studio.settings.data_dir.glob("*.zip"))
 
 

@@ -7748,7 +7748,7 @@ export interface components {
             id: string;
             /**
              * Is Unit Guessed
-             * @description Nobody said the unit; the size told it.
+             * @description The unit was not given; it was recognised by the size.
              */
             is_unit_guessed: boolean;
             /** Metres Per Unit */
@@ -7774,7 +7774,7 @@ export interface components {
             registration_count: number;
             /**
              * Subject
-             * @description Who is scanned; empty when nobody said.
+             * @description Who is scanned; empty when unknown.
              */
             subject: string;
             /**
@@ -9296,7 +9296,7 @@ export interface components {
             id: string;
             /**
              * Is Unit Guessed
-             * @description Nobody said the unit; the size told it.
+             * @description The unit was not given; it was recognised by the size.
              */
             is_unit_guessed: boolean;
             /**

@@ -88,7 +88,7 @@ export interface ObjectReport {
   name: string;
   size_m: number[];
   metres_per_unit: number | null;
-  /** Nobody said the unit; the size told it. */
+  /** The unit was not given; it was recognised by the size. */
   is_guessed: boolean;
 }
 

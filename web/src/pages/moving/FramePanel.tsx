@@ -61,7 +61,7 @@ export function FramePanel({ scan, frame, found, foundIn, registration }: FrameP
           {foundIn && foundIn.id !== registration?.id && (
             <div className={classes.row}>
               <dt>Of</dt>
-              <dd>registration {foundIn.number}, which {registration?.number} goes on from</dd>
+              <dd>registration {foundIn.number}, which {registration?.number} continues</dd>
             </div>
           )}
         </dl>

@@ -78,14 +78,14 @@ export default function MovingScansPage() {
       {isEmpty && search && (
         <EmptyState
           icon={<IconFilterOff size={40} stroke={1.25} />}
-          title="No moving scan is like that"
+          title="No moving scan matches"
           action={
             <Button variant="default" onClick={() => (setTyped(""), setAddress({}, { replace: true }))}>
               Show all
             </Button>
           }
         >
-          Loosen the filter above.
+          Change the filter above.
         </EmptyState>
       )}
       {scans.length > 0 && (

@@ -62,7 +62,7 @@ export function MovingView({ label, parts: { holder, canvas, stage, failure: noS
       )}
       {isBusy && !failure && !noStage && (
         <div className={view.waiting} role="status">
-          <span>The frame is on its way</span>
+          <span>Loading the frame</span>
         </div>
       )}
       {(failure || noStage) && <div className={view.failure}>{noStage ? <Text role="alert">{noStage}</Text> : failure}</div>}

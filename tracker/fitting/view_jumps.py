@@ -14,10 +14,10 @@ from tracker.model.joints import HAND_JOINTS
 Array = npt.NDArray[np.float64]
 
 FASTEST = 1.0
-"""m/s; a joint that is told so near to where it is expected did not jump. Of 0.75, 1, 1.25, 1.5 and no limit
+"""m/s; a joint that is detected nearer to where it is expected did not jump. With 0.75, 1, 1.25, 1.5 and no limit
 `two_camera_rgb` is followed in 371, 375, 369, 374 and 373 of 378 frames, 5.2, 4.6, 4.4, 5.0 and 5.0 px from its marks
-in `cam0`. At 4.5 frames a second 1 m/s are 222 mm, so hardly anything is called a jump: with 30 mm `d405_take001` is
-followed in 69 frames, in 102 without."""
+in `cam0`. At 4.5 frames a second 1 m/s is 222 mm, so hardly anything is called a jump: with 30 mm `d405_take001` is
+followed in 69 frames, in 102 without a limit."""
 
 USUAL = 4.0
 """A joint did not jump either if it is detected less than this many times as far off as half of its hand's joints."""

@@ -100,7 +100,7 @@ def upgrade() -> None:
         sa.Column("decision", sa.String(10), nullable=False),
         sa.Column("first_frame", sa.Integer(), nullable=False),
         sa.Column("last_frame", sa.Integer(), nullable=False),
-        sa.Column("note", sa.String(2000), nullable=False),
+        sa.Column("note", sa.Text(), nullable=False),
         sa.Column("undoes_id", sa.Uuid(), nullable=True),
         sa.Column("operation_id", sa.Uuid(), nullable=False),
         sa.Column("created_at", MOMENT, nullable=False),

@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import uuid
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from server.database.numbers import FrameNumber
-from server.database.texts import Name
+from server.database.texts import Name, Text
 from server.moving_scans.registration_schemas import Prior
-
-
-def _check_note(text: str) -> str:
-    if "\x00" in text:
-        raise ValueError("a text cannot hold the character NUL")
-    return text.strip()
 
 
 class StretchDecisionMake(BaseModel):
@@ -27,7 +21,7 @@ class StretchDecisionMake(BaseModel):
     decision: Literal["accept", "reject"]
     first_frame: FrameNumber
     last_frame: FrameNumber
-    note: Annotated[str, Field(max_length=2000), AfterValidator(_check_note)] = ""
+    note: Text = ""
     operation_id: uuid.UUID = Field(description="Made anew for each decision; sent again, nothing is done twice.")
 
     @model_validator(mode="after")

@@ -6,7 +6,7 @@ import uuid
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import BigInteger, CheckConstraint, ForeignKey, Index, String, UniqueConstraint
+from sqlalchemy import BigInteger, CheckConstraint, ForeignKey, Index, String, Text, UniqueConstraint
 from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
@@ -112,7 +112,7 @@ class StretchDecisionRow(Base):
     decision: Mapped[str] = mapped_column(String(10))
     first_frame: Mapped[int]
     last_frame: Mapped[int]
-    note: Mapped[str] = mapped_column(String(2000))
+    note: Mapped[str] = mapped_column(Text)
     undoes_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("stretch_decisions.id"))
     operation_id: Mapped[uuid.UUID]
     """The client's; a repeated request with it changes nothing and is answered alike."""

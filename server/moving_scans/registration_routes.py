@@ -9,6 +9,7 @@ from fastapi import APIRouter, Response
 from server.access.audit import record_act
 from server.access.service import ReviewerAccount
 from server.database import SessionDep
+from server.database.frames import FramePath
 from server.database.paging import Page
 from server.errors import error_responses
 from server.moving_scans import decisions as decision_service
@@ -56,7 +57,7 @@ def list_registered_frames(registration_id: uuid.UUID, session: SessionDep) -> F
     responses=GEOMETRY | error_responses(404),
 )
 def get_registered_geometry(
-    registration_id: uuid.UUID, frame: int, session: SessionDep, storage: StorageDep
+    registration_id: uuid.UUID, frame: FramePath, session: SessionDep, storage: StorageDep
 ) -> Response:
     """The surface of a frame with distances: `vertices`, `normals`, `vertex_error_mm`, `point_error_mm` of the
     points of the frame's own geometry, `guessed` (1 for vertices of a hand that the frame does not show)."""

@@ -13,6 +13,7 @@ from server.access.audit import record_act
 from server.access.service import AccountIdDep, LeadAccount, require_lead
 from server.compute import ComputeDep
 from server.database import DatabaseDep, SessionDep
+from server.database.frames import FramePath
 from server.database.paging import Cursor, Limit, Page
 from server.download import name_download
 from server.errors import error_responses
@@ -109,7 +110,9 @@ def delete_moving_scan(moving_scan_id: uuid.UUID, session: SessionDep, lead: Lea
 @router.get(
     "/{moving_scan_id}/frames/{frame}/geometry", response_class=Response, responses=GEOMETRY | error_responses(404)
 )
-def get_frame_geometry(moving_scan_id: uuid.UUID, frame: int, session: SessionDep, storage: StorageDep) -> Response:
+def get_frame_geometry(
+    moving_scan_id: uuid.UUID, frame: FramePath, session: SessionDep, storage: StorageDep
+) -> Response:
     """A frame's points for the browser, as those of a scan. They never change."""
     row = service.get_moving_scan(session, moving_scan_id, deleted_too=True)
     data = service.find_frame_view(storage, row, frame).read_bytes()
@@ -122,7 +125,9 @@ def get_frame_geometry(moving_scan_id: uuid.UUID, frame: int, session: SessionDe
     responses=error_responses(404)
     | {200: {"content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}}},
 )
-def download_frame(moving_scan_id: uuid.UUID, frame: int, session: SessionDep, storage: StorageDep) -> FileResponse:
+def download_frame(
+    moving_scan_id: uuid.UUID, frame: FramePath, session: SessionDep, storage: StorageDep
+) -> FileResponse:
     """The file of a frame as it was uploaded."""
     row = service.get_moving_scan(session, moving_scan_id)
     path = service.find_scan_file(storage, row, frame)

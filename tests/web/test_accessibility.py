@@ -23,6 +23,7 @@ PAGES = [
     ("new calibration", "/calibrations/new", "main :is(h1, h2)"),
     ("projects", "/projects", "main :is(h1, h2)"),
     ("scans", "/scans", "main :is(h1, h2)"),
+    ("moving", "/scans/moving", "main :is(h1, h2)"),
     ("curate", "/curate", "main :is(h1, h2)"),
     ("agreement of curators", "/curate/agreement", "main :is(h1, h2)"),
     ("hand models", "/models", "main :is(h1, h2)"),

@@ -37,6 +37,8 @@ export default function MovingScansPage() {
   const scans = data?.pages.flatMap((page) => page.items) ?? [];
   if (error && !data) return <Failure what="The moving scans could not be loaded" error={error} safe="They are untouched on the server's disk." onRetry={() => void refetch()} />;
   const isEmpty = data !== undefined && scans.length === 0;
+  /** Known to be more than the first-use state, so that nothing jumps. */
+  const hasList = data !== undefined && !(isEmpty && !search);
   return (
     <div className="page">
       <MovingDrops />
@@ -46,9 +48,9 @@ export default function MovingScansPage() {
           <Title order={1}>Scans</Title>
           <ScanKinds here="/scans/moving" />
         </Group>
-        {!(isEmpty && !search) && <AddMovingScanButton label="Add" />}
+        {hasList && <AddMovingScanButton label="Add" />}
       </Group>
-      {!(isEmpty && !search) && (
+      {hasList && (
         <div className={lists.filters}>
           <TextInput
             value={typed}

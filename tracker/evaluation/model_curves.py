@@ -25,13 +25,9 @@ def draw_study(study: dict[str, Any]) -> dict[str, str]:
     for name, (rows, title) in curves.items():
         if rows:
             drawings[name] = draw_curves(
-                [_line(label, found) for label, found in rows.items()], title, "components", title
+                [Line.by_components(label, found) for label, found in rows.items()], title, "components", title
             )
     return {name: make_svg(figure) for name, figure in drawings.items()}
-
-
-def _line(label: str, rows: list[dict[str, float]]) -> Line:
-    return Line(label, [row["components"] for row in rows], [row["mean_mm"] for row in rows])
 
 
 def make_svg(figure: str) -> str:

@@ -103,7 +103,7 @@ def _pose_curves(study: Document) -> str:
     return (
         f"<h2>{label}</h2><p class=quiet>Distance of scans of people kept for testing, by the number of pose "
         "components; [R17] Fig. 13.</p>"
-        + draw_curves([_line(name, rows) for name, rows in curves.items()], label, "components", "mm")
+        + draw_curves([Line.by_components(name, rows) for name, rows in curves.items()], label, "components", "mm")
         + _rows(curves)
     )
 
@@ -116,13 +116,9 @@ def _shape_curve(study: Document) -> str:
     return (
         f"<h2>{label}</h2><p class=quiet>Mean absolute error of templates of people left out in turn, by the number of "
         "shape components; [R17] Fig. 14.</p>"
-        + draw_curves([_line("people left out", rows)], label, "components", "mm")
+        + draw_curves([Line.by_components("people left out", rows)], label, "components", "mm")
         + _rows({"people left out": rows})
     )
-
-
-def _line(label: str, rows: Sequence[Document]) -> Line:
-    return Line(label, [row["components"] for row in rows], [row["mean_mm"] for row in rows])
 
 
 def _rows(curves: Mapping[str, Sequence[Document]]) -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from math import inf
+from typing import Any
 
 COLORS = ("#1c9c8f", "#d9822b", "#7d6bd8", "#3d86d8", "#c2547e", "#7c8a2e", "#8a8f98", "#b0553a")
 DASHES = ("", "7 4", "2 3", "9 3 2 3", "4 2", "12 4", "1 4", "6 2 1 2")
@@ -22,6 +23,11 @@ class Line:
     y: Sequence[float | None]
     reach: float = inf
     """Values that are farther apart in x are not joined: between them nothing was measured."""
+
+    @classmethod
+    def by_components(cls, label: str, rows: Sequence[Mapping[str, Any]]) -> Line:
+        """Mean errors, mm, over the number of components, as a study writes its rows."""
+        return cls(label, [row["components"] for row in rows], [row["mean_mm"] for row in rows])
 
     def pieces(self) -> list[list[tuple[float, float]]]:
         """What is drawn without a break."""

@@ -11,6 +11,9 @@ import numpy.typing as npt
 
 from tracker.calibration.board import Board
 from tracker.calibration.board_pattern import draw_board
+from tracker.calibration.board_pose import find_board_poses
+from tracker.calibration.camera_pair import SeenBoards
+from tracker.calibration.lens import Lens
 from tracker.calibration.sightings import Sightings
 from tracker.capture.camera import Camera
 from tracker.geometry.se3 import exp, inverse, transform
@@ -165,3 +168,12 @@ def measure_places(found: tuple[Camera, ...], truth: tuple[Camera, ...]) -> tupl
         apart.append(np.linalg.norm(ours.T_world_camera[:3, 3] - theirs.T_world_camera[:3, 3]))
         turned.append(np.degrees(np.arccos(np.clip((np.trace(T[:3, :3]) - 1) / 2, -1, 1))))
     return np.array(apart), np.array(turned)
+
+
+def seen_by(filmed: Filmed, noise_px: float = 0.0) -> list[SeenBoards]:
+    """What every camera saw, with the board's pose in each frame."""
+    lenses = [Lens(camera.K, camera.distortion) for camera in filmed.cameras]
+    return [
+        SeenBoards(seen, lens, find_board_poses(filmed.board, lens, seen.corners))
+        for seen, lens in zip(filmed.sight_all(noise_px=noise_px), lenses, strict=True)
+    ]

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from scipy.spatial import KDTree
 
 from tracker.synthesis.scans.angles import clip_to_limits, pose_angles
-from tracker.synthesis.scans.colors import paint
 from tracker.synthesis.scans.deform import deform
 from tracker.synthesis.scans.held import NOTHING, PRESS, ROD_HALF_LENGTH, _across, _ball, _rod, place_object
 from tracker.synthesis.scans.pose_list import POSES, HeldObject
@@ -72,13 +71,3 @@ def test_where_there_is_no_room_nothing_is_held() -> None:
     posed = deform(SUBJECT, clip_to_limits(SUBJECT, pose_angles(SUBJECT, fist)))
     mesh = place_object(SUBJECT, posed, HeldObject("ball", 1e-3))
     assert mesh is NOTHING and len(mesh.faces) == 0
-
-
-@given(st.integers(0, 40), st.integers(0, 2**32 - 1))
-def test_green_is_an_object_and_no_skin_of_anybody_is_green(subject, seed) -> None:
-    """[R17] 3.1 tells objects by G > max(R, 20)."""
-    rng = np.random.default_rng(seed)
-    is_object = rng.random(300) < 0.5
-    colors = paint(is_object, subject, rng).astype(int)
-    is_green = colors[:, 1] > np.maximum(colors[:, 0], 20)
-    assert np.array_equal(is_green, is_object)

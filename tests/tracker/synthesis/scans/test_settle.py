@@ -7,9 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tracker.errors import TrackerError
-from tracker.synthesis.scans.angles import clip_to_limits, pose_angles, rest_angle, vary
-from tracker.synthesis.scans.arrange import arrange
+from tracker.synthesis.scans.angles import clip_to_limits, pose_angles
 from tracker.synthesis.scans.deform import place_bones
 from tracker.synthesis.scans.pose_list import POSE_NAMES, POSES
 from tracker.synthesis.scans.settle import GIVE, load_balls, settle
@@ -66,48 +64,3 @@ def test_pads_that_should_touch_do_within_two_millimetres(name) -> None:
         return [float(np.linalg.norm(placed[i] - placed[j]) - balls.radii[i] - balls.radii[j]) for i, j in pairs]
 
     assert max(np.abs(gaps(settle(SUBJECT, wanted, pose.touches)))) < 2e-3, "m"
-
-
-@pytest.mark.parametrize("name", POSE_NAMES[::6])
-def test_a_listed_pose_bends_each_finger_as_listed_whatever_the_subject_is_like_at_rest(name) -> None:
-    pose = POSES[POSE_NAMES.index(name)]
-    for number in (1, 9):
-        subject = load_subject(number)
-        angles = pose_angles(subject, pose)
-        for place, dof in enumerate(subject.dofs):
-            if dof.finger != "thumb" and dof.segment != "metacarpal" and dof.motion == "flexion":
-                listed = getattr(pose, dof.finger)[("proximal", "middle", "distal").index(dof.segment)]
-                assert angles[place] + rest_angle(subject, place) == pytest.approx(np.radians(listed))
-
-
-def test_habits_are_a_subjects_own_and_moments_differ_less_than_people() -> None:
-    angles = pose_angles(SUBJECT, POSES[0])
-    by_habit = [vary(SUBJECT, angles, np.random.default_rng(k), np.random.default_rng(0)) for k in range(40)]
-    by_moment = [vary(SUBJECT, angles, np.random.default_rng(0), np.random.default_rng(k)) for k in range(40)]
-    assert np.std(by_habit, axis=0).mean() > 1.2 * np.std(by_moment, axis=0).mean() > 0.0
-    for varied in (*by_habit, *by_moment):
-        assert (varied >= LOWER).all() and (varied <= UPPER).all()
-
-
-def test_the_same_arrangement_is_the_same_and_another_side_or_seed_another_moment() -> None:
-    (_, name, one), (_, _, same) = (arrange(3, "fist", "right", seed=2) for _ in range(2))
-    assert name == "fist" and np.array_equal(one, same)
-    for other in (arrange(3, "fist", "left", seed=2), arrange(3, "fist", "right", seed=3), arrange(5, "fist", seed=2)):
-        assert not np.array_equal(one, other[2])
-    _, _, exact = arrange(3, "fist", is_varied=False)
-    assert np.array_equal(exact, arrange(3, "fist", seed=9, is_varied=False)[2])
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        ((1, "fist", "middle"), "'right' or 'left', not 'middle'"),
-        ((0, "fist"), "numbered from 1"),
-        ((1, np.full(31, np.nan)), "A pose is 31 angles"),
-        ((1, "nonsense"), "There is no pose 'nonsense'"),
-        ((1, -1), "There is no pose -1"),
-    ],
-)
-def test_what_there_is_not_is_refused_with_what_there_is(arguments, said) -> None:
-    with pytest.raises(TrackerError, match=said):
-        arrange(*arguments)

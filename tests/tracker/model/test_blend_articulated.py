@@ -185,7 +185,7 @@ def test_hand_files_of_every_kind_are_followed(tmp_path, name):
 
 def test_what_is_no_hand_is_refused(tmp_path):
     (tmp_path / "other.pkl").write_bytes(b"\x80\x02}q\x00.")
-    with pytest.raises(ModelFileError, match="no array 'v_template'"):
+    with pytest.raises(ModelFileError, match="found no 'v_template'"):
         load_model(tmp_path / "other.pkl")
     hand = articulated_of(random_blend())
     save_model(hand, tmp_path / "hand.npz")

@@ -73,7 +73,9 @@ def test_bones_that_nobody_placed_and_the_order_of_those_that_somebody_did_do_no
 def test_an_object_that_nobody_placed_or_that_has_other_bones_is_refused_by_name():
     with pytest.raises(TrackingError, match=r"rope: bones \['handle'\]"):
         place_object(ROPE, RecordedObject("rope", "rope.glb", T_WORLD_OBJECT, {"handle": np.zeros(3)}))
-    with pytest.raises(TrackingError, match=r"ball: it has no place in the first frame; needed `initial\.T_world_object`"):
+    with pytest.raises(
+        TrackingError, match=r"ball: it has no place in the first frame; needed `initial\.T_world_object`"
+    ):
         place_object(BALL, RecordedObject("ball", "ball.ply"))
 
 
@@ -118,6 +120,8 @@ def test_what_stood_in_the_first_frame_where_the_object_is_later_hides_it_only_t
 
 
 def test_an_object_that_no_frame_shows_is_refused_with_the_frames_and_what_to_do():
-    with pytest.raises(TrackingError, match=r"ball: not found in frames 0, 1: nothing there could be the object") as refused:
+    with pytest.raises(
+        TrackingError, match=r"ball: not found in frames 0, 1: nothing there could be the object"
+    ) as refused:
         start_object(BALL, RecordedObject("ball", "ball.ply"), frames(False, False), HOW, [])
     assert "initial.T_world_object" in str(refused.value)

@@ -27,7 +27,7 @@ def describe_error(error: Exception, number: str, root: Path) -> str:
     if isinstance(error, (StudioError, TrackerError)):
         return hide_paths(str(error), root)
     return (
-        f"An unexpected error occurred (error  {number}). What was stored before is untouched. Try again. "
+        f"An unexpected error occurred (error {number}). What was stored before is untouched. Try again. "
         f"If it happens again, tell whoever looks after the studio: the worker's log has the details under {number}."
     )
 

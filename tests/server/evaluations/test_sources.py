@@ -136,7 +136,7 @@ def test_reports_say_how_many_joints_were_left_out_and_why(client: TestClient, a
     assert [float(row["error_px"]) for row in judged] == pytest.approx([OFF] * 41, abs=0.01)
     assert {row["error_px"] for row in rows if row["counts"] == "left out"} == {""}
     page = client.get(f"{API}/evaluations/report.html", params=query).text
-    assert "85 joints are left out because of where they came from: " in page
+    assert "85 joints are left out because of their source: " in page
     assert "21 accepted from Track 1" in page and "judged by 21 interpolated between key frames, 20 placed" in page
     document = client.get(f"{API}/evaluations/report.json", params=query).json()
     assert document["source"] == ["independent"] and document["tracks"][0]["left_out_joints"] == 85

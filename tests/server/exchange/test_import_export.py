@@ -329,7 +329,7 @@ def test_an_export_holds_the_sources_that_were_chosen_and_says_what_it_left_out(
 
     items, joints, notes = look("independent")
     assert (items, joints) == (1, 15)
-    assert "27 joints are left out because of where they came from: 26 accepted from Track 1, 1 accepted" in notes
+    assert "27 joints are left out because of their source: 26 accepted from Track 1, 1 accepted" in notes
     assert look("hand", "fit")[:2] == (1, 16)
     everything = studio.client.get(address, params={"format": name}).json()
     assert (everything["items"], everything["joints"]) == (2, 42)

@@ -175,7 +175,7 @@ def test_decisions_are_reviewers_own_made_once_and_of_frames_that_are_there(cura
     assert curated.undo(sue, made.json()).status_code == 403
     assert curated.undo(curated.rob, made.json()).status_code == 201
     assert curated.undo(curated.rob, made.json()).status_code == 409
-    wrong: list[tuple[Any, Any, str]] = [(0, 3, "registered are 0 to 2"), (2, 1, "behind"), (-1, 1, "first_frame")]
+    wrong: list[tuple[Any, Any, str]] = [(0, 3, "registered are 0 to 2"), (2, 1, "is after"), (-1, 1, "first_frame")]
     for first, last, told in [*wrong, (0, 1.5, "last_frame"), (0, True, "last_frame")]:
         refused = curated.decide(curated.rob, curated.first, "accept", first, last)
         assert refused.status_code == 422 and told in refused.text

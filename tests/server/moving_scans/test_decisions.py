@@ -148,7 +148,7 @@ def test_an_undo_brings_back_what_stood_before_and_cannot_be_undone(bench: Bench
     assert bench.accepted() == dict.fromkeys(range(FRAMES), 0)
     with pytest.raises(ConflictError, match="undo already"):
         undo(bench.session, taken.id, LOCAL_ACCOUNT_ID, uuid.uuid4())
-    with pytest.raises(ConflictError, match="taken back already"):
+    with pytest.raises(ConflictError, match="already undone"):
         undo(bench.session, rejected.id, LOCAL_ACCOUNT_ID, uuid.uuid4())
     with pytest.raises(NotFoundError, match="There is no decision"):
         undo(bench.session, uuid.uuid4(), LOCAL_ACCOUNT_ID, uuid.uuid4())

@@ -222,7 +222,7 @@ def test_a_lead_changes_whose_work_it_is_unless_it_was_handed_in(project, ann, b
     assert lead.send("PATCH", path, {"account_id": str(uuid.uuid4())}, revision=2).status_code == 422
     backwards = lead.send("PATCH", path, {"frame_first": 6}, revision=2)
     assert backwards.status_code == 422
-    assert "Frames 6 to 5 make no sense" in backwards.json()["detail"]
+    assert "Frames 6 to 5 are not valid" in backwards.json()["detail"]
     bob.act(given, "submit")
     assert lead.send("PATCH", path, {"account_id": ann.id}, revision=3).status_code == 409
     assert lead.send("PATCH", path, {"note": "well done"}, revision=3).json()["note"] == "well done"

@@ -114,7 +114,7 @@ def test_two_who_accepted_the_same_suggestion_do_not_agree(project, ann, bob, le
     everything = lead.get(path, source="all")
     assert everything["overall"]["samples"] == 2 * 42 and everything["left_out_joints"] == 0
     assert (
-        f"44 joints are left out because of where they came from: 44 {words}." in lead.send("GET", f"{path}.html").text
+        f"44 joints are left out because of their source: 44 {words}." in lead.send("GET", f"{path}.html").text
     )
     rows = list(csv.DictReader(io.StringIO(lead.send("GET", f"{path}.csv").text)))
     assert ("left out", words, "44") in {(row["of"], row["item"], row["samples"]) for row in rows}

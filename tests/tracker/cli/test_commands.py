@@ -180,7 +180,7 @@ def test_evaluate_leaves_out_what_a_track_made_and_says_so(recording, tracked, t
     assert main(arguments) == 0
     said = capsys.readouterr().out
     assert "against 8 annotated hands" in said and "judged by 168 joints of unknown origin" in said
-    assert "84 joints are left out because of where they came from: 84 accepted from Track 2." in said
+    assert "84 joints are left out because of their source: 84 accepted from Track 2." in said
     assert main([*arguments, "--sources", "all", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["annotations"]
     assert (found["evaluated"], found["left_out_joints"]) == (12, 0)

@@ -40,7 +40,7 @@ def test_each_scan_gets_its_files_and_a_row_and_a_second_run_skips_what_is_done(
     rows = json.loads(capsys.readouterr().out)
     assert [row["scan"] for row in rows] == ["broken", "one"]
     broken, one = rows
-    assert broken["verdict"] == "bad" and "no number" in broken["reasons"][0]
+    assert broken["verdict"] == "bad" and "found a coordinate that is not a number" in broken["reasons"][0]
     assert {"scan", "seconds", "verdict", "scan_to_mesh_mm"} <= set(one) and one["seconds"] > 0.0
     assert set(one["scan_to_mesh_mm"]) == {"mean", "median", "p95"} and one["scan_to_mesh_mm"]["median"] < 0.3
     registration = load_registration(tmp_path / "one")

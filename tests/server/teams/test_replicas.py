@@ -113,9 +113,7 @@ def test_two_who_accepted_the_same_suggestion_do_not_agree(project, ann, bob, le
     assert {one["words"]: one["joints"] for one in report["sources"]} == {"placed by hand": 40, words: 44}
     everything = lead.get(path, source="all")
     assert everything["overall"]["samples"] == 2 * 42 and everything["left_out_joints"] == 0
-    assert (
-        f"44 joints are left out because of their source: 44 {words}." in lead.send("GET", f"{path}.html").text
-    )
+    assert f"44 joints are left out because of their source: 44 {words}." in lead.send("GET", f"{path}.html").text
     rows = list(csv.DictReader(io.StringIO(lead.send("GET", f"{path}.csv").text)))
     assert ("left out", words, "44") in {(row["of"], row["item"], row["samples"]) for row in rows}
 

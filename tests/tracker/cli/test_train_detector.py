@@ -108,7 +108,9 @@ def test_nails_are_learnt_from_annotated_views_and_renders_and_looked_for_in_vie
     assert "nails" in [str(name) for name in TrackChunk.load(out / "frames.npz").cost_names]
     assert TrackSetup.load(out).nail_detector is not None
     assert main([*track[:-1], str(tmp_path / "depth")]) == 2
-    assert "nails.npz: It finds finger nails in colour views, but a depth camera is tracked in" in capsys.readouterr().err
+    assert (
+        "nails.npz: It finds finger nails in colour views, but a depth camera is tracked in" in capsys.readouterr().err
+    )
 
 
 @pytest.mark.parametrize(

@@ -356,8 +356,8 @@ def test_keys_are_put_elsewhere_everywhere_at_once_and_follow_the_account(
     expect(keys.get_by_role("alert")).to_contain_text("Occluded, or visible again")
     screenshots.take(page, "14-keys")
     keys.get_by_role("button", name="Move it here").click()
-    keys.get_by_role("button", name="Take F away from Next frame, Frames").click()
-    keys.get_by_role("button", name="Take Right away from Next frame, Frames").click()
+    keys.get_by_role("button", name="Remove F from Next frame, Frames").click()
+    keys.get_by_role("button", name="Remove Right from Next frame, Frames").click()
     page.keyboard.press("Escape")
     expect(keys).to_be_hidden()
 

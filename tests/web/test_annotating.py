@@ -366,7 +366,7 @@ def test_keys_are_put_elsewhere_everywhere_at_once_and_follow_the_account(
         page.keyboard.press("f")
         page.keyboard.press("q")
         expect(page.get_by_label("Frame", exact=True)).to_have_value("1")
-        page.get_by_role("button", name="Next frame").hover()
+        page.get_by_role("button", name="Next frame", exact=True).hover()
         expect(page.get_by_role("tooltip")).to_have_text("Next frame (Q)")
         page.keyboard.press("F1")
         expect(page.get_by_role("dialog")).to_contain_text("no key")

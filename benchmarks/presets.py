@@ -11,8 +11,7 @@ import logging
 from pathlib import Path
 from typing import Any
 
-from studies.twin_runs import Run
-
+from benchmarks.studies.twin_runs import Run
 from tracker.fitting.presets import PRESETS, TrackPreset
 
 log = logging.getLogger("presets")

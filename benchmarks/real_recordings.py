@@ -13,8 +13,8 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from real_ball import add_ball, describe_ball, measure_radius
 
+from benchmarks.real_ball import add_ball, describe_ball, measure_radius
 from tracker.capture.annotations import Annotations, load_annotations
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_run import run_import

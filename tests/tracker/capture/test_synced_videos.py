@@ -266,6 +266,16 @@ def test_videos_without_a_calibration_are_refused(folder: Path) -> None:
     assert "no calibration" in check_import(folder).problems[0]
 
 
+def test_the_report_of_a_calibration_may_lie_beside_it_but_no_second_calibration(folder: Path, tmp_path: Path) -> None:
+    write_anipose(folder)
+    (folder / "calibration_report").mkdir()
+    (folder / "calibration_report" / "board.toml").write_text('kind = "charuco"\ncolumns = 4\n')
+    run_import(folder, tmp_path / "new", options=MILLIMETRES)
+    assert [camera.id for camera in load_sequence(tmp_path / "new").cameras] == ["cam0", "cam1"]
+    (folder / "other.toml").write_bytes((folder / "calibration.toml").read_bytes())
+    assert "leave one in the folder" in check_import(folder, options=MILLIMETRES).problems[0]
+
+
 def test_more_videos_than_cameras_are_refused(folder: Path) -> None:
     write_anipose(folder)
     write_video(folder / "cam2.avi")

@@ -149,7 +149,9 @@ def _read(files: ListedFiles, name: str) -> bytes:
 
 
 def _read_anipose(files: ListedFiles) -> tuple[list[VideoCamera], list[str]]:
+    """Of several, the one highest in the folder: a calibration's report holds its board as `.toml` too."""
     tomls = [name for name in files.names if name.lower().endswith(".toml")]
+    tomls = [name for name in tomls if name.count("/") == min(other.count("/") for other in tomls)]
     if len(tomls) > 1:
         raise CalibrationError(f"{len(tomls)} calibrations ({', '.join(tomls[:4])}); leave one in the folder.")
     return [camera for name in tomls for camera in parse_anipose(_read(files, name), name)], tomls

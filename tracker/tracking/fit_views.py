@@ -109,7 +109,16 @@ class _Look:
     def search(self, number: int, turns: tuple[int, ...]) -> None:
         """Look through a whole image for the hands that were not seen in it."""
         frame, before = self._views[number].frame, self.seen[number]
-        self.seen[number] = _find(default_hand_detector(), frame, self._setup.hand_names, before, turns)
+        detector = default_hand_detector()
+        found = _find(detector, frame, self._setup.hand_names, before, turns)
+        if frame.color is not None and len(self.seen) == 1:  # no other view can contradict
+            followed = list(before.values())
+            found = {
+                name: hand
+                for name, hand in found.items()
+                if any(hand.is_same(other) for other in followed) or detector.sees_wider(frame.color, hand)
+            }
+        self.seen[number] = found
 
     def lacks_hands(self, number: int) -> bool:
         return len(self.seen[number]) < len(self._setup.hand_names)
@@ -207,11 +216,12 @@ def leave_to_depth(objective: Objective, posed: PosedScene) -> Objective | None:
 def judge_hand(setup: TrackSetup, seen: ViewHands, posed: PosedScene, hand: int) -> tuple[bool, bool]:
     """Whether a fitted hand is to be believed, and whether it is to be followed from where it is.
 
-    Two views must agree with it to be believed, or one where it is outside of all other images.
+    Two views must agree with it to be believed, or one where it is outside of all other images. A hand that is outside
+    of all of them is not.
     """
     apart = seen.measure(posed, hand, setup.names[hand])
     inside = sum(_is_inside(posed, hand, camera) for camera in seen.cameras)
-    is_held = int(np.count_nonzero(apart < HOLDS)) >= min(2, max(1, inside))
+    is_held = inside > 0 and int(np.count_nonzero(apart < HOLDS)) >= min(2, inside)
     return is_held, is_held or bool(np.any(apart < FOLLOWS))
 
 

@@ -85,6 +85,18 @@ def test_fingertips_that_people_marked_are_found(detector: HandDetector, shared_
 
 
 @pytest.mark.shared_data
+def test_a_red_tool_is_no_hand_in_a_larger_square_and_hands_are(detector: HandDetector, shared_data: Path) -> None:
+    session = shared_data / "caliscope_sessions" / "charuco_calibration_2_cam"
+    video = cv2.VideoCapture(str(session / "recordings" / "recording_1" / "cam_0.mp4"))
+    told = {}
+    for frame in (20, 58, 64, 70):
+        video.set(cv2.CAP_PROP_POS_FRAMES, frame)
+        image = np.ascontiguousarray(video.read()[1][..., ::-1])
+        told[frame] = [detector.sees_wider(image, hand) for hand in detector.find(image, turns=(0, 1, 2, 3))]
+    assert told == {20: [True, True], 58: [False], 64: [False], 70: [True, True]}
+
+
+@pytest.mark.shared_data
 def test_what_is_refused_is_not_given_back(detector: HandDetector, ball: list[Image]) -> None:
     (hand,) = detector.find(ball[0], 1)
     assert detector.find(ball[0], 1, [hand], accept=lambda _: False) == []

@@ -130,6 +130,12 @@ def test_one_view_is_enough_where_the_hand_is_outside_of_all_others(pose):
     assert judge_hand(SETUP, alone, SCENE.pose_at(pose), 0) == (True, True)
 
 
+def test_a_hand_outside_of_all_images_is_not_believed_whatever_was_seen(pose):
+    beside = pose + np.r_[1.0, np.zeros(HAND.num_dofs - 1)]
+    seen = see(beside, CAMERAS[:1])
+    assert judge_hand(SETUP, seen, SCENE.pose_at(beside), 0) == (False, True)
+
+
 def test_views_with_depth_that_show_the_scene_have_a_term_each_and_the_joints_stay(pose):
     away = replace(CAMERAS[2], T_world_camera=se3.exp(np.array([5.0, 0, 0, 0, 0, 0])))
     views = [with_depth(pose, CAMERAS[0]), *blank(CAMERAS[1:2]), with_depth(pose, away)]

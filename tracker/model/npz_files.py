@@ -113,7 +113,7 @@ def write_plain_npz(path: Path, arrays: dict[str, np.ndarray]) -> None:
     temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_ident()}.tmp")
     try:
         with temporary.open("wb") as file:
-            file.write(pack_npz(arrays, 9))
+            file.write(pack_npz(arrays, 6))
             file.flush()
             os.fsync(file.fileno())
         os.replace(temporary, path)

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.camera import Camera
+from tracker.capture.exposure import brighten, brighten_frame
 from tracker.capture.frame import CameraFrame, Frame
 from tracker.capture.sequence import Sequence
 from tracker.detection import Forest, OwnDetector, load_detector, save_forest
@@ -120,7 +121,7 @@ class TrackSetup:
 
     def read(self, sequence: Sequence, index: int) -> tuple[Frame, Camera]:
         """A frame as an ideal pinhole camera sees it, and that camera."""
-        return undistort(sequence.frame(index, self.camera_id), sequence.camera(self.camera_id))
+        return undistort(brighten_frame(sequence.frame(index, self.camera_id)), sequence.camera(self.camera_id))
 
     def project_hands(self, pose: npt.NDArray[np.float64], camera: Camera) -> dict[str, npt.NDArray[np.float64]]:
         """Name of each hand that is before a camera to its joints (21, 2) px at a pose (D,)."""
@@ -140,9 +141,9 @@ class TrackSetup:
         def read(camera_id: str) -> CameraFrame:
             camera = sequence.camera(camera_id)
             if camera.has_depth and self.options.use_depth:
-                frame, ideal = undistort(sequence.frame(index, camera_id), camera)
+                frame, ideal = undistort(brighten_frame(sequence.frame(index, camera_id)), camera)
                 return CameraFrame(ideal, frame)
-            return CameraFrame(camera, Frame(index, camera_id, sequence.color(index, camera_id), None))
+            return CameraFrame(camera, Frame(index, camera_id, brighten(sequence.color(index, camera_id)), None))
 
         return map_views(read, self.view_ids, threads)
 

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from tracker.capture.exposure import brighten
 from tracker.capture.grey import is_grey
 from tracker.landmarks.detected_hand import DetectedHand
 from tracker.landmarks.network import Run, load_network
@@ -141,8 +142,10 @@ def default_hand_detector(number: int = 0) -> HandDetector:
 
 
 def _brighten(image: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-    """A dark infrared image as bright as the photographs that the networks learnt from."""
-    if not is_grey(image) or image.mean() > DARK:
+    """A dark image as bright as the photographs that the networks learnt from."""
+    if not is_grey(image):
+        return brighten(image)
+    if image.mean() > DARK:
         return image
     return cv2.LUT(image, (255.0 * np.sqrt(np.arange(256) / 255.0)).astype(np.uint8)).astype(np.uint8)
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from benchmarks.baselines.drawing import Drawing
+from benchmarks.baselines.drawing import Canvas, Drawing
 from benchmarks.baselines.moved_scene import MovedScene
 from tracker.fitting.frame_fit import label_scene
 from tracker.model.scene import Scene
@@ -43,7 +43,8 @@ class Discrepancy:
         self.face_bits = label_scene(scene)[1]
         self.bits = int(np.bitwise_or.reduce(self.face_bits))
         self.moved = MovedScene(scene)
-        self.drawing = Drawing(scene, observation.K, observation.T_world_camera, observation.labels.shape)
+        height, width = observation.labels.shape
+        self.drawing = Drawing(scene, (Canvas(observation.K, observation.T_world_camera, (height, width)),))
 
     def __call__(self, pose: Array) -> float:
         """Cost of the pose (D,), mm; 60 for a pose that matches nothing."""

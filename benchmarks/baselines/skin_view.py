@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from benchmarks.baselines.drawing import Canvas
 from tracker.capture.frame import CameraFrame
 from tracker.geometry import se3
 from tracker.observation import Preprocessing
@@ -30,15 +31,13 @@ class SkinView:
     """Every so many pixels of a part of an image, as an ideal pinhole camera would show it.
 
     Attributes:
-        K: (3, 3) px of the thinned part.
-        T_world_camera: (4, 4).
+        canvas: The thinned part.
         is_skin: (H, W) the colour is that of skin.
         edge_mm: (H, W) distance of the nearest edge of the image, mm at the scene's distance.
         step_mm: Of one pixel to the next, mm there.
     """
 
-    K: Array
-    T_world_camera: Array
+    canvas: Canvas
     is_skin: npt.NDArray[np.bool_]
     edge_mm: npt.NDArray[np.float32]
     step_mm: float
@@ -68,10 +67,10 @@ def see_skin(view: CameraFrame, vertices: Array, side: int) -> SkinView | None:
     K = window.K
     pixel_mm = 1e3 * float(np.median(se3.transform(view.camera.T_camera_world, vertices)[:, 2]) / K[0, 0])
     K[:2] /= stride
+    is_skin = np.ascontiguousarray(is_skin[::stride, ::stride])
     return SkinView(
-        K,
-        view.camera.T_world_camera,
-        np.ascontiguousarray(is_skin[::stride, ::stride]),
+        Canvas(K, view.camera.T_world_camera, is_skin.shape),
+        is_skin,
         np.ascontiguousarray(pixel_mm * apart[::stride, ::stride], dtype=np.float32),
         stride * pixel_mm,
     )

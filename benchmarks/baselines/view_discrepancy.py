@@ -40,14 +40,14 @@ class ViewDiscrepancy:
         self.face_models = scene.face_models
         self.is_hand = np.array([model.hand is not None for model in scene.models])
         self.moved = MovedScene(scene)
-        self.drawings = [Drawing(scene, view.K, view.T_world_camera, view.is_skin.shape) for view in views]
+        self.drawing = Drawing(scene, tuple(view.canvas for view in views))
 
     def __call__(self, pose: Array) -> float:
         """Cost of the pose (D,), mm."""
-        vertices = self.moved.move(pose)
+        vertices, drawing = self.moved.move(pose), self.drawing
         total = 0.0
-        for view, drawing in zip(self.views, self.drawings, strict=True):
-            drawing.draw(vertices)
+        for number, view in enumerate(self.views):
+            drawing.draw(vertices, number)
             drawn = drawing.inverse_depth, drawing.face, self.face_models, self.is_hand
             total += compare_view(drawn, view.is_skin, view.edge_mm, view.step_mm)
         return total / len(self.views) + self.joints.measure(vertices)

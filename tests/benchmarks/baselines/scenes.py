@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from benchmarks.baselines.drawing import Drawing
+from benchmarks.baselines.drawing import Canvas, Drawing
 from benchmarks.baselines.skin_view import SkinView
 from tests.tracker.scenes import drawn_hand
 from tracker.capture.camera import Camera
@@ -35,13 +35,14 @@ class SeenHand:
         for camera in self.cameras:
             K = camera.K.copy()
             K[:2] /= 3.0
-            drawing = Drawing(self.scene, K, camera.T_world_camera, (80, 107))
+            canvas = Canvas(K, camera.T_world_camera, (80, 107))
+            drawing = Drawing(self.scene, (canvas,))
             drawing.draw(vertices)
             is_hand = drawing.face >= 0
             depth = np.where(is_hand, 1.0 / np.maximum(drawing.inverse_depth, 0.1), 10.0)
             lowest, highest = (fold(depth, np.ones((3, 3), np.uint8)) for fold in (cv2.erode, cv2.dilate))
             far = cv2.distanceTransform((highest - lowest < 0.01).astype(np.uint8), cv2.DIST_L2, 5)
-            views.append(SkinView(K, camera.T_world_camera, is_hand, STEP_MM * far.astype(np.float32), STEP_MM))
+            views.append(SkinView(canvas, is_hand, STEP_MM * far.astype(np.float32), STEP_MM))
         return views
 
     def photographs(self, pose: np.ndarray) -> list[CameraFrame]:

@@ -19,7 +19,7 @@ def test_skin_is_where_the_hand_is_drawn_and_edges_run_around_it():
         view = see_skin(photograph, vertices, 64)
         assert view is not None
         assert 32 < max(view.is_skin.shape) <= 64
-        drawing = Drawing(hand.scene, view.K, view.T_world_camera, view.is_skin.shape)
+        drawing = Drawing(hand.scene, (view.canvas,))
         drawing.draw(vertices)
         is_drawn = drawing.face >= 0
         both, either = np.count_nonzero(is_drawn & view.is_skin), np.count_nonzero(is_drawn | view.is_skin)

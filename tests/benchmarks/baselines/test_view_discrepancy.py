@@ -56,19 +56,19 @@ def test_it_grows_as_a_finger_bends(hand):
     assert np.all(np.diff(costs) > 0.0)
 
 
-def test_edges_tell_of_a_finger_before_the_palm_where_silhouettes_do_not(hand):
+def test_where_the_silhouette_is_right_the_distance_of_edges_is_all_it_costs(hand):
     views = hand.maps(hand.pose)
     nowhere = [replace(view, edge_mm=np.full_like(view.edge_mm, 30.0)) for view in views]
     step = views[0].step_mm
     assert cost_of(hand, nowhere)(hand.pose) == pytest.approx(30.0 - 0.5 * step)
 
 
-def test_skin_that_another_model_hides_is_asked_for_of_nobody(hand):
-    """An object is drawn before the hand: its pixels are no hand's, and skin there counts against the pose."""
-    model = replace(hand.scene.models[0], hand=None)
-    as_object = Scene((model,))
-    views = hand.maps(hand.pose)
-    cost = ViewDiscrepancy(as_object, views, JointRays.of(as_object, NO_JOINTS, ("ball",)))
+def test_an_object_is_no_hand_and_skin_where_it_is_drawn_counts_against_the_pose(hand):
+    as_object = Scene((replace(hand.scene.models[0], hand=None),))
+    cost = ViewDiscrepancy(as_object, hand.maps(hand.pose), JointRays.of(as_object, NO_JOINTS, ("ball",)))
     assert cost(hand.pose) == SILHOUETTE_WEIGHT
-    empty = [replace(view, is_skin=np.zeros_like(view.is_skin)) for view in views]
-    assert ViewDiscrepancy(hand.scene, empty, cost.joints)(hand.pose) == SILHOUETTE_WEIGHT
+
+
+def test_a_hand_drawn_where_no_skin_is_seen_costs_the_whole_silhouette(hand):
+    empty = [replace(view, is_skin=np.zeros_like(view.is_skin)) for view in hand.maps(hand.pose)]
+    assert cost_of(hand, empty)(hand.pose) == SILHOUETTE_WEIGHT

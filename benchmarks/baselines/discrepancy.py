@@ -6,13 +6,11 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from benchmarks.baselines.drawing import Canvas, Drawing
+from benchmarks.baselines.moved_scene import MovedScene
 from tracker.fitting.frame_fit import label_scene
-from tracker.geometry import se3
-from tracker.model.kinematics import move_bones_into
 from tracker.model.scene import Scene
-from tracker.model.skinning import skin_into
 from tracker.observation import Observation
-from tracker.rendering.zbuffer import project_into, rasterize_into
 
 Array = npt.NDArray[np.float64]
 
@@ -38,37 +36,21 @@ class Discrepancy:
     Differs from the paper: a drawn pixel without depth does not match, for what lies behind the hand is cut away here
     as if it had none; a drawn pixel hidden by something nearer that no model claims counts neither way; the penalty of
     neighbouring fingers that cross is left to the joint limits.
-
-    The drawing is that of `render_view` without normals, into buffers used again for every pose.
     """
 
     def __init__(self, scene: Scene, observation: Observation) -> None:
-        arrays = scene.arrays
-        height, width = observation.labels.shape
-        self.scene, self.observation = scene, observation
+        self.observation = observation
         self.face_bits = label_scene(scene)[1]
         self.bits = int(np.bitwise_or.reduce(self.face_bits))
-        self.T_camera_world = se3.inverse(observation.T_world_camera)
-        self.Ms = np.zeros((len(arrays.parents), 3, 4))
-        self.twists = np.zeros((scene.num_dofs, 6))
-        self.vertices = np.zeros((len(arrays.vertices), 3))
-        self.bone_vertices = np.zeros((*arrays.weights.shape, 3))
-        self.projected = np.zeros((len(arrays.vertices), 3))
-        self.inverse_depth = np.zeros((height, width))
-        self.face = np.full((height, width), -1, dtype=np.int32)
+        self.moved = MovedScene(scene)
+        height, width = observation.labels.shape
+        self.drawing = Drawing(scene, (Canvas(observation.K, observation.T_world_camera, (height, width)),))
 
     def __call__(self, pose: Array) -> float:
         """Cost of the pose (D,), mm; 60 for a pose that matches nothing."""
-        arrays, K = self.scene.arrays, self.observation.K
-        self.inverse_depth.fill(0.0)
-        self.face.fill(-1)
-        move_bones_into(self.Ms, self.twists, arrays, pose)
-        skin_into(self.vertices, self.bone_vertices, self.scene.surface_at(self.Ms), arrays, self.Ms)
-        in_camera = self.vertices @ self.T_camera_world[:3, :3].T + self.T_camera_world[:3, 3]
-        project_into(self.projected, in_camera, K[0, 0], K[1, 1], K[0, 2], K[1, 2])
-        rasterize_into(self.inverse_depth, self.face, self.projected, arrays.faces, self.scene.open_faces)
-        seen = self.observation
-        return compare(self.inverse_depth, self.face, self.face_bits, seen.depth, seen.labels, self.bits)
+        drawing, seen = self.drawing, self.observation
+        drawing.draw(self.moved.move(pose))
+        return compare(drawing.inverse_depth, drawing.face, self.face_bits, seen.depth, seen.labels, self.bits)
 
 
 @njit(cache=True, nogil=True)

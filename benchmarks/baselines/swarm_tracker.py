@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from benchmarks.baselines.discrepancy import Discrepancy
-from benchmarks.baselines.swarm import Bounds, Found, search_with_swarm
+from benchmarks.baselines.pose_search import search_pose
 from benchmarks.baselines.swarm_options import SwarmOptions
 from tracker.capture.sequence import Sequence
 from tracker.fitting.frame_fit import draw
@@ -18,7 +18,6 @@ from tracker.fitting.measure_quality import measure_quality
 from tracker.fitting.quality import Quality
 from tracker.fitting.region import region_around
 from tracker.fitting.setup import TrackSetup
-from tracker.model.scene import Scene
 from tracker.observation import Observation, observe
 from tracker.tracking.chunk import TrackChunk
 from tracker.tracking.frame_result import FrameResult
@@ -65,22 +64,6 @@ def track_with_swarm(
     return TrackChunk.of(results)
 
 
-def search_pose(
-    scene: Scene,
-    seen: Observation,
-    start: Array,
-    options: SwarmOptions,
-    rng: np.random.Generator,
-    deadline: float | None,
-) -> tuple[Array, Found]:
-    """The pose (D,) within the joint limits that a swarm around the pose `start` finds in an observation."""
-    cost = Discrepancy(scene, thin_to(seen, options.side))
-    bounds = _bounds(scene, options, start)
-    center = np.where(_is_root(scene), 0.0, start)
-    found = search_with_swarm(lambda place: cost(_pose_at(scene, start, place)), center, bounds, options, rng, deadline)
-    return _pose_at(scene, start, found.place), found
-
-
 def thin_to(seen: Observation, side: int) -> Observation:
     """The observation with at most `side` pixels along its longer side."""
     return seen.thin(max(1, -(-max(seen.labels.shape) // side)))
@@ -99,7 +82,8 @@ def _follow_frame(sequence: Sequence, setup: TrackSetup, pose: Array, index: int
     deadline = None if options.seconds_per_frame is None else started + options.seconds_per_frame
     rng = np.random.default_rng((options.seed, index))
     searched_at = perf_counter()
-    pose, found = search_pose(setup.scene, seen, pose, options, rng, deadline)
+    cost = Discrepancy(setup.scene, thin_to(seen, options.side))
+    pose, found = search_pose(setup.scene, cost, pose, options, rng, deadline)
     ended = perf_counter()
     stages["searching"] = ended - searched_at
     costs = tuple({"swarm": cost} for cost in found.history)
@@ -111,32 +95,3 @@ def _measure(setup: TrackSetup, pose: Array, seen: Observation) -> Quality | Non
     view = draw(setup.scene.pose_at(pose), seen)
     hands = [measure_quality(view, seen, index) for index, model in enumerate(setup.models) if model.hand]
     return min(hands, key=lambda quality: quality.score, default=None)
-
-
-def _is_root(scene: Scene) -> npt.NDArray[np.bool_]:
-    is_root = np.ones(scene.num_dofs, dtype=np.bool_)
-    is_root[scene.angle_dofs] = False
-    return is_root
-
-
-def _pose_at(scene: Scene, start: Array, place: Array) -> Array:
-    """The pose (D,) of a place (D,): roots are increments to those of `start`, joint angles are themselves."""
-    angles = scene.angle_dofs
-    step = place.copy()
-    step[angles] = 0.0
-    pose = scene.retract(start, step)
-    pose[angles] = place[angles]
-    return pose
-
-
-def _bounds(scene: Scene, options: SwarmOptions, start: Array) -> Bounds:
-    """Joint limits for angles, and the reach around `start` for roots and for angles without limits."""
-    reach, spread = np.full(scene.num_dofs, options.reach_turn), np.full(scene.num_dofs, options.spread_angle)
-    for where in scene.pose_slices:
-        reach[where.start : where.start + 3] = options.reach_shift
-        spread[where.start : where.start + 3] = options.spread_shift
-        spread[where.start + 3 : where.start + 6] = options.spread_turn
-    center = np.where(_is_root(scene), 0.0, start)
-    lower = np.where(np.isfinite(scene.lower), scene.lower, center - reach)
-    upper = np.where(np.isfinite(scene.upper), scene.upper, center + reach)
-    return Bounds(lower, upper, spread, scene.angle_dofs)

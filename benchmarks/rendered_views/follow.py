@@ -1,7 +1,8 @@
 """Follow both hands through a rendered recording with some of the terms of [T16] Table 15.
 
 The frame is fitted by the tracker's own `fit_views`; without S, where that has no joints to come near with, contours
-are looked for farther off first. As in the paper the first pose is given; what was lost is not looked for again.
+are looked for farther off first. As in the paper the first pose is given; what was lost is not looked for again. The
+swarm gets the same images and joints, and starts each frame where the one before ended.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from benchmarks.baselines.swarm_options import SwarmOptions
+from benchmarks.baselines.view_swarm import search_views
 from benchmarks.rendered_views.setting import TIPS, Setting
 from benchmarks.rendered_views.shown import Shown
 from tracker.capture.frame import CameraFrame, Frame
@@ -86,16 +89,21 @@ def follow(shown: Shown, setting: Setting, moments: range | None = None) -> Foll
     for index in moments:
         frames, covers = _read(shown, cameras, index, noise, setting.seed)
         started = perf_counter()
-        predicted = state.predict(scene, bends=len(cameras) >= PLENTY)
+        predicted = state.pose if setting.particles else state.predict(scene, bends=len(cameras) >= PLENTY)
         objective = Objective(terms={"collision": Collision()} if setting.has("C") else {})
         if setting.has("O") and before is not None:
             flow = _find_flow(scene.pose_at(state.pose), cameras, before, (frames, covers), setting.flow_weight)
             if flow is not None:
                 objective = replace(objective, terms={**objective.terms, "flow": flow})
+        seen = ViewHands((), ())
         if setting.has("S"):
             seen = _see(shown, setup, setting, cameras, frames, noise, scene.pose_at(predicted))
             followed = {hand: setup.names[hand] for hand in setup.hands}
             seen = seen.without_jumps(scene.pose_at(predicted), followed, sequence.fps)
+        if setting.particles:
+            how = SwarmOptions(particles=setting.particles, seed=setting.seed)
+            pose = search_views(setup, seen, _pair(cameras, frames), predicted, how)
+        elif setting.has("S"):
             pose = fit_views(setup, objective, seen, _pair(cameras, frames), predicted, setting.iterations).pose
         else:
             pose = _fit_contours(setup, objective, cameras, frames, predicted, setting.iterations)

@@ -2,7 +2,8 @@
 
 NAILS.npz is what `handloom train-detector --what nails` wrote. Rendered hands with nails are tracked without depth and
 without annotation, with the very hands that were drawn, by the hand detector and contours, with nails and without;
-errors are of all joints, and of fingertips, against the truth. `--write` writes `benchmarks/results/nails.md`.
+errors are of all joints, and of fingertips, against the truth, in the frames that were not called lost. `--write`
+writes `benchmarks/results/nails.md`.
 """
 
 from __future__ import annotations
@@ -51,31 +52,48 @@ def render(motion: str, folder: Path) -> Sequence:
 
 
 def follow(sequence: Sequence, cameras: int, detector: OwnDetector | None) -> tuple[np.ndarray, float]:
-    """(T, 21) distances of all joints from the truth, mm, those of lost frames too, and median ms a frame."""
+    """(T, 21) distances of all joints from the truth, mm, NaN in lost frames, and median ms a frame."""
     ids = ",".join(camera.id for camera in sequence.cameras[:cameras])
     options = TrackOptions(calibrate=False, cameras=ids, use_depth=False)
     setup, state = start_tracking(sequence, options, {"right": default_hand("right")}, detector=detector)
     _, chunk = track_frames(sequence, setup, state, range(sequence.frame_count))
     track = join_chunks(sequence, setup, [chunk])
     truth = load_truth(sequence.folder / "truth.npz").joints_3d
-    return 1000.0 * np.linalg.norm(track.joints_3d - truth, axis=2), 1000.0 * float(np.median(track.seconds[1:]))
+    apart = 1000.0 * np.linalg.norm(track.joints_3d - truth, axis=2)
+    apart[track.status == "lost"] = np.nan
+    return apart, 1000.0 * float(np.median(track.seconds[1:]))
 
 
 def compare(motion: str, recording: Sequence, cameras: int, nails: OwnDetector) -> list[str]:
     """Two rows: without nails and with them, and what they change."""
-    rows, before = [], np.zeros(0)
+    rows, before = [], np.zeros((0, 21))
     for detector in (None, nails):
         apart, ms = follow(recording, cameras, detector)
-        mean, tips, change = apart.mean(axis=1), apart[:, list(TIPS)], ""
-        if detector is not None:
-            low, high = find_interval(mean - before)
-            change = f"{np.mean(mean - before):+.2f} ({low:+.2f} to {high:+.2f})"
-        before = mean
         rows.append(
-            f"| {motion} | {cameras} | {'no' if detector is None else 'yes'} | "
-            f"{apart.mean():.2f} ({apart.max():.0f}) | {tips.mean():.2f} ({tips.max():.0f}) | {ms:.0f} | {change} |"
+            f"| {motion} | {cameras} | {'no' if detector is None else 'yes'} | {describe(apart)} | {ms:.0f} | "
+            f"{'' if detector is None else describe_change(before, apart)} |"
         )
+        before = apart
     return rows
+
+
+def describe(apart: np.ndarray) -> str:
+    """Cells of a row: lost frames, mean and largest error of joints and of tips (T, 21), mm, in the other frames."""
+    is_held = np.isfinite(apart).all(axis=1)
+    cells = [f"{np.count_nonzero(~is_held)} of {len(apart)}"]
+    for own in (apart[is_held], apart[is_held][:, list(TIPS)]):
+        cells.append(f"{own.mean():.2f} ({own.max():.0f})" if own.size else "-")
+    return " | ".join(cells)
+
+
+def describe_change(before: np.ndarray, after: np.ndarray) -> str:
+    """By how much the mean of the joints (T, 21), mm, changes, over the frames that neither lost, and its interval."""
+    change = after.mean(axis=1) - before.mean(axis=1)
+    change = change[np.isfinite(change)]
+    if not len(change):
+        return "-"
+    low, high = find_interval(change)
+    return f"{np.mean(change):+.2f} ({low:+.2f} to {high:+.2f})"
 
 
 def main() -> None:
@@ -88,9 +106,9 @@ def main() -> None:
     given = parser.parse_args()
     nails = load_detector(given.nails)
     rows = [
-        "| motion | cameras | nails | joints, mean mm (largest) | tips, mean mm (largest) | median ms | "
+        "| motion | cameras | nails | lost | joints, mean mm (largest) | tips, mean mm (largest) | median ms | "
         "change, 95 % interval |",
-        "|---|---|---|---|---|---|---|",
+        "|---|---|---|---|---|---|---|---|",
     ]
     with tempfile.TemporaryDirectory() as temporary:
         for motion in given.motions:
@@ -100,6 +118,7 @@ def main() -> None:
                 print(*rows[-2:], sep="\n", flush=True)
     if given.write:
         command = "python -m benchmarks.rendered_views.nails NAILS.npz --write"
+        rows.append("\nErrors and changes are of frames that were not called lost.")
         write_result("nails", "Finger nails in colour views", command, "\n".join(rows))
 
 

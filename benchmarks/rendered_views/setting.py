@@ -20,7 +20,8 @@ class Setting:
         detected: Share of the visible joints that are detected.
         iterations: Of a frame, before those with contours; without S all have contours.
         flow_weight: Of O.
-        seed: Of the noise.
+        seed: Of the noise, and of the swarm.
+        particles: Of a swarm that searches by E and S in place of our fit; 0 for ours.
     """
 
     features: str = "ECOS"
@@ -31,6 +32,7 @@ class Setting:
     iterations: int = 10
     flow_weight: float = 0.05
     seed: int = 0
+    particles: int = 0
 
     def has(self, letter: str) -> bool:
         return letter in self.features
@@ -40,5 +42,5 @@ class Setting:
         """A name for files."""
         return (
             f"{self.features}_{self.cameras}_{'noisy' if self.is_noisy else 'clean'}_{self.joints}_{self.detected:g}_"
-            f"{self.iterations}_{self.flow_weight:g}_{self.seed}"
+            f"{self.iterations}_{self.flow_weight:g}_{self.seed}{f'_swarm{self.particles}' if self.particles else ''}"
         )

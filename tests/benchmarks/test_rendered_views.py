@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from benchmarks.rendered_views.errors import Errors, find_interval
-from benchmarks.rendered_views.page import BASE, list_settings, write_page
+from benchmarks.rendered_views.nails import describe, describe_change
+from benchmarks.rendered_views.page import BASE, SWARMS, list_settings, write_page
+from benchmarks.rendered_views.setting import Setting
 
 
 def test_errors_are_distances_of_joints_and_angles_of_bones(rng):
@@ -54,3 +56,28 @@ def test_a_page_tells_the_errors_of_joints_and_ball_by_detection_rate_beside_wha
     rows = [line for line in lines[start:] if line.startswith(("| 30% ", "| 70% "))]
     assert [row.split(" | ")[1] for row in rows] == ["3.00", "2.00"]
     assert [row.removesuffix(" |").split(" | ")[-1] for row in rows] == ["6.00 (6.0)", "4.00 (4.0)"]
+
+
+def test_the_swarm_stands_below_our_terms_beside_the_papers(tmp_path, rng):
+    truth = rng.uniform(-0.1, 0.1, (4, 42, 3))
+    for name in ("crossing", "passing"):
+        for particles, off in ((64, 0.005), (128, 0.004)):
+            path = tmp_path / f"{name}_4_64x48" / f"{SWARMS[particles].key}.npz"
+            path.parent.mkdir(exist_ok=True)
+            ball = np.zeros((4, int(name == "passing"), 3))
+            np.savez(path, joints=truth + np.array([0.0, off, 0.0]), truth=truth, ball=ball, true_ball=ball)
+    rows = [line for line in write_page(tmp_path, 4, (64, 48)).splitlines() if line.startswith("| swarm, ")]
+    assert [row.split(" | ")[1] for row in rows] == ["5.00", "4.00"]
+    assert [row.removesuffix(" |").split(" | ")[-4] for row in rows] == ["4.86", "4.67"]
+    assert "swarm" not in Setting().key
+
+
+def test_lost_frames_are_counted_and_their_errors_are_not():
+    apart = np.full((10, 21), 2.0)
+    apart[0] = np.nan
+    assert describe(apart) == "1 of 10 | 2.00 (2) | 2.00 (2)"
+    assert describe(np.full((3, 21), np.nan)) == "3 of 3 | - | -"
+    after = apart - 0.5
+    after[3] = np.nan
+    assert describe_change(apart, after) == "-0.50 (-0.50 to -0.50)"
+    assert describe_change(apart, np.full((10, 21), np.nan)) == "-"

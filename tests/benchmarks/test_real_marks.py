@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.real_marks.agreement import compare
+from benchmarks.real_marks.changed import CHANGES, Change
 from benchmarks.real_marks.corrections import count_corrections
 from benchmarks.real_marks.marked import FOLDER, MarkedRecording
 
@@ -68,3 +69,12 @@ def test_a_joint_off_its_mark_or_missing_needs_a_correction_and_one_that_the_pas
     assert np.all(shared <= marked) and shared.sum() < marked.sum()
     _, missing = count_corrections({"cam0": recording}, lambda frame, camera: np.full((21, 2), np.nan), 0)
     np.testing.assert_array_equal(missing, marked)
+
+
+@pytest.mark.parametrize("change", CHANGES, ids=lambda change: change.name)
+def test_a_mark_in_a_changed_image_lies_on_the_same_pixel(change: Change):
+    image = np.arange(5 * 7).reshape(5, 7)
+    points = np.array([[0, 0], [6, 4], [2, 3]])
+    columns, rows = change.of_points(points, 7, 5).T
+    assert change.of_image(image)[rows, columns].tolist() == image[points[:, 1], points[:, 0]].tolist()
+    assert change.is_mirrored == (change.name == "mirrored")

@@ -66,8 +66,6 @@ def compare(moving: MovingPerson, scans: Path, frames: Path, count: int) -> dict
                 shown_mm[t, k] = apart[seen].mean()
     turns = np.array([_turns(fingers[t], fingers[t - 1]) for t in range(1, count)])
     turns = np.concatenate([np.zeros((1, 30)), turns]).reshape(count, 2, 15)
-    inside = moving.is_missing[:count]
-    inside = inside & np.roll(inside, 1, axis=0)
     back = find_recoveries(moving.is_missing[:count], shown_mm)
     return {
         "frames": count,
@@ -78,7 +76,7 @@ def compare(moving: MovingPerson, scans: Path, frames: Path, count: int) -> dict
         "hands_right": float(np.nanmean(np.where(np.isnan(shown_mm), np.nan, shown_mm < RIGHT_MM))),
         "gaps": len(back),
         "frames_until_right": max(back, default=0),
-        "jump_in_gaps_deg": float(turns[inside].max(initial=0.0)),
+        "jump_in_gaps_deg": float(turns[moving.is_missing[:count]].max(initial=0.0)),
         "jump_anywhere_deg": float(turns.max()),
         "seconds_a_frame": float(np.median(seconds)),
     }

@@ -26,6 +26,7 @@ from server.imports import routes as imports
 from server.imports.lifespan import clean_imports
 from server.jobs import old_routes as old_jobs
 from server.jobs import routes as jobs
+from server.lineage import routes as lineage
 from server.live import routes as live
 from server.moving_scans import body_set_routes as body_sets
 from server.moving_scans import registration_routes as moving_registrations
@@ -34,7 +35,6 @@ from server.quality import queue_routes as quality_queue
 from server.quality import routes as quality
 from server.refinements import routes as refinements
 from server.registrations import decision_routes as decisions
-from server.registrations import lineage_routes as lineage
 from server.registrations import model_routes
 from server.registrations import routes as registrations
 from server.registrations import training_set_routes as training_sets

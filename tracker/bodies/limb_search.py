@@ -41,11 +41,10 @@ KNEES_DEG = (5.0, 60.0)
 
 @dataclass(frozen=True, eq=False)
 class Limb:
-    """An arm or a leg of the left or right side: its fit, the first two joints that bend, the rest of the body."""
+    """An arm or a leg of the left or right side: its fit, its joints from the trunk on, the rest of the body."""
 
     fit: BodyFit
-    first: int
-    second: int
+    joints: list[int]
     sign: float
     is_arm: bool
     rest: Ints
@@ -66,6 +65,10 @@ class LimbSearch:
         self.limbs = [
             _make_limb(model, prior, mixture, size, side, is_arm) for is_arm in (True, False) for side in SIDES
         ]
+        self.numbers = np.zeros(len(model.template), dtype=np.int64)
+        """(V,) of the limb that a vertex is of, from 1; 0 for the rest of the body."""
+        for number, limb in enumerate(self.limbs, start=1):
+            self.numbers[np.setdiff1d(np.arange(len(self.numbers)), limb.rest)] = number
 
     def improve(self, state: BodyState, scan: ScanPoints) -> tuple[BodyState, bool]:
         """The state with limbs that lie on the scan better, and whether any does."""
@@ -98,7 +101,7 @@ def _make_limb(model, prior, mixture, size, side: str, is_arm: bool) -> Limb:
     columns = np.concatenate([joint_columns(joint) for joint in joints])
     fit = BodyFit(model, prior, mixture, size, ids, columns)
     sign = 1.0 if side == "left" else -1.0
-    return Limb(fit, joints[0], joints[1], sign, is_arm, rest)
+    return Limb(fit, joints, sign, is_arm, rest)
 
 
 def _starts(limb: Limb, state: BodyState) -> list[BodyState]:
@@ -108,8 +111,9 @@ def _starts(limb: Limb, state: BodyState) -> list[BodyState]:
             turns = [0.0, -limb.sign * b, -limb.sign * a] if limb.is_arm else [a, 0.0, limb.sign * b]
             second = [0.0, -limb.sign * bent, 0.0] if limb.is_arm else [bent, 0.0, 0.0]
             pose = state.pose.copy()
-            pose[limb.first] = Rotation.from_euler("xyz", np.radians(turns)).as_rotvec()
-            pose[limb.second] = np.radians(second)
+            pose[limb.joints] = 0.0  # a foot that lies folded back would else stay so
+            pose[limb.joints[0]] = Rotation.from_euler("xyz", np.radians(turns)).as_rotvec()
+            pose[limb.joints[1]] = np.radians(second)
             starts.append(replace(state, pose=pose))
     return starts
 

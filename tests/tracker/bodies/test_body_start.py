@@ -8,11 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from tests.tracker.bodies.posed_bodies import A_POSE, MODEL, apart, points_of, stand
+from tests.tracker.bodies.posed_bodies import A_POSE, MODEL, apart, points_of, stand, turned
 from tracker.bodies.body_fit import BodyFit
 from tracker.bodies.body_prior import make_body_prior
-from tracker.bodies.body_start import APART, BodyStart, Stiff, _kabsch, _turns, start_poses
+from tracker.bodies.body_start import APART, NEAR, SETTLED, BodyStart, Stiff, _kabsch, _turns, start_poses
 from tracker.bodies.hand_mixture import default_mixture
+from tracker.registration.scan_points import ScanPoints
 
 
 @pytest.fixture(scope="module")
@@ -81,6 +82,17 @@ def test_a_body_that_lies_on_its_scan_is_settled_and_one_beside_it_is_not(start)
     scan = points_of(state)
     assert start.is_settled(_evaluated(start, state), scan)
     assert not start.is_settled(_evaluated(start, facing(0.0, (0.06, 0, 0.06))), scan)
+
+
+def test_a_body_of_which_one_foot_is_folded_back_is_not_settled(start) -> None:
+    folded = stand(A_POSE + turned(right_ankle=(-108, 0, 0), right_foot=(34, 0, 0)))
+    surface = stand().posed(MODEL).vertices[start.fit.inner[:3000]]
+    surface = surface[surface[:, 1] > surface[:, 1].min() + 0.03]  # nobody sees the soles of one who stands
+    scan = ScanPoints(surface, np.zeros_like(surface))
+    matches = start.fit.search.match(folded.posed(MODEL).vertices, surface, np.zeros_like(surface), reach=1.0)
+    assert np.mean(np.abs(matches.offsets) > NEAR) < SETTLED, "a small part of the body"
+    assert start.is_settled(_evaluated(start, stand()), scan)
+    assert not start.is_settled(_evaluated(start, folded), scan)
 
 
 def test_starts_that_are_followed_differ_in_pose_or_direction_and_no_direction_has_more_than_three(start) -> None:

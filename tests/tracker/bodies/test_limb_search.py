@@ -11,6 +11,7 @@ from tests.tracker.bodies.posed_bodies import A_POSE, LIMIT, MODEL, apart, point
 from tracker.bodies.body_prior import make_body_prior
 from tracker.bodies.hand_mixture import default_mixture
 from tracker.bodies.limb_search import FEW, LimbSearch, _starts
+from tracker.model.mano_files import BODY_JOINTS
 from tracker.registration.scan_points import ScanPoints
 
 
@@ -30,7 +31,7 @@ def test_limbs_are_arms_and_legs_of_both_sides_and_share_no_vertex(search) -> No
 def test_starts_of_the_right_side_are_the_mirror_images_of_the_lefts(search) -> None:
     for left, right in (search.limbs[:2], search.limbs[2:]):
         for mine, other in zip(_starts(left, stand()), _starts(right, stand()), strict=True):
-            for a, b in ((left.first, right.first), (left.second, right.second)):
+            for a, b in zip(left.joints, right.joints, strict=True):
                 assert np.allclose(mine.pose[a] * np.array([1.0, -1.0, -1.0]), other.pose[b], atol=1e-12)
 
 
@@ -49,6 +50,15 @@ def test_an_arm_that_was_thought_lowered_is_found_where_it_is_raised_ahead(left_
     arm = np.setdiff1d(np.arange(len(MODEL.template)), rest)
     assert changed and apart(found, truth, arm) < 0.02 < 0.2 < apart(stand(), truth, arm), "m"
     assert apart(found, truth, rest) < 1e-4, "what was right stays"
+
+
+def test_a_foot_that_is_folded_back_is_found_where_it_stands(search) -> None:
+    truth, folded = stand(), stand(A_POSE + turned(right_ankle=(-108, 0, 0), right_foot=(34, 0, 0)))
+    foot = np.flatnonzero(MODEL.skinning_weights.argmax(axis=1) == BODY_JOINTS.index("right_foot"))
+    own = copy(search)
+    own.limbs = search.limbs[3:]
+    found, changed = own.improve(folded, points_of(truth).first(3000))
+    assert changed and apart(found, truth, foot) < 0.02 < 0.15 < apart(folded, truth, foot), "m"
 
 
 def test_a_limb_in_its_place_is_left_there(left_arm) -> None:

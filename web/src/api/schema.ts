@@ -2066,7 +2066,7 @@ export interface paths {
         };
         /**
          * Get Lineage
-         * @description From scan to model, by registration, decision and training set: where a thing comes from, what came of it.
+         * @description From scan to model or set of bodies, by registration and decision: where a thing comes from, what came of it.
          */
         get: operations["get_lineage"];
         put?: never;
@@ -7396,13 +7396,13 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model";
+            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model" | "moving_scan" | "moving_registration" | "stretch_decision" | "body_set";
             /** Total */
             total: number;
         };
         /**
          * LineageItem
-         * @description One thing on the way from a scan to a model.
+         * @description One thing on the way from a scan to a model, or to a set of bodies.
          */
         LineageItem: {
             /**
@@ -7424,7 +7424,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model";
+            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model" | "moving_scan" | "moving_registration" | "stretch_decision" | "body_set";
             /** Name */
             name: string;
         };
@@ -21054,7 +21054,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                kind: "scan" | "registration" | "decision" | "training_set" | "hand_model";
+                kind: "scan" | "registration" | "decision" | "training_set" | "hand_model" | "moving_scan" | "moving_registration" | "stretch_decision" | "body_set";
                 id: string;
             };
             cookie?: never;

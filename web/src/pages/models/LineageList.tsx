@@ -11,11 +11,16 @@ const KINDS: Record<LineageKind, { one: string; many: string; icon: typeof IconS
   decision: { one: "decision", many: "decisions", icon: IconChecks },
   training_set: { one: "training set", many: "training sets", icon: IconPackage },
   hand_model: { one: "hand model", many: "hand models", icon: IconHandStop },
+  moving_scan: { one: "moving scan", many: "moving scans", icon: IconScan },
+  moving_registration: { one: "registration", many: "registrations", icon: IconStack2 },
+  stretch_decision: { one: "decision", many: "decisions", icon: IconChecks },
+  body_set: { one: "kept set", many: "kept sets", icon: IconPackage },
 };
 const SHOWN = 5;
 
 function addressOf({ kind, id }: LineageItem): string | null {
   if (kind === "scan") return `/scans/${id}`;
+  if (kind === "moving_scan") return `/scans/moving/${id}`;
   if (kind === "registration") return `/curate?queue=all&registration=${id}`;
   return kind === "hand_model" ? `/models/${id}` : null;
 }

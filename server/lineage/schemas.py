@@ -8,11 +8,21 @@ from typing import Literal
 
 from pydantic import BaseModel, Field
 
-Kind = Literal["scan", "registration", "decision", "training_set", "hand_model"]
+Kind = Literal[
+    "scan",
+    "registration",
+    "decision",
+    "training_set",
+    "hand_model",
+    "moving_scan",
+    "moving_registration",
+    "stretch_decision",
+    "body_set",
+]
 
 
 class LineageItem(BaseModel):
-    """One thing on the way from a scan to a model."""
+    """One thing on the way from a scan to a model, or to a set of bodies."""
 
     kind: Kind
     id: uuid.UUID

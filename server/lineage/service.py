@@ -1,4 +1,5 @@
-"""Walks the chain scan - registration - decision - training set - model, up and down."""
+"""Walks up and down the chains scan - registration - decision - training set - model, and moving scan - registration -
+decision about a stretch - set of bodies."""
 
 from __future__ import annotations
 
@@ -12,18 +13,17 @@ from sqlalchemy.orm import Session
 from server.access.service import find_names
 from server.errors import NotFoundError
 from server.hand_models.models import HandModelRow
+from server.lineage.schemas import Kind, Lineage, LineageGroup, LineageItem
+from server.lineage.steps import AT_ONCE, Ids, Step, find_results, find_sources
+from server.moving_scans.models import BodySetRow, MovingRegistrationRow, MovingScanRow, StretchDecisionRow
 from server.registrations.decision_models import DecisionRow
-from server.registrations.lineage_schemas import Kind, Lineage, LineageGroup, LineageItem
 from server.registrations.models import RegistrationRow
 from server.registrations.service import is_hidden_from
-from server.registrations.training_set_models import TrainingMemberRow, TrainingSetRow
+from server.registrations.training_set_models import TrainingSetRow
 from server.scans.models import ScanRow
 from tracker import say_count
 
-Ids = set[uuid.UUID]
 MOST_ITEMS = 50
-AT_ONCE = 500
-"""Ids in one query."""
 
 
 @dataclass
@@ -46,8 +46,8 @@ def find_lineage(session: Session, kind: Kind, id_: uuid.UUID, reader_id: uuid.U
     if not of:
         raise NotFoundError(f"There is no {kind.replace('_', ' ')} {id_}.")
     up, down = _Found(), _Found()
-    _walk(session, kind, {id_}, up, _find_sources)
-    _walk(session, kind, {id_}, down, _find_results)
+    _walk(session, kind, {id_}, up, find_sources)
+    _walk(session, kind, {id_}, down, find_results)
     return Lineage(
         of=of[0],
         comes_from=[_describe(session, *group, reader_id) for group in up.ids.items() if group[1]],
@@ -60,7 +60,7 @@ def _walk(
     kind: Kind,
     ids: Ids,
     found: _Found,
-    step: Callable[[Session, Kind, Ids], list[tuple[Kind, list[uuid.UUID | None]]]],
+    step: Callable[[Session, Kind, Ids], Step],
 ) -> None:
     todo: list[tuple[Kind, Ids]] = [(kind, ids)]
     while todo:
@@ -68,62 +68,6 @@ def _walk(
         for reached, more in step(session, at, some):
             if new := found.add(reached, more):
                 todo.append((reached, new))
-
-
-def _pick(session: Session, wanted: object, by: object, ids: Ids) -> list[uuid.UUID | None]:
-    """Values of one column where another is among the ids."""
-    listed = list(ids)
-    return [
-        value
-        for first in range(0, len(listed), AT_ONCE)
-        for value in session.scalars(
-            select(wanted).where(by.in_(listed[first : first + AT_ONCE])).distinct()  # type: ignore[attr-defined,arg-type]
-        )
-    ]
-
-
-def _find_sources(session: Session, kind: Kind, ids: Ids) -> list[tuple[Kind, list[uuid.UUID | None]]]:
-    def pick(wanted: object, by: object) -> list[uuid.UUID | None]:
-        return _pick(session, wanted, by, ids)
-
-    if kind == "hand_model":
-        return [
-            ("training_set", pick(HandModelRow.training_set_id, HandModelRow.id)),
-            ("hand_model", pick(HandModelRow.parent_id, HandModelRow.id)),
-        ]
-    if kind == "training_set":
-        member = TrainingMemberRow
-        return [
-            ("decision", pick(member.decision_id, member.training_set_id)),
-            ("registration", pick(member.registration_id, member.training_set_id)),
-        ]
-    if kind == "decision":
-        return [("registration", pick(DecisionRow.registration_id, DecisionRow.id))]
-    if kind == "registration":
-        row = RegistrationRow
-        return [("scan", pick(row.scan_id, row.id)), ("hand_model", pick(row.model_id, row.id))]
-    return []
-
-
-def _find_results(session: Session, kind: Kind, ids: Ids) -> list[tuple[Kind, list[uuid.UUID | None]]]:
-    def pick(wanted: object, by: object) -> list[uuid.UUID | None]:
-        return _pick(session, wanted, by, ids)
-
-    if kind == "scan":
-        return [("registration", pick(RegistrationRow.id, RegistrationRow.scan_id))]
-    if kind == "registration":
-        return [
-            ("decision", pick(DecisionRow.id, DecisionRow.registration_id)),
-            ("training_set", pick(TrainingMemberRow.training_set_id, TrainingMemberRow.registration_id)),
-        ]
-    if kind == "decision":
-        return [("training_set", pick(TrainingMemberRow.training_set_id, TrainingMemberRow.decision_id))]
-    if kind == "training_set":
-        return [("hand_model", pick(HandModelRow.id, HandModelRow.training_set_id))]
-    return [
-        ("hand_model", pick(HandModelRow.id, HandModelRow.parent_id)),
-        ("registration", pick(RegistrationRow.id, RegistrationRow.model_id)),
-    ]
 
 
 def _describe(session: Session, kind: Kind, ids: Ids, reader_id: uuid.UUID) -> LineageGroup:
@@ -149,6 +93,10 @@ TABLES = {
     "decision": DecisionRow,
     "training_set": TrainingSetRow,
     "hand_model": HandModelRow,
+    "moving_scan": MovingScanRow,
+    "moving_registration": MovingRegistrationRow,
+    "stretch_decision": StretchDecisionRow,
+    "body_set": BodySetRow,
 }
 
 
@@ -158,11 +106,15 @@ class _Names:
     def __init__(self, session: Session, rows: list) -> None:
         scans = {row.scan_id for row in rows if isinstance(row, RegistrationRow)}
         models = {row.model_id for row in rows if isinstance(row, RegistrationRow | DecisionRow)}
-        self._people = find_names(session, (row.account_id for row in rows if isinstance(row, DecisionRow)))
+        decided = (row.account_id for row in rows if isinstance(row, DecisionRow | StretchDecisionRow))
+        self._people = find_names(session, decided)
         query = select(ScanRow.id, ScanRow.name).where(ScanRow.id.in_(scans))
         self._scans = {scan.id: scan.name for scan in session.execute(query)}
         query = select(HandModelRow.id, HandModelRow.name).where(HandModelRow.id.in_(models))
         self._models = {model.id: model.name for model in session.execute(query)}
+        moving = {row.moving_scan_id for row in rows if isinstance(row, MovingRegistrationRow)}
+        query = select(MovingScanRow.id, MovingScanRow.name).where(MovingScanRow.id.in_(moving))
+        self._moving_scans = {scan.id: scan.name for scan in session.execute(query)}
 
     def describe(self, kind: Kind, row: object) -> LineageItem:
         if isinstance(row, ScanRow):
@@ -177,7 +129,17 @@ class _Names:
                 row.name,
                 f"{say_count(row.registration_count, 'registration')}, {say_count(row.subject_count, 'subject')}",
             )
-        else:
-            assert isinstance(row, HandModelRow)
+        elif isinstance(row, HandModelRow):
             name, detail = row.name, f"{row.kind}, round {row.round}"
+        elif isinstance(row, MovingScanRow):
+            name, detail = row.name, f"{row.subject}, {say_count(row.frame_count, 'frame')}"
+        elif isinstance(row, MovingRegistrationRow):
+            name = self._moving_scans[row.moving_scan_id]
+            detail = f"frames {row.first_frame} to {row.last_frame}, prior {row.prior}"
+        elif isinstance(row, StretchDecisionRow):
+            name = f"{row.decision} by {self._people.get(row.account_id, '')}"
+            detail = f"frames {row.first_frame} to {row.last_frame}"
+        else:
+            assert isinstance(row, BodySetRow)
+            name, detail = row.name, say_count(row.frame_count, "frame")
         return LineageItem(kind=kind, id=row.id, name=name, detail=detail, created_at=row.created_at)

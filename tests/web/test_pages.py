@@ -95,6 +95,28 @@ def test_every_page_fits_and_every_control_has_a_name(studio, track, open_page, 
         assert page.evaluate(CUT_CHOICES) == [], f"{name} has choices that are cut off"
 
 
+EMPTY = {
+    "/recordings": ("Recordings", "No recordings yet"),
+    "/calibrations": ("Calibrated cameras", "No cameras are calibrated yet"),
+    "/tracks": ("Tracks", "No tracks yet"),
+    "/scans": ("Scans", "No scans yet"),
+    "/scans/moving": ("Scans", "No moving scans yet"),
+}
+
+
+def test_a_list_without_anything_in_it_keeps_its_heading_and_says_what_to_do(open_page, screenshots):
+    from playwright.sync_api import expect
+
+    page = open_page()
+    lists = re.compile(r"/api/v1/(sequences|calibrations|tracks|scans|moving-scans)(\?.*)?$")
+    page.route(lists, lambda route: route.fulfill(json={"items": [], "next_cursor": None}))
+    for address, (heading, told) in EMPTY.items():
+        page.goto(address)
+        expect(page.get_by_role("heading", level=2)).to_have_text(told)
+        expect(page.get_by_role("heading", level=1)).to_have_text(heading)
+        screenshots.take(page, f"empty{address.replace('/', '-')}")
+
+
 # What of the header is cut off, or not to be hit by a finger.
 CUT_HEADER = """() => [...document.querySelectorAll("header :is(a, button)")]
   .map((element) => [element.getAttribute("aria-label") ?? element.innerText, element.getBoundingClientRect()])

@@ -23,7 +23,7 @@ function Frames({ scan }: { scan: MovingScan }) {
 }
 
 const COLUMNS: readonly Column<MovingScan>[] = [
-  nameColumn("/scans/moving", ({ id }) => movingThumbnailUrl(id)),
+  nameColumn<MovingScan>("/scans/moving", ({ id }) => movingThumbnailUrl(id)),
   subjectColumn(144),
   { head: "Frames", width: 112, isNumber: true, show: (scan) => <Frames scan={scan} /> },
   { head: "Per second", width: 112, isNumber: true, show: ({ fps }) => fps.toLocaleString("en") },
@@ -38,6 +38,7 @@ export default function MovingScansPage() {
   useTitle("Moving scans");
   const [address, setAddress] = useSearchParams();
   const search = address.get("search") ?? undefined;
+  const list = useMovingScans(search);
   const narrow = (text: string | undefined): void => setAddress(text ? { search: text } : {}, { replace: true });
   return (
     <>
@@ -46,7 +47,7 @@ export default function MovingScansPage() {
       <ScanList
         here="/scans/moving"
         noun="moving scan"
-        list={useMovingScans(search)}
+        list={list}
         columns={COLUMNS}
         search={search}
         searched="name or subject"

@@ -116,7 +116,7 @@ export function ScanList<S extends Listed>({ here, noun, list, columns, search, 
             </Button>
           }
         >
-          Change what is shown above.
+          Change the filters above.
         </EmptyState>
       )}
       {scans && !isEmpty && <CardTable items={scans} columns={columns} />}

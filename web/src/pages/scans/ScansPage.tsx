@@ -71,7 +71,7 @@ function Length({ scan }: { scan: Scan }) {
 }
 
 const COLUMNS: readonly Column<Scan>[] = [
-  nameColumn("/scans", scanThumbnailUrl),
+  nameColumn<Scan>("/scans", scanThumbnailUrl),
   subjectColumn(128),
   { head: "Pose", width: 144, full: ({ pose }) => pose, show: ({ pose }) => pose },
   { head: "Hand", width: 88, show: ({ side }) => side && <HandBadge hand={side} /> },

@@ -359,7 +359,7 @@ def test_a_track_in_all_cameras_shows_every_picture_and_how_well_each_camera_agr
     job = studio.send("POST", "/jobs", json={"sequence_id": recording["id"], "params": {"calibrate": False}}).json()
     deadline = time.monotonic() + 150
     while job["state"] in ("queued", "running") and time.monotonic() < deadline:
-        time.sleep(0.5)
+        time.sleep(0.1)
         job = studio.get(f"/jobs/{job['id']}")
     assert job["state"] == "succeeded", job["error"]
     views = studio.get(f"/tracks/{job['track_id']}/frames")["views"]

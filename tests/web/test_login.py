@@ -32,6 +32,7 @@ from tests.web.conftest import (
     Synthesized,
     _lacking,
     _wait_until_up,
+    data_folder,
     wait_for_held,
 )
 from tests.web.hands import fill_studio
@@ -67,12 +68,20 @@ class Lab(Studio):
 
 
 @pytest.fixture(scope="module")
-def lab(chromium: str, synthesized: Synthesized, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
+def lab_data(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    with data_folder(tmp_path_factory.mktemp("data")) as folder:
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def lab(
+    chromium: str, synthesized: Synthesized, lab_data: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Lab]:
     if not (ROOT / "web" / "dist" / "index.html").is_file():
         _lacking("The browser app is not built: run `make setup` first.")
     folder = tmp_path_factory.mktemp("lab")
-    environment = os.environ | {"HANDLOOM_DATA_DIR": str(folder / "data"), "HANDLOOM_LOGIN": "required"}
-    with open_studio(Settings(data_dir=folder / "data")) as opened:
+    environment = os.environ | {"HANDLOOM_DATA_DIR": str(lab_data), "HANDLOOM_LOGIN": "required"}
+    with open_studio(Settings(data_dir=lab_data)) as opened:
         for name, role in PEOPLE:
             with opened.database.writing() as session:
                 account = add_account(session, None, name, role)
@@ -89,7 +98,7 @@ def lab(chromium: str, synthesized: Synthesized, tmp_path_factory: pytest.TempPa
             stdout=output,
             stderr=subprocess.STDOUT,
         )
-    lab = Lab(f"http://127.0.0.1:{port}", folder / "data", log)
+    lab = Lab(f"http://127.0.0.1:{port}", lab_data, log)
     try:
         _wait_until_up(lab, process)
         api = f"{lab.url}/api/v1"

@@ -70,7 +70,7 @@ def track(studio, synthesized):
     job = studio.send("POST", "/jobs", json={"kind": "track", "sequence_id": recording["id"], "params": QUICK}).json()
     deadline = time.monotonic() + 300
     while job["state"] in ("queued", "running") and time.monotonic() < deadline:
-        time.sleep(0.5)
+        time.sleep(0.1)
         job = studio.get(f"/jobs/{job['id']}")
     assert job["state"] == "succeeded", job
     return studio.get(f"/tracks/{job['track_id']}")

@@ -105,7 +105,7 @@ export function UploadDialog() {
       instead={upload.failure && !measured && <Button onClick={() => void measureChosenScans()}>Try again</Button>}
       result={(result) => <Result result={result} onDone={endScanUpload} />}
     >
-      <Autocomplete label="Collection" description="Scans that belong together" placeholder="scans" data={collections.map(({ name }) => name)} maxLength={200} value={collection} onChange={setCollection} data-autofocus />
+      <Autocomplete label="Collection" openOnFocus={false} description="Scans that belong together" placeholder="scans" data={collections.map(({ name }) => name)} maxLength={200} value={collection} onChange={setCollection} data-autofocus />
       <Group grow gap="md">
         <Select label="Hand" description="When it is known" data={[{ value: ASK, label: "Find out" }, { value: "right", label: "Right" }, { value: "left", label: "Left" }]} value={side} onChange={(value) => setSide(value ?? ASK)} allowDeselect={false} />
         <TextInput label="Subject" description="Whose hand" maxLength={100} value={subject} onChange={(event) => setSubject(event.currentTarget.value)} />

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import re
@@ -13,8 +14,10 @@ import sys
 import time
 import zipfile
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import httpx
@@ -71,8 +74,29 @@ class Studio:
         return httpx.request(method, f"{self.url}/api/v1{path}", timeout=60, **options)
 
 
+MEMORY = Path("/dev/shm")
+ROOM = 2_000_000_000
+"""Bytes; a container may have far less of memory that looks like a disk."""
+
+
+@contextmanager
+def data_folder(otherwise: Path) -> Iterator[Path]:
+    """In memory where there is room: a studio waits for the disk after every file and every gesture that it keeps."""
+    if MEMORY.is_dir() and shutil.disk_usage(MEMORY).free > ROOM:
+        with TemporaryDirectory(prefix="handloom-", dir=MEMORY, ignore_cleanup_errors=True) as folder:
+            yield Path(folder)
+    else:
+        yield otherwise
+
+
 @pytest.fixture(scope="session")
-def studio(chromium: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+def studio_data(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    with data_folder(tmp_path_factory.mktemp("data")) as folder:
+        yield folder
+
+
+@pytest.fixture(scope="session")
+def studio(chromium: str, studio_data: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
     """`handloom serve` with its worker, on an empty data folder."""
     if not (ROOT / "web" / "dist" / "index.html").is_file():
         _lacking("The browser app is not built: run `make setup` first.")
@@ -81,7 +105,7 @@ def studio(chromium: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     log = folder / "studio.log"
-    environment = os.environ | {"HANDLOOM_DATA_DIR": str(folder / "data")}
+    environment = os.environ | {"HANDLOOM_DATA_DIR": str(studio_data)}
     with log.open("w") as output:
         process = subprocess.Popen(
             [sys.executable, "-m", "server.cli", "serve", "--port", str(port)],
@@ -90,7 +114,7 @@ def studio(chromium: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
             stdout=output,
             stderr=subprocess.STDOUT,
         )
-    studio = Studio(f"http://127.0.0.1:{port}", folder / "data", log)
+    studio = Studio(f"http://127.0.0.1:{port}", studio_data, log)
     try:
         _wait_until_up(studio, process)
         yield studio
@@ -128,8 +152,20 @@ class Synthesized:
 
 @pytest.fixture(scope="session")
 def synthesized(tmp_path_factory: pytest.TempPathFactory) -> Synthesized:
-    """Made by the product itself; its annotations are taken away, for they are to be made in the browser."""
-    folder = tmp_path_factory.mktemp("synthesized") / "opening-hand"
+    """Made by the product itself, once for all processes of a run."""
+    own = tmp_path_factory.getbasetemp()
+    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "synthesized" / "opening-hand"
+    archive, marks = folder.with_suffix(".zip"), folder.with_suffix(".json")
+    folder.parent.mkdir(exist_ok=True)
+    with (folder.parent / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not marks.is_file():
+            marks.write_text(json.dumps(_synthesize(folder, archive)))
+    return Synthesized(folder, archive, [(x, y) for x, y, _ in json.loads(marks.read_text())])
+
+
+def _synthesize(folder: Path, archive: Path) -> list[list[float]]:
+    """Without its annotations, for they are to be made in the browser; gives those of frame 0."""
     command = ["synthesize", "--motion", "open-close", "--frames", f"0:{FRAMES}", "--out", str(folder)]
     subprocess.run([sys.executable, "-m", "server.cli", *command], cwd=ROOT, check=True, capture_output=True)
     first = next(i for i in json.loads((folder / "annotations.json").read_text())["items"] if i["frame"] == 0)
@@ -137,12 +173,11 @@ def synthesized(tmp_path_factory: pytest.TempPathFactory) -> Synthesized:
     description.pop("annotations", None)
     (folder / "sequence.json").write_text(json.dumps(description))
     (folder / "annotations.json").unlink()
-    archive = folder.parent / "opening-hand.zip"
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as file:
         for path in sorted(folder.rglob("*")):
             if path.is_file() and path.parts[-2] != "models":
                 file.write(path, path.relative_to(folder.parent))
-    return Synthesized(folder, archive, [(x, y) for x, y, _ in first["points"]])
+    return first["points"]
 
 
 def import_copy(studio: Studio, synthesized: Synthesized) -> dict[str, Any]:

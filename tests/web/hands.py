@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import uuid
 import zipfile
@@ -47,8 +48,7 @@ class Hands:
 
 def write_scans(folder: Path, count: int) -> tuple[Path, list[GeneratedScan]]:
     """A .zip of scans with their `scans.json`, right and left by turns, and what they are scans of."""
-    options = ScanOptions(scanner=Scanner(num_points=POINTS))
-    few = [generate_scan(1 + n, 7 * n, ("right", "left")[n % 2], n, options) for n in range(min(count, DIFFERENT))]
+    few = [_generate(n) for n in range(min(count, DIFFERENT))]
     made = [_turn(few[n % len(few)], n) for n in range(count)]
     listed = []
     for number, one in enumerate(made):
@@ -62,6 +62,13 @@ def write_scans(folder: Path, count: int) -> tuple[Path, list[GeneratedScan]]:
             if path != archive:
                 file.write(path, path.name)
     return archive, made
+
+
+@functools.cache
+def _generate(number: int) -> GeneratedScan:
+    """Seconds each, and the same for every test."""
+    options = ScanOptions(scanner=Scanner(num_points=POINTS))
+    return generate_scan(1 + number, 7 * number, ("right", "left")[number % 2], number, options)
 
 
 def _turn(one: GeneratedScan, seed: int) -> GeneratedScan:

@@ -46,7 +46,7 @@ def _track(studio, recording, params):
     job = studio.send("POST", "/jobs", json=body).json()
     deadline = time.monotonic() + 300
     while job["state"] in ("queued", "running") and time.monotonic() < deadline:
-        time.sleep(0.25)
+        time.sleep(0.1)
         job = studio.get(f"/jobs/{job['id']}")
     assert job["state"] == "succeeded", job
     return studio.get(f"/tracks/{job['track_id']}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import uuid
 from pathlib import Path
 from typing import Any
@@ -98,7 +99,8 @@ def test_labels_are_kept_compared_restored_exported_and_imported(
     camera = recording["cameras"][0]["id"]
     stored = studio.get(f"/sequences/{recording['id']}/annotations/{camera}/0/right")
     assert stored["points"][0][0] == moved["annotations"][0]["keypoints"][0]
-    page.get_by_role("button", name="Undo").last.click()
+    with page.expect_response(re.compile("/restore$")):
+        page.get_by_role("button", name="Undo").last.click()
     expect(page.get_by_text("Undone: the labels are as they were before.").last).to_be_visible()
     restored = studio.get(f"/sequences/{recording['id']}/annotations/{camera}/0/right")
     assert restored["points"][0][0] == synthesized.joints[0][0]

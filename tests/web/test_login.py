@@ -19,6 +19,11 @@ from typing import Any
 import httpx
 import pytest
 
+from server.access.logins import set_password
+from server.access.models import Role
+from server.access.people import add_account
+from server.cli.open_studio import open_studio
+from server.settings import Settings
 from tests.web.conftest import (
     ROOT,
     Picture,
@@ -27,6 +32,7 @@ from tests.web.conftest import (
     Synthesized,
     _lacking,
     _wait_until_up,
+    data_folder,
     wait_for_held,
 )
 from tests.web.hands import fill_studio
@@ -35,6 +41,7 @@ from tests.web.test_curation import wait_for_hand
 pytestmark = pytest.mark.browser
 log = logging.getLogger(__name__)
 PASSWORD = "four words in a row"
+PEOPLE: tuple[tuple[str, Role], ...] = (("Lea", "admin"), ("Anna", "annotator"), ("Ben", "annotator"))
 
 
 @dataclass(frozen=True)
@@ -61,40 +68,37 @@ class Lab(Studio):
 
 
 @pytest.fixture(scope="module")
-def lab(chromium: str, synthesized: Synthesized, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
+def lab_data(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    with data_folder(tmp_path_factory.mktemp("data")) as folder:
+        yield folder
+
+
+@pytest.fixture(scope="module")
+def lab(
+    chromium: str, synthesized: Synthesized, lab_data: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Lab]:
     if not (ROOT / "web" / "dist" / "index.html").is_file():
         _lacking("The browser app is not built: run `make setup` first.")
     folder = tmp_path_factory.mktemp("lab")
-    environment = os.environ | {"HANDLOOM_DATA_DIR": str(folder / "data"), "HANDLOOM_LOGIN": "required"}
-    command = [sys.executable, "-m", "server.cli"]
-
-    def add(name: str, role: str) -> None:
-        subprocess.run(
-            [*command, "account", "add", name, "--role", role],
-            input=f"{PASSWORD}\n",
-            text=True,
-            cwd=ROOT,
-            env=environment,
-            check=True,
-            capture_output=True,
-            timeout=120,
-        )
-
-    for name, role in (("Lea", "admin"), ("Anna", "annotator"), ("Ben", "annotator")):
-        add(name, role)
+    environment = os.environ | {"HANDLOOM_DATA_DIR": str(lab_data), "HANDLOOM_LOGIN": "required"}
+    with open_studio(Settings(data_dir=lab_data)) as opened:
+        for name, role in PEOPLE:
+            with opened.database.writing() as session:
+                account = add_account(session, None, name, role)
+            set_password(opened.database, account.id, name, PASSWORD)
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     log = folder / "studio.log"
     with log.open("w") as output:
         process = subprocess.Popen(
-            [*command, "serve", "--no-worker", "--port", str(port)],
+            [sys.executable, "-m", "server.cli", "serve", "--no-worker", "--port", str(port)],
             cwd=ROOT,
             env=environment,
             stdout=output,
             stderr=subprocess.STDOUT,
         )
-    lab = Lab(f"http://127.0.0.1:{port}", folder / "data", log)
+    lab = Lab(f"http://127.0.0.1:{port}", lab_data, log)
     try:
         _wait_until_up(lab, process)
         api = f"{lab.url}/api/v1"
@@ -118,14 +122,16 @@ OpenLab = Callable[..., Any]
 
 @pytest.fixture
 def open_lab(browser: Any, lab: Lab) -> Iterator[OpenLab]:
-    """Opens a page of the lab in a browser profile of its own."""
+    """Opens a page of the lab in a browser profile of its own, where that person has logged in."""
     contexts: list[Any] = []
 
-    def opened(scheme: str = "dark", width: int = 1280, height: int = 720) -> Any:
+    def opened(who: str | None = None, scheme: str = "dark", width: int = 1280, height: int = 720) -> Any:
         context = browser.new_context(viewport={"width": width, "height": height}, base_url=lab.url, locale="en-GB")
         context.set_default_timeout(30_000)
         context.add_init_script(f"localStorage.setItem('handloom/colours', '{scheme}')")
         contexts.append(context)
+        if who is not None:
+            assert context.request.post("/api/v1/login", data={"name": who, "password": PASSWORD}).ok
         return context.new_page()
 
     yield opened
@@ -190,9 +196,8 @@ def test_a_login_that_ends_in_mid_frame_loses_no_gesture(
 ) -> None:
     from playwright.sync_api import expect
 
-    page = open_lab()
+    page = open_lab("Anna")
     picture = annotate(page, lab, 1)
-    log_in(page, "Anna")
     picture.wait()
     picture.click(*synthesized.joints[0])
     picture.wait_until_saved()
@@ -219,9 +224,8 @@ def test_a_login_that_ends_while_curating_loses_no_decision(
     from playwright.sync_api import expect
 
     hands = fill_studio(lab, tmp_path, 3, "curation")
-    page = open_lab()
+    page = open_lab("Lea")
     page.goto("/curate?collection=curation")
-    log_in(page, "Lea")
     wait_for_hand(page, hands.registrations[0])
     page.keyboard.press("a")
     wait_for_hand(page, hands.registrations[1])
@@ -261,9 +265,8 @@ def test_what_one_person_left_is_not_sent_in_the_name_of_the_next(
 ) -> None:
     from playwright.sync_api import expect
 
-    page = open_lab()
+    page = open_lab("Anna")
     picture = annotate(page, lab, 3)
-    log_in(page, "Anna")
     picture.wait()
     end_logins(page, lab, lambda: picture.click(*synthesized.joints[0]))
     assert page.evaluate(UNSAVED) == 1, "the gesture is kept in the browser"
@@ -294,9 +297,8 @@ def test_a_page_of_the_person_before_cannot_write_as_the_next(
     """Two tabs of one browser: in the second one somebody else logs in."""
     from playwright.sync_api import expect
 
-    page = open_lab()
+    page = open_lab("Anna")
     picture = annotate(page, lab, 5)
-    log_in(page, "Anna")
     picture.wait()
     # Nothing that the page asks by itself may tell it before the gesture that Anna is gone.
     page.route("**/api/v1/**", lambda route: None if route.request.method == "GET" else route.continue_())
@@ -329,9 +331,8 @@ def test_saved_is_said_when_nothing_waits_and_not_before(
     with synthesized.archive.open("rb") as file:
         made = lab.send("POST", "/imports", files={"files": ("opening-hand.zip", file)}).json()
     other = lab.send("POST", f"/imports/{made['id']}/confirm", json={"name": "Another"}).json()["id"]
-    page = open_lab()
+    page = open_lab("Anna")
     picture = annotate(page, lab, 8)
-    log_in(page, "Anna")
     picture.wait()
     state = page.get_by_test_id("save-state")
     held: list[Any] = []
@@ -383,9 +384,8 @@ def test_logging_out_says_what_waits_and_when_it_did_not_succeed(
 ) -> None:
     from playwright.sync_api import expect
 
-    page = open_lab()
+    page = open_lab("Anna")
     picture = annotate(page, lab, 12)
-    log_in(page, "Anna")
     picture.wait()
 
     def leave() -> None:
@@ -428,10 +428,8 @@ def test_two_people_see_each_other_and_what_the_other_does_as_it_is_stored(
 ) -> None:
     from playwright.sync_api import expect
 
-    hers, his = open_lab(), open_lab("light", 1920, 1080)
+    hers, his = open_lab("Anna"), open_lab("Ben", "light", 1920, 1080)
     ann, ben = annotate(hers, lab, 10), annotate(his, lab, 11)
-    log_in(hers, "Anna")
-    log_in(his, "Ben")
     ann.wait()
     ben.wait()
     here = hers.get_by_role("group", name="Also here")
@@ -497,14 +495,13 @@ def test_two_people_see_each_other_and_what_the_other_does_as_it_is_stored(
 def test_people_are_added_by_link_and_shut_out(lab: Lab, open_lab: OpenLab, screenshots: Screenshots) -> None:
     from playwright.sync_api import expect
 
-    page = open_lab()
+    page = open_lab("Lea")
     page.goto("/people")
-    log_in(page, "Lea")
     page.get_by_label("Name", exact=True).fill("Mia")
     page.get_by_role("button", name="Add person").click()
     link = page.get_by_test_id("secret").inner_text()
     screenshots.take(page, "people-dark-1280")
-    hers = open_lab("light")
+    hers = open_lab(scheme="light")
     hers.goto(link)
     hers.get_by_label("New password").fill("my own four words")
     hers.get_by_label("Again").fill("my own four words")

@@ -45,12 +45,23 @@ export const useHint = (): ((label: string, id: string) => string) => {
   return (label, id) => (keyOf(id) ? `${label} (${keyOf(id)})` : label);
 };
 
-async function send(remap: Remap): Promise<void> {
+let isSending = false;
+
+/** One after the other: of two on their way at once the older could arrive last. */
+async function send(): Promise<void> {
+  if (isSending) return;
+  isSending = true;
   try {
-    await storePreference("keys", remap);
-    keep(remap, false);
+    let sent: Remap;
+    do {
+      sent = remapOf(store.get());
+      await storePreference("keys", sent);
+    } while (JSON.stringify(sent) !== JSON.stringify(remapOf(store.get())));
+    keep(sent, false);
   } catch {
     // It works here already; the account learns it at the next start.
+  } finally {
+    isSending = false;
   }
 }
 
@@ -75,12 +86,12 @@ function change(map: readonly KeyBinding[]): void {
   const remap = remapOf(map);
   store.set(withRemap(KEYMAP, remap), "person");
   keep(remap, true);
-  void send(remap);
+  void send();
 }
 
 /** At the start: the account's keys go before the browser's, except those that it has not been told yet. */
 export async function loadKeys(): Promise<void> {
-  if (window.localStorage.getItem(UNSENT)) return send(read());
+  if (window.localStorage.getItem(UNSENT)) return send();
   try {
     const found = (await fetchPreferences())["keys"];
     const remap = typeof found === "object" && found !== null ? (found as Remap) : {};

@@ -1,4 +1,4 @@
-import { Button, Group, Select, Skeleton, Table, Text, TextInput, Title } from "@mantine/core";
+import { Group, Select, Skeleton, Table, Text, TextInput, Title } from "@mantine/core";
 import { useInfiniteQuery } from "@tanstack/react-query";
 import { IconHistory } from "@tabler/icons-react";
 import { useSearchParams } from "react-router";
@@ -6,6 +6,7 @@ import { fetchAudit, usePeople } from "../../api/account";
 import { describeAct, describeDetail } from "../../model/audit";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
+import { ShowMore } from "../parts/ShowMore";
 import { useTitle } from "../parts/useTitle";
 import classes from "./account.module.css";
 import { formatMoment } from "./moment";
@@ -92,13 +93,7 @@ export default function AuditPage() {
             </Table>
           </div>
         )}
-        {list.hasNextPage && (
-          <Group justify="center" mt="md">
-            <Button variant="default" loading={list.isFetchingNextPage} onClick={() => void list.fetchNextPage()}>
-              Earlier acts
-            </Button>
-          </Group>
-        )}
+        <ShowMore list={list} label="Earlier acts" />
       </section>
     </div>
   );

@@ -7,6 +7,7 @@ import { useBin, useRestore, type BinItem } from "../../api/bin";
 import { formatAgo, formatBytes } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
+import { ShowMore } from "../parts/ShowMore";
 import { useTitle } from "../parts/useTitle";
 import { tellFailure } from "../parts/undo";
 import classes from "./account.module.css";
@@ -97,13 +98,7 @@ export default function BinPage() {
             </Table>
           </div>
         )}
-        {list.hasNextPage && (
-          <Group justify="center" mt="md">
-            <Button variant="default" loading={list.isFetchingNextPage} onClick={() => void list.fetchNextPage()}>
-              Show more
-            </Button>
-          </Group>
-        )}
+        <ShowMore list={list} />
       </section>
       <EraseDialog item={erased} onClose={() => setErased(null)} />
     </div>

@@ -1,16 +1,17 @@
-import { ActionIcon, Group, NumberInput, SegmentedControl, Select, Text, Tooltip } from "@mantine/core";
-import { IconChevronLeft, IconChevronRight, IconPlayerPause, IconPlayerPlay } from "@tabler/icons-react";
+import { Group, NumberInput, SegmentedControl, Select, Text } from "@mantine/core";
 import { useRef } from "react";
 import { Link } from "react-router";
 import { goToFrame, selectCamera } from "../../actions/annotate/select";
-import { useHint } from "../../state/keys";
 import { arrangementsOf, type Arrangement } from "../../state/viewOptions";
+import { FrameSteps } from "../parts/FrameSteps";
 import { useActions, useAnnotating } from "./annotating";
 import classes from "./Annotator.module.css";
 import { FRAME_TOOLS } from "./mounts";
 import { useAnnotation, useArrangement, useCamera, useOpenRecording, usePage } from "./reading";
 
 const NAMES: Record<Arrangement, string> = { color: "Colour", depth: "Depth", side: "Side by side", over: "Depth over colour" };
+
+const STEPS = { play: "play", previous: "frame.previous", next: "frame.next" } as const;
 
 /** The frame's number, to read and to go to another one. */
 function FrameField() {
@@ -44,7 +45,6 @@ export function FrameBar() {
   const camera = useCamera();
   const arrangement = useArrangement();
   const isPlaying = usePage((page) => page.isPlaying);
-  const hint = useHint();
   const arrangements = arrangementsOf(camera);
   return (
     <div className={classes.bar}>
@@ -68,25 +68,12 @@ export function FrameBar() {
         <FrameTool key={index} />
       ))}
       <Group gap={4} ml="auto" wrap="nowrap" className={classes.frames}>
-        <Tooltip label={hint(isPlaying ? "Pause" : "Play", "play")}>
-          <ActionIcon aria-label={isPlaying ? "Pause" : "Play"} onClick={() => run("play")}>
-            {isPlaying ? <IconPlayerPause size={18} /> : <IconPlayerPlay size={18} />}
-          </ActionIcon>
-        </Tooltip>
-        <Tooltip label={hint("Previous frame", "frame.previous")}>
-          <ActionIcon aria-label="Previous frame" onClick={() => run("frame.previous")}>
-            <IconChevronLeft size={18} />
-          </ActionIcon>
-        </Tooltip>
-        <FrameField />
-        <Text size="xs" className="quiet" style={{ whiteSpace: "nowrap" }}>
-          of 0–{recording.frame_count - 1}
-        </Text>
-        <Tooltip label={hint("Next frame", "frame.next")}>
-          <ActionIcon aria-label="Next frame" onClick={() => run("frame.next")}>
-            <IconChevronRight size={18} />
-          </ActionIcon>
-        </Tooltip>
+        <FrameSteps isPlaying={isPlaying} actions={STEPS} onPlay={() => run(STEPS.play)} onStep={(by) => run(by > 0 ? STEPS.next : STEPS.previous)}>
+          <FrameField />
+          <Text size="xs" className="quiet" style={{ whiteSpace: "nowrap" }}>
+            of 0–{recording.frame_count - 1}
+          </Text>
+        </FrameSteps>
       </Group>
     </div>
   );

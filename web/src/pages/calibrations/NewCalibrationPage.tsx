@@ -1,4 +1,4 @@
-import { Button, Group, Loader, Progress, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Box, Button, Group, Stack, Text, TextInput, Title } from "@mantine/core";
 import { IconLock } from "@tabler/icons-react";
 import { useEffect } from "react";
 import { Link, useNavigate } from "react-router";
@@ -11,6 +11,7 @@ import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { Refusal } from "../parts/Refusal";
+import { Sending } from "../parts/Sending";
 import { Sentences } from "../parts/Sentences";
 import { useTitle } from "../parts/useTitle";
 import { BoardForm } from "./BoardForm";
@@ -18,25 +19,16 @@ import classes from "./calibrations.module.css";
 import { FilmChoice } from "./FilmChoice";
 import { OptionsForm } from "./OptionsForm";
 
-function Sending({ upload }: { upload: FilmUpload }) {
-  const sent = upload.sent ?? 0;
+function SendingFilms({ upload, sent }: { upload: FilmUpload; sent: number }) {
   const bytes = upload.films.reduce((sum, film) => sum + film.bytes, 0);
   return (
-    <Stack maw={640} mx="auto" mt={64} gap="md" className="card" p="xl" role="status">
-      <Group gap="sm">
-        {sent === 1 && <Loader size="sm" />}
-        <Title order={2}>{sent === 1 ? "Checking the films" : "Sending the films"}</Title>
-      </Group>
-      <Text className="quiet">
-        {formatCount(upload.films.length, "film")}, {formatBytes(bytes)}. {sent === 1 ? "The first picture of each is looked at." : "Stay on any page of the studio until they have arrived."}
-      </Text>
-      <Progress value={100 * sent} animated={sent === 1} aria-label="Part of the films sent" />
-      <Group justify="flex-end">
-        <Button variant="default" onClick={stopFilmUpload}>
-          Cancel
-        </Button>
-      </Group>
-    </Stack>
+    <Box maw={640} mx="auto" mt={64} className="card" p="xl">
+      <Sending sent={sent} title={<Title order={2}>{sent === 1 ? "Checking the films" : "Sending the films"}</Title>} onCancel={stopFilmUpload}>
+        <Text className="quiet">
+          {formatCount(upload.films.length, "film")}, {formatBytes(bytes)}. {sent === 1 ? "The first picture of each is looked at." : "Stay on any page of the studio until they have arrived."}
+        </Text>
+      </Sending>
+    </Box>
   );
 }
 
@@ -116,7 +108,7 @@ export default function NewCalibrationPage() {
           All calibrations
         </Button>
       </Group>
-      {upload.sent === null ? <Choosing form={form} upload={upload} /> : <Sending upload={upload} />}
+      {upload.sent === null ? <Choosing form={form} upload={upload} /> : <SendingFilms upload={upload} sent={upload.sent} />}
     </div>
   );
 }

@@ -1,4 +1,4 @@
-import { Button, Checkbox, Group, Select, Skeleton, Stack, Text, TextInput } from "@mantine/core";
+import { Button, Checkbox, Group, Select, Stack, Text, TextInput } from "@mantine/core";
 import { IconRoute, IconSearch } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link } from "react-router";
@@ -8,6 +8,7 @@ import { useTracks } from "../../api/tracks";
 import { formatCount, formatAgo, formatNumber } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
+import { LoadingRows } from "../parts/LoadingRows";
 import classes from "./Evaluations.module.css";
 
 interface TrackChooserProps {
@@ -27,15 +28,7 @@ export function TrackChooser({ initial, onChoose, onProject }: TrackChooserProps
   if (error && !(tracks.data && recordings.data)) {
     return <Failure what="The tracks could not be loaded" error={error} safe="Their files are untouched on the server's disk." onRetry={() => void Promise.all([tracks.refetch(), recordings.refetch()])} />;
   }
-  if (!tracks.data || !recordings.data) {
-    return (
-      <Stack gap="sm" role="status" aria-label="Loading">
-        {Array.from({ length: 5 }, (_, index) => (
-          <Skeleton key={index} height={48} />
-        ))}
-      </Stack>
-    );
-  }
+  if (!tracks.data || !recordings.data) return <LoadingRows count={5} height={48} />;
   if (tracks.data.length === 0) {
     return (
       <EmptyState

@@ -1,4 +1,4 @@
-import { Button, Group, Loader, Progress, Stack, Text, Title } from "@mantine/core";
+import { Box, Button, Text, Title } from "@mantine/core";
 import { IconUpload } from "@tabler/icons-react";
 import { useEffect } from "react";
 import { Link, useNavigate } from "react-router";
@@ -7,6 +7,7 @@ import { formatBytes, formatCount } from "../../model/format";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { ImportButton } from "../parts/ImportButton";
+import { Sending } from "../parts/Sending";
 import { useTitle } from "../parts/useTitle";
 
 /** Files on their way; when the server has looked at them, the report takes over. */
@@ -41,32 +42,22 @@ export function NewImportPage() {
       </Failure>
     );
   }
-  const isChecking = incoming.sent >= 1;
+  const sent = incoming.sent ?? 0;
+  const isChecking = sent >= 1;
+  const cancel = (): void => {
+    cancelIncoming();
+    void navigate("/recordings");
+  };
   return (
     <div className="page">
-      <Stack maw={640} mx="auto" mt={64} gap="md" className="card" p="xl">
-        <Group gap="sm">
-          {isChecking && <Loader size="sm" />}
-          <Title order={2}>{isChecking ? "Checking the files" : "Sending the files"}</Title>
-        </Group>
-        <Text className="quiet">
-          {formatCount(incoming.files.length, "file")}, {formatBytes(incoming.bytes)}.{" "}
-          {isChecking ? "Every image is opened and checked; nothing is stored yet." : "Stay on any page of the studio until they have arrived."}
-        </Text>
-        <Progress value={100 * incoming.sent} animated={isChecking} aria-label="Part of the files sent" />
-        <Group justify="space-between">
-          <Text size="sm">{isChecking ? "" : `${Math.round(100 * incoming.sent)} %`}</Text>
-          <Button
-            variant="default"
-            onClick={() => {
-              cancelIncoming();
-              void navigate("/recordings");
-            }}
-          >
-            Cancel
-          </Button>
-        </Group>
-      </Stack>
+      <Box maw={640} mx="auto" mt={64} className="card" p="xl">
+        <Sending sent={sent} title={<Title order={2}>{isChecking ? "Checking the files" : "Sending the files"}</Title>} onCancel={cancel}>
+          <Text className="quiet">
+            {formatCount(incoming.files.length, "file")}, {formatBytes(incoming.bytes)}.{" "}
+            {isChecking ? "Every image is opened and checked; nothing is stored yet." : "Stay on any page of the studio until they have arrived."}
+          </Text>
+        </Sending>
+      </Box>
     </div>
   );
 }

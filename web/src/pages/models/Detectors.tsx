@@ -4,9 +4,10 @@ import { IconDownload, IconTrash, IconUpload } from "@tabler/icons-react";
 import { useRestore } from "../../api/bin";
 import { detectorFileUrl, useDetectors, useRemoveDetector, useUploadDetector, type Detector } from "../../api/detectors";
 import { formatBytes } from "../../model/format";
+import type { Column } from "../parts/CardTable";
 import { For } from "../parts/For";
 import { intoBin } from "../parts/undo";
-import { KeptTable, type Column } from "./KeptTable";
+import { KeptTable } from "./KeptTable";
 
 const COLUMNS: readonly Column<Detector>[] = [
   { head: "Looks at", width: 120, show: ({ looks_at: looksAt }) => (looksAt === "color" ? "colour" : "depth") },

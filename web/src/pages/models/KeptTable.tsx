@@ -1,6 +1,7 @@
-import { Group, Table } from "@mantine/core";
+import { Group } from "@mantine/core";
 import type { ReactNode } from "react";
 import { formatAgo } from "../../model/format";
+import { CardTable, type Column } from "../parts/CardTable";
 import classes from "./Models.module.css";
 
 interface Kept {
@@ -8,13 +9,6 @@ interface Kept {
   name: string;
   digest: string;
   created_at: string;
-}
-
-export interface Column<Item> {
-  head: string;
-  width: number;
-  isNumber?: boolean;
-  show: (item: Item) => ReactNode;
 }
 
 interface KeptTableProps<Item extends Kept> {
@@ -29,50 +23,21 @@ interface KeptTableProps<Item extends Kept> {
 
 /** Files that the studio keeps under a hash, one a row. */
 export function KeptTable<Item extends Kept>({ items, columns, when, actsWidth, acts }: KeptTableProps<Item>) {
-  return (
-    <div className={`card ${classes.frame}`}>
-      <Table verticalSpacing="xs" horizontalSpacing="md">
-        <Table.Thead>
-          <Table.Tr>
-            <Table.Th>Name</Table.Th>
-            {columns.map(({ head, width, isNumber }) => (
-              <Table.Th key={head} w={width} ta={isNumber ? "right" : undefined}>
-                {head}
-              </Table.Th>
-            ))}
-            <Table.Th w={128}>SHA-256</Table.Th>
-            <Table.Th w={128} ta="right">
-              {when}
-            </Table.Th>
-            <Table.Th w={actsWidth} aria-label="Acts" />
-          </Table.Tr>
-        </Table.Thead>
-        <Table.Tbody>
-          {items.map((item) => (
-            <Table.Tr key={item.id}>
-              <Table.Td className={classes.cell} title={item.name}>
-                {item.name}
-              </Table.Td>
-              {columns.map(({ head, isNumber, show }) => (
-                <Table.Td key={head} ta={isNumber ? "right" : undefined}>
-                  {show(item)}
-                </Table.Td>
-              ))}
-              <Table.Td className={classes.cell} title={item.digest} style={{ fontFamily: "var(--mantine-font-family-monospace)", fontSize: 12 }}>
-                {item.digest.slice(0, 12)}
-              </Table.Td>
-              <Table.Td ta="right" className="quiet">
-                {formatAgo(item.created_at)}
-              </Table.Td>
-              <Table.Td>
-                <Group gap={4} justify="flex-end" wrap="nowrap" className="keep-line">
-                  {acts(item)}
-                </Group>
-              </Table.Td>
-            </Table.Tr>
-          ))}
-        </Table.Tbody>
-      </Table>
-    </div>
-  );
+  const all: readonly Column<Item>[] = [
+    { head: "Name", full: ({ name }) => name, show: ({ name }) => name },
+    ...columns,
+    { head: "SHA-256", width: 128, full: ({ digest }) => digest, show: ({ digest }) => <span className={classes.digest}>{digest.slice(0, 12)}</span> },
+    { head: when, width: 128, isNumber: true, isQuiet: true, show: ({ created_at: at }) => formatAgo(at) },
+    {
+      head: "",
+      label: "Acts",
+      width: actsWidth,
+      show: (item) => (
+        <Group gap={4} justify="flex-end" wrap="nowrap" className="keep-line">
+          {acts(item)}
+        </Group>
+      ),
+    },
+  ];
+  return <CardTable items={items} columns={all} />;
 }

@@ -1,13 +1,15 @@
-import { Badge, Button, Group, Skeleton, Stack, Table, Text, Title } from "@mantine/core";
+import { Badge, Button, Group, Stack, Text, Title } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { IconCornerDownRight, IconHandStop, IconMan, IconRefresh } from "@tabler/icons-react";
 import { Link } from "react-router";
 import { useHandModels, type HandModel } from "../../api/handModels";
 import { formatAgo, formatCount } from "../../model/format";
+import { CardTable, type Column } from "../parts/CardTable";
 import { EmptyState } from "../parts/EmptyState";
 import { Failure } from "../parts/Failure";
 import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
+import { LoadingRows } from "../parts/LoadingRows";
 import { useTitle } from "../parts/useTitle";
 import { Detectors } from "./Detectors";
 import { LoopDialog } from "./LoopDialog";
@@ -34,6 +36,28 @@ export function ModelKind({ model }: { model: HandModel }) {
     </Badge>
   );
 }
+
+const COLUMNS: readonly Column<HandModel & { depth: number }>[] = [
+  {
+    head: "Name",
+    full: ({ name }) => name,
+    show: ({ id, name, depth }) => (
+      <span style={{ paddingLeft: 20 * Math.max(0, depth - 1) }}>
+        {depth > 0 && <IconCornerDownRight size={14} aria-label="trained from the one above" style={{ marginRight: 6, verticalAlign: -2 }} />}
+        <Link to={`/models/${id}`} className={classes.link}>
+          {name}
+        </Link>
+      </span>
+    ),
+  },
+  { head: "Kind", width: 152, show: (model) => <ModelKind model={model} /> },
+  { head: "Hand", width: 80, show: ({ side }) => <HandBadge hand={side} /> },
+  { head: "Vertices", width: 96, isNumber: true, show: ({ vertices }) => vertices.toLocaleString("en") },
+  { head: "Shape", width: 80, isNumber: true, show: ({ shape_parameters: shape }) => shape.length },
+  { head: "Pose", width: 80, isNumber: true, show: ({ pose_components: count }) => count },
+  { head: "Registrations", width: 128, isNumber: true, show: ({ registration_count: count }) => count > 0 && count.toLocaleString("en") },
+  { head: "Made", width: 128, isNumber: true, isQuiet: true, show: ({ created_at: when }) => when && formatAgo(when) },
+];
 
 /** Hand models as a lineage: which was trained from which, by how many registrations. */
 export default function ModelsPage() {
@@ -63,68 +87,8 @@ export default function ModelsPage() {
         </Group>
       </Group>
       <Stack gap="xl">
-        {!models && (
-          <Stack gap="sm" role="status" aria-label="Loading">
-            {Array.from({ length: 4 }, (_, index) => (
-              <Skeleton key={index} height={44} />
-            ))}
-          </Stack>
-        )}
-        {models && (
-          <div className={`card ${classes.frame}`}>
-            <Table highlightOnHover verticalSpacing="xs" horizontalSpacing="md">
-              <Table.Thead>
-                <Table.Tr>
-                  <Table.Th>Name</Table.Th>
-                  <Table.Th w={152}>Kind</Table.Th>
-                  <Table.Th w={80}>Hand</Table.Th>
-                  <Table.Th w={96} ta="right">
-                    Vertices
-                  </Table.Th>
-                  <Table.Th w={80} ta="right">
-                    Shape
-                  </Table.Th>
-                  <Table.Th w={80} ta="right">
-                    Pose
-                  </Table.Th>
-                  <Table.Th w={128} ta="right">
-                    Registrations
-                  </Table.Th>
-                  <Table.Th w={128} ta="right">
-                    Made
-                  </Table.Th>
-                </Table.Tr>
-              </Table.Thead>
-              <Table.Tbody>
-                {asTree(models).map(({ model, depth }) => (
-                  <Table.Tr key={model.id}>
-                    <Table.Td className={classes.cell} title={model.name}>
-                      <span style={{ paddingLeft: 20 * Math.max(0, depth - 1) }}>
-                        {depth > 0 && <IconCornerDownRight size={14} aria-label="trained from the one above" style={{ marginRight: 6, verticalAlign: -2 }} />}
-                        <Link to={`/models/${model.id}`} className={classes.link}>
-                          {model.name}
-                        </Link>
-                      </span>
-                    </Table.Td>
-                    <Table.Td>
-                      <ModelKind model={model} />
-                    </Table.Td>
-                    <Table.Td>
-                      <HandBadge hand={model.side} />
-                    </Table.Td>
-                    <Table.Td ta="right">{model.vertices.toLocaleString("en")}</Table.Td>
-                    <Table.Td ta="right">{model.shape_parameters.length}</Table.Td>
-                    <Table.Td ta="right">{model.pose_components || <span className="quiet">–</span>}</Table.Td>
-                    <Table.Td ta="right">{model.registration_count > 0 ? model.registration_count.toLocaleString("en") : <span className="quiet">–</span>}</Table.Td>
-                    <Table.Td ta="right" className="quiet">
-                      {model.created_at ? formatAgo(model.created_at) : "–"}
-                    </Table.Td>
-                  </Table.Tr>
-                ))}
-              </Table.Tbody>
-            </Table>
-          </div>
-        )}
+        {!models && <LoadingRows count={4} height={44} />}
+        {models && <CardTable items={asTree(models).map(({ model, depth }) => ({ ...model, depth }))} columns={COLUMNS} />}
         {models && (
           <Text size="xs" className="quiet" mt={-16}>
             Shape and pose: how many components each space has.

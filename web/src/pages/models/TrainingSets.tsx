@@ -4,7 +4,8 @@ import { IconDownload, IconShieldCheck } from "@tabler/icons-react";
 import { trainingSetUrl, useTrainingSets, verifyTrainingSet, type TrainingSet } from "../../api/handModels";
 import { formatCount } from "../../model/format";
 import { Awaited } from "../parts/Awaited";
-import { KeptTable, type Column } from "./KeptTable";
+import type { Column } from "../parts/CardTable";
+import { KeptTable } from "./KeptTable";
 
 const COLUMNS: readonly Column<TrainingSet>[] = [
   { head: "Chosen by", width: 160, show: ({ rule }) => (rule.by === "verdict" ? "the program" : rule.needs_two ? "two people" : "people") },

@@ -1,10 +1,12 @@
-import { ActionIcon, Button, Menu, Select, Text, Tooltip } from "@mantine/core";
-import { IconChevronLeft, IconChevronRight, IconDots, IconPlayerPause, IconPlayerPlay, IconPlayerTrackNext, IconTrash } from "@tabler/icons-react";
+import { Button, Menu, Select, Text } from "@mantine/core";
+import { IconPlayerTrackNext } from "@tabler/icons-react";
 import { Link, useNavigate } from "react-router";
 import { useDeleteMovingScan, useRestoreMovingScan, type MovingRegistration, type MovingScan } from "../../api/movingScans";
 import { formatCount } from "../../model/format";
-import { useHint } from "../../state/keys";
 import { For } from "../parts/For";
+import { FrameSteps } from "../parts/FrameSteps";
+import { KeyIcon } from "../parts/KeyIcon";
+import { MoreMenu } from "../parts/MoreMenu";
 import { intoBin } from "../parts/undo";
 import classes from "./Moving.module.css";
 import { PRIORS } from "./priors";
@@ -26,9 +28,10 @@ interface MovingBarProps {
 const nameOf = ({ number, prior, first_frame, last_frame, parent_id }: MovingRegistration): string =>
   `${number}: ${PRIORS[prior].label}${parent_id ? `, frames ${first_frame} to ${last_frame}` : ""}`;
 
+const STEPS = { play: "moving.play", previous: "moving.previous", next: "moving.next" };
+
 /** Which moving scan and registration, which frame, and how it is played. */
 export function MovingBar({ scan, registrations, registration, onRegistration, frame, isPlaying, hasDoubts, onPlay, onStep, onDoubt, onRegister }: MovingBarProps) {
-  const hint = useHint();
   const remove = useDeleteMovingScan();
   const restore = useRestoreMovingScan();
   const navigate = useNavigate();
@@ -62,51 +65,24 @@ export function MovingBar({ scan, registrations, registration, onRegistration, f
         </Button>
       </For>
       <div className={classes.controls}>
-        <Tooltip label={hint(isPlaying ? "Pause" : "Play", "moving.play")}>
-          <ActionIcon aria-label={isPlaying ? "Pause" : "Play"} disabled={scan.frame_count < 2} onClick={onPlay}>
-            {isPlaying ? <IconPlayerPause size={18} /> : <IconPlayerPlay size={18} />}
-          </ActionIcon>
-        </Tooltip>
-        <Tooltip label={hint("Previous frame", "moving.previous")}>
-          <ActionIcon aria-label="Previous frame" onClick={() => onStep(-1)}>
-            <IconChevronLeft size={18} />
-          </ActionIcon>
-        </Tooltip>
-        <span className={classes.frame} data-testid="moving-frame">
-          frame {frame} of {scan.frame_count}
-        </span>
-        <Tooltip label={hint("Next frame", "moving.next")}>
-          <ActionIcon aria-label="Next frame" onClick={() => onStep(1)}>
-            <IconChevronRight size={18} />
-          </ActionIcon>
-        </Tooltip>
-        <Tooltip label={hint("Next frame that is not good or has a guessed hand", "moving.nextDoubt")}>
-          <ActionIcon aria-label="Next frame that is not good or has a guessed hand" disabled={!hasDoubts} onClick={onDoubt}>
-            <IconPlayerTrackNext size={18} />
-          </ActionIcon>
-        </Tooltip>
-        <Menu position="bottom-end">
-          <Menu.Target>
-            <ActionIcon aria-label="More">
-              <IconDots size={18} />
-            </ActionIcon>
-          </Menu.Target>
-          <Menu.Dropdown>
-            <Menu.Item component={Link} to="/scans/moving">
-              To all moving scans
+        <FrameSteps isPlaying={isPlaying} canPlay={scan.frame_count > 1} actions={STEPS} onPlay={onPlay} onStep={onStep}>
+          <span className={classes.frame} data-testid="moving-frame">
+            frame {frame} of {scan.frame_count}
+          </span>
+        </FrameSteps>
+        <KeyIcon label="Next frame that is not good or has a guessed hand" action="moving.nextDoubt" disabled={!hasDoubts} onClick={onDoubt}>
+          <IconPlayerTrackNext size={18} />
+        </KeyIcon>
+        <MoreMenu onDelete={drop}>
+          <Menu.Item component={Link} to="/scans/moving">
+            To all moving scans
+          </Menu.Item>
+          {registration && (
+            <Menu.Item component={Link} to={`/jobs/${registration.job_id}`}>
+              To the job of this registration
             </Menu.Item>
-            {registration && (
-              <Menu.Item component={Link} to={`/jobs/${registration.job_id}`}>
-                To the job of this registration
-              </Menu.Item>
-            )}
-            <For role="lead">
-              <Menu.Item color="red" onClick={drop} leftSection={<IconTrash size={16} aria-hidden />}>
-                Delete (can be undone)
-              </Menu.Item>
-            </For>
-          </Menu.Dropdown>
-        </Menu>
+          )}
+        </MoreMenu>
       </div>
     </div>
   );

@@ -30,7 +30,7 @@ export default function MovingScanPage() {
   useTitle(scan?.name ?? "Moving scan");
   if (error && !scan)
     return (
-      <Failure what="The moving scan could not be loaded" error={error} safe="Its files are untouched on the server's disk." onRetry={() => void refetch()}>
+      <Failure what="The moving scan could not be loaded" error={error} onRetry={() => void refetch()}>
         <Button variant="default" component={Link} to="/scans/moving">
           To the moving scans
         </Button>

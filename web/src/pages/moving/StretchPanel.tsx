@@ -1,9 +1,10 @@
-import { ActionIcon, Button, Kbd, NumberInput, Text, Title, Tooltip } from "@mantine/core";
+import { Button, Kbd, NumberInput, Text, Title } from "@mantine/core";
 import { IconArrowBackUp, IconBracketsContainEnd, IconBracketsContainStart, IconCheck, IconX } from "@tabler/icons-react";
 import type { StretchDecision } from "../../api/movingScans";
 import { formatCount } from "../../model/format";
 import { countFrames, sayStretch, type Stretch } from "../../model/stretch";
-import { useHint, useKeyOf } from "../../state/keys";
+import { useKeyOf } from "../../state/keys";
+import { KeyIcon } from "../parts/KeyIcon";
 import classes from "./Moving.module.css";
 
 interface StretchPanelProps {
@@ -33,7 +34,6 @@ const WORDS = { accept: "accepted", reject: "rejected" } as const;
 /** Frames from one to another: chosen, accepted, rejected, or registered again. */
 export function StretchPanel(props: StretchPanelProps) {
   const { stretch, most, onStretch, onBegin, onEnd, obstacle, mayDecide, onDecide, here, onRerun, canUndo, onUndo, decisions, me, onTakeBack, onSeek } = props;
-  const hint = useHint();
   const keyOf = useKeyOf();
   const standing = decisions.filter((one) => one.stands && one.decision !== "undo");
   const take = (bound: "first" | "last") => (value: number | string): void => {
@@ -48,17 +48,13 @@ export function StretchPanel(props: StretchPanelProps) {
       </Title>
       <div className={classes.stretch}>
         <NumberInput size="xs" label="From frame" min={0} max={stretch.last} allowDecimal={false} value={stretch.first} onChange={take("first")} />
-        <Tooltip label={hint("It begins at the frame that is shown", "moving.begin")}>
-          <ActionIcon variant="default" size={30} aria-label="The stretch begins here" onClick={onBegin}>
-            <IconBracketsContainStart size={16} />
-          </ActionIcon>
-        </Tooltip>
+        <KeyIcon variant="default" size={30} label="The stretch begins here" told="It begins at the frame that is shown" action="moving.begin" onClick={onBegin}>
+          <IconBracketsContainStart size={16} />
+        </KeyIcon>
         <NumberInput size="xs" label="To frame" min={stretch.first} max={most} allowDecimal={false} value={stretch.last} onChange={take("last")} />
-        <Tooltip label={hint("It ends at the frame that is shown", "moving.end")}>
-          <ActionIcon variant="default" size={30} aria-label="The stretch ends here" onClick={onEnd}>
-            <IconBracketsContainEnd size={16} />
-          </ActionIcon>
-        </Tooltip>
+        <KeyIcon variant="default" size={30} label="The stretch ends here" told="It ends at the frame that is shown" action="moving.end" onClick={onEnd}>
+          <IconBracketsContainEnd size={16} />
+        </KeyIcon>
       </div>
       {obstacle && (
         <Text size="xs" className="quiet" mt={8}>

@@ -1,6 +1,6 @@
-import { ActionIcon, Button, Code, Group, Menu, SimpleGrid, Skeleton, Stack, Text, Title, Tooltip } from "@mantine/core";
+import { Button, Code, Group, Menu, SimpleGrid, Skeleton, Stack, Text, Title } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
-import { IconChartBar, IconDots, IconDownload, IconFileReport, IconFlag, IconPencil, IconPlayerPlay, IconTransfer, IconTrash } from "@tabler/icons-react";
+import { IconChartBar, IconDownload, IconFileReport, IconFlag, IconPencil, IconPlayerPlay, IconTransfer } from "@tabler/icons-react";
 import { useMemo } from "react";
 import { Link, useNavigate, useParams } from "react-router";
 import { useRestore } from "../../api/bin";
@@ -21,6 +21,7 @@ import { Failure } from "../parts/Failure";
 import { HandBadge } from "../parts/HandBadge";
 import { ImportFacts } from "../parts/ImportFacts";
 import { JobRow } from "../parts/JobRow";
+import { MoreMenu } from "../parts/MoreMenu";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { RefineCameras } from "./RefineCameras";
 import { Sentences } from "../parts/Sentences";
@@ -30,7 +31,6 @@ import { TrackButton, useTrackObstacles } from "./TrackButton";
 import { TrackTable } from "../parts/TrackTable";
 import { useTitle } from "../parts/useTitle";
 import { intoBin } from "../parts/undo";
-import { For } from "../parts/For";
 
 function Cameras({ recording, tracks }: { recording: Recording; tracks: number }) {
   return (
@@ -128,25 +128,11 @@ export function RecordingPage() {
             Annotate
           </Button>
           <TrackButton recording={recording} onClick={tracking.open} leftSection={<IconPlayerPlay size={16} aria-hidden />} />
-          <Menu position="bottom-end">
-            <Menu.Target>
-              <Tooltip label="More">
-                <ActionIcon size={36} variant="default" aria-label="More">
-                  <IconDots size={18} />
-                </ActionIcon>
-              </Tooltip>
-            </Menu.Target>
-            <Menu.Dropdown>
-              <Menu.Item component="a" href={`${API}/sequences/${recording.id}/annotations.json`} download leftSection={<IconDownload size={16} aria-hidden />}>
-                Download annotations.json
-              </Menu.Item>
-              <For role="lead">
-                <Menu.Item color="red" onClick={drop} leftSection={<IconTrash size={16} aria-hidden />}>
-                  Delete (can be undone)
-                </Menu.Item>
-              </For>
-            </Menu.Dropdown>
-          </Menu>
+          <MoreMenu isLarge onDelete={drop}>
+            <Menu.Item component="a" href={`${API}/sequences/${recording.id}/annotations.json`} download leftSection={<IconDownload size={16} aria-hidden />}>
+              Download annotations.json
+            </Menu.Item>
+          </MoreMenu>
         </Group>
       </Group>
 

@@ -24,14 +24,17 @@ export function RecordingsPage() {
   }
   if (data?.length === 0) {
     return (
-      <EmptyState icon={<IconHandFinger size={56} stroke={1.25} />} title="No recordings yet" action={<ImportButton label="Import the first recording" />}>
-        Drop a folder, files or a .zip anywhere on this page: a recording folder, depth and colour images of an RGB-D camera, or several
-        videos with their calibration. You see a report of what was found before anything is stored. Cameras without a calibration:{" "}
-        <Link to="/calibrations" style={{ color: "var(--accent-text)" }}>
-          calibrate them from a filmed board
-        </Link>
-        .
-      </EmptyState>
+      <div className="page">
+        <Title order={1}>Recordings</Title>
+        <EmptyState icon={<IconHandFinger size={56} stroke={1.25} />} title="No recordings yet" action={<ImportButton label="Import the first recording" />}>
+          Drop a folder, files or a .zip anywhere on this page: a recording folder, depth and colour images of an RGB-D camera, or several
+          videos with their calibration. You see a report of what was found before anything is stored. Cameras without a calibration:{" "}
+          <Link to="/calibrations" style={{ color: "var(--accent-text)" }}>
+            calibrate them from a filmed board
+          </Link>
+          .
+        </EmptyState>
+      </div>
     );
   }
   return (

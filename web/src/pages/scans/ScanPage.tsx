@@ -1,4 +1,4 @@
-import { ActionIcon, Badge, Button, Group, Kbd, Text, TextInput, Title, Tooltip } from "@mantine/core";
+import { Badge, Button, Group, Kbd, Text, TextInput, Title } from "@mantine/core";
 import { IconArrowBackUp, IconChevronLeft, IconChevronRight, IconDownload, IconFlipHorizontal, IconScissors } from "@tabler/icons-react";
 import { useQuery, useQueryClient } from "@tanstack/react-query";
 import { useDisclosure } from "@mantine/hooks";
@@ -13,7 +13,7 @@ import { useStage } from "../../canvas/hand3d/useStage";
 import type { Point } from "../../model/crop";
 import { formatAgo, formatBytes, formatMeasure } from "../../model/format";
 import { formatSize } from "../../model/scanUnit";
-import { useHint, useKeyOf } from "../../state/keys";
+import { useKeyOf } from "../../state/keys";
 import { DecisionBadge, VerdictBadge } from "../curate/Verdict";
 import { HandRail } from "../hand3d/HandRail";
 import { HandView } from "../hand3d/HandView";
@@ -24,6 +24,7 @@ import { Awaited } from "../parts/Awaited";
 import { Failure } from "../parts/Failure";
 import { For } from "../parts/For";
 import { HandBadge } from "../parts/HandBadge";
+import { KeyIcon } from "../parts/KeyIcon";
 import { PageSkeleton } from "../parts/PageSkeleton";
 import { Tool } from "../parts/Tool";
 import { useHasFingers } from "../parts/useScreen";
@@ -137,7 +138,6 @@ function OpenScan({ scan }: { scan: Scan }) {
   const geometry = useGeometry(scan, registration.data);
   const [isCutting, setCutting] = useState(false);
   const [isRegistering, registering] = useDisclosure(false);
-  const hint = useHint();
   const hasFingers = useHasFingers();
   const keyOf = useKeyOf();
   const navigate = useNavigate();
@@ -217,16 +217,12 @@ function OpenScan({ scan }: { scan: Scan }) {
           {scan.name}
         </Title>
         <Group gap={4} ml="auto" wrap="nowrap">
-          <Tooltip label={hint("Previous scan", "scan.previous")}>
-            <ActionIcon aria-label="Previous scan" disabled={place <= 0} onClick={() => go(-1)}>
-              <IconChevronLeft size={18} />
-            </ActionIcon>
-          </Tooltip>
-          <Tooltip label={hint("Next scan", "scan.next")}>
-            <ActionIcon aria-label="Next scan" disabled={place < 0 || place >= list.length - 1} onClick={() => go(1)}>
-              <IconChevronRight size={18} />
-            </ActionIcon>
-          </Tooltip>
+          <KeyIcon label="Previous scan" action="scan.previous" disabled={place <= 0} onClick={() => go(-1)}>
+            <IconChevronLeft size={18} />
+          </KeyIcon>
+          <KeyIcon label="Next scan" action="scan.next" disabled={place < 0 || place >= list.length - 1} onClick={() => go(1)}>
+            <IconChevronRight size={18} />
+          </KeyIcon>
           <Button size="xs" variant="default" ml={8} component="a" href={scanFileUrl(scan)} download leftSection={<IconDownload size={14} aria-hidden />}>
             Download
           </Button>

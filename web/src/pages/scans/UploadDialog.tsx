@@ -1,13 +1,12 @@
-import { Autocomplete, Button, Group, Loader, Progress, ScrollArea, Select, Skeleton, Stack, Text, TextInput } from "@mantine/core";
-import { Dialog } from "../parts/Dialog";
-import { useQueryClient } from "@tanstack/react-query";
+import { Autocomplete, Button, Group, Select, Skeleton, Stack, Text, TextInput } from "@mantine/core";
 import { useEffect, useState } from "react";
 import { scanKeys, useScanCollections, type ScansAdded, type ScansMeasured } from "../../api/scans";
 import type { Side } from "../../api/types";
-import { formatBytes, formatCount } from "../../model/format";
+import { formatCount } from "../../model/format";
 import { isGuess, judgeSize, unitOf, writeUnits, type UnitAnswers } from "../../model/scanUnit";
 import { endScanUpload, measureChosenScans, sendChosenScans, useScanUpload } from "../../state/scanUpload";
-import { FormFooter } from "../parts/Obstacles";
+import { FaultList } from "../parts/FaultList";
+import { FilesDialog } from "../parts/FilesDialog";
 import { limitsOf, SizeCheck } from "./SizeCheck";
 
 const ASK = "";
@@ -27,24 +26,9 @@ function findFault(measured: ScansMeasured | null, answers: UnitAnswers, isConfi
   return null;
 }
 
-function Refused({ refused }: { refused: ScansAdded["refused"] }) {
-  return (
-    <ScrollArea.Autosize mah={240} tabIndex={0} aria-label="Refused files">
-      <Stack gap="sm" role="alert">
-        {refused.map(({ file, detail }) => (
-          <div key={file} style={{ overflowWrap: "anywhere" }}>
-            <Text size="sm" fw={600}>
-              {file}
-            </Text>
-            <Text size="xs" c="var(--bad-text)">
-              {detail.replace(`${file}: `, "")}
-            </Text>
-          </div>
-        ))}
-      </Stack>
-    </ScrollArea.Autosize>
-  );
-}
+const Refused = ({ refused }: { refused: ScansAdded["refused"] }) => (
+  <FaultList label="Refused files" faults={refused.map(({ file, detail }) => ({ name: file, detail: detail.replace(`${file}: `, "") }))} />
+);
 
 function Result({ result, onDone }: { result: ScansAdded; onDone: () => void }) {
   return (
@@ -69,11 +53,10 @@ function Result({ result, onDone }: { result: ScansAdded; onDone: () => void }) 
   );
 }
 
-/** What dropped scans do not say of themselves, then their way to the server, then what became of each. */
+/** What dropped scans do not say of themselves. */
 export function UploadDialog() {
   const upload = useScanUpload();
   const collections = useScanCollections().data ?? [];
-  const client = useQueryClient();
   const [collection, setCollection] = useState("");
   const [subject, setSubject] = useState("");
   const [pose, setPose] = useState("");
@@ -89,13 +72,8 @@ export function UploadDialog() {
     setOnlyThis(false);
     setConfirmed(false);
   }, [files]);
-  const hasResult = Boolean(upload?.result);
-  useEffect(() => {
-    if (hasResult) void client.invalidateQueries({ queryKey: scanKeys.all });
-  }, [hasResult, client]);
   if (!upload) return null;
   const { measured } = upload;
-  const isSending = upload.sent !== null && !upload.result;
   const send = (): void =>
     void sendChosenScans({
       ...(collection.trim() ? { collection: collection.trim() } : {}),
@@ -106,80 +84,49 @@ export function UploadDialog() {
     });
   const fault = findFault(measured, answers, isConfirmed);
   return (
-    <Dialog title="Add scans" size={720} onClose={endScanUpload} isKept>
-      {upload.result ? (
-        <Result result={upload.result} onDone={endScanUpload} />
-      ) : isSending ? (
-        <Stack gap="md">
-          <Group gap="sm">
-            {upload.sent === 1 && <Loader size="sm" />}
-            <Text size="sm">{upload.sent === 1 ? "Every file is opened and checked." : `Sending ${formatCount(upload.files.length, "file")}, ${formatBytes(upload.bytes)}.`}</Text>
-          </Group>
-          <Progress value={100 * (upload.sent ?? 0)} animated={upload.sent === 1} aria-label="Part of the files sent" />
-          <Group justify="flex-end">
-            <Button variant="default" onClick={endScanUpload}>
-              Cancel
-            </Button>
-          </Group>
-        </Stack>
+    <FilesDialog
+      title="Add scans"
+      size={720}
+      upload={upload}
+      hint="A scans.json among them says for each scan whose hand it is; the fields below hold for all others."
+      reading="Every file is opened and checked."
+      changes={scanKeys.all}
+      onEnd={endScanUpload}
+      note={
+        measured &&
+        fault && (
+          <Text size="xs" className="quiet" mr="auto" maw={400}>
+            {fault}
+          </Text>
+        )
+      }
+      onSend={fault === null ? send : null}
+      verb={`Add ${measured ? formatCount(measured.files.length, "scan") : formatCount(upload.files.length, "file")}`}
+      instead={upload.failure && !measured && <Button onClick={() => void measureChosenScans()}>Try again</Button>}
+      result={(result) => <Result result={result} onDone={endScanUpload} />}
+    >
+      <Autocomplete label="Collection" openOnFocus={false} description="Scans that belong together" placeholder="scans" data={collections.map(({ name }) => name)} maxLength={200} value={collection} onChange={setCollection} data-autofocus />
+      <Group grow gap="md">
+        <Select label="Hand" description="When it is known" data={[{ value: ASK, label: "Find out" }, { value: "right", label: "Right" }, { value: "left", label: "Left" }]} value={side} onChange={(value) => setSide(value ?? ASK)} allowDeselect={false} />
+        <TextInput label="Subject" description="Whose hand" maxLength={100} value={subject} onChange={(event) => setSubject(event.currentTarget.value)} />
+        <TextInput label="Pose" description="When all show the same" maxLength={100} value={pose} onChange={(event) => setPose(event.currentTarget.value)} />
+      </Group>
+      {measured ? (
+        <SizeCheck
+          measured={measured}
+          answers={answers}
+          shown={shown}
+          isOnlyThis={isOnlyThis}
+          isConfirmed={isConfirmed}
+          onAnswers={setAnswers}
+          onShow={setShown}
+          onOnlyThis={setOnlyThis}
+          onConfirm={setConfirmed}
+        />
       ) : (
-        <form
-          onSubmit={(event) => {
-            event.preventDefault();
-            send();
-          }}
-        >
-          <Stack gap="md">
-            <Text size="sm" className="quiet">
-              {formatCount(upload.files.length, "file")}, {formatBytes(upload.bytes)}. A scans.json among them says for each scan whose hand it is; the fields below hold for all others.
-            </Text>
-            <Autocomplete label="Collection" description="Scans that belong together" placeholder="scans" data={collections.map(({ name }) => name)} maxLength={200} value={collection} onChange={setCollection} data-autofocus />
-            <Group grow gap="md">
-              <Select label="Hand" description="When it is known" data={[{ value: ASK, label: "Find out" }, { value: "right", label: "Right" }, { value: "left", label: "Left" }]} value={side} onChange={(value) => setSide(value ?? ASK)} allowDeselect={false} />
-              <TextInput label="Subject" description="Whose hand" maxLength={100} value={subject} onChange={(event) => setSubject(event.currentTarget.value)} />
-              <TextInput label="Pose" description="When all show the same" maxLength={100} value={pose} onChange={(event) => setPose(event.currentTarget.value)} />
-            </Group>
-            {measured ? (
-              <SizeCheck
-                measured={measured}
-                answers={answers}
-                shown={shown}
-                isOnlyThis={isOnlyThis}
-                isConfirmed={isConfirmed}
-                onAnswers={setAnswers}
-                onShow={setShown}
-                onOnlyThis={setOnlyThis}
-                onConfirm={setConfirmed}
-              />
-            ) : (
-              !upload.failure && <Skeleton height={296} role="status" aria-label="The scans are measured" />
-            )}
-            {measured && measured.refused.length > 0 && <Refused refused={measured.refused} />}
-            {upload.failure && (
-              <Text size="sm" c="var(--bad-text)" role="alert" style={{ overflowWrap: "anywhere" }}>
-                {upload.failure.message} Nothing was stored; try again.
-              </Text>
-            )}
-            <FormFooter>
-              {measured && fault && (
-                <Text size="xs" className="quiet" mr="auto" maw={400}>
-                  {fault}
-                </Text>
-              )}
-              <Button variant="default" onClick={endScanUpload}>
-                Cancel
-              </Button>
-              {upload.failure && !measured ? (
-                <Button onClick={() => void measureChosenScans()}>Try again</Button>
-              ) : (
-                <Button type="submit" disabled={fault !== null}>
-                  Add {measured ? formatCount(measured.files.length, "scan") : formatCount(upload.files.length, "file")}
-                </Button>
-              )}
-            </FormFooter>
-          </Stack>
-        </form>
+        !upload.failure && <Skeleton height={296} role="status" aria-label="The scans are measured" />
       )}
-    </Dialog>
+      {measured && measured.refused.length > 0 && <Refused refused={measured.refused} />}
+    </FilesDialog>
   );
 }

@@ -1,27 +1,13 @@
 import { ActionIcon, Badge, Button, Group, Menu, Select, Text, Tooltip } from "@mantine/core";
-import {
-  IconAlertTriangle,
-  IconChartBar,
-  IconChevronLeft,
-  IconChevronRight,
-  IconCircleCheck,
-  IconDots,
-  IconDownload,
-  IconHandFinger,
-  IconPencil,
-  IconPlayerPause,
-  IconPlayerPlay,
-  IconPlayerTrackNext,
-  IconRefresh,
-  IconTrash,
-} from "@tabler/icons-react";
+import { IconAlertTriangle, IconChartBar, IconCircleCheck, IconDownload, IconHandFinger, IconPencil, IconPlayerTrackNext, IconRefresh } from "@tabler/icons-react";
 import { Link, useNavigate } from "react-router";
 import { useRestore } from "../../api/bin";
 import { EXPORTS, exportUrl, trackFileUrl, useDeleteTrack } from "../../api/tracks";
 import type { Recording, Track } from "../../api/types";
-import { useHint } from "../../state/keys";
 import classes from "./TrackReview.module.css";
-import { For } from "../parts/For";
+import { FrameSteps } from "../parts/FrameSteps";
+import { KeyIcon } from "../parts/KeyIcon";
+import { MoreMenu } from "../parts/MoreMenu";
 import { intoBin } from "../parts/undo";
 
 interface TrackBarProps {
@@ -41,12 +27,12 @@ interface TrackBarProps {
   onAnnotate: () => void;
 }
 
+const STEPS = { play: "track.play", previous: "track.previous", next: "track.next" };
 const STATUS_ICONS = { ok: IconCircleCheck, lost: IconAlertTriangle, recovered: IconRefresh } as const;
 
 /** Which track, which frame, and how it went there. */
 export function TrackBar(props: TrackBarProps) {
   const { track, recording, frame, status, isPlaying, hasLost, camera, all, onCamera, onPlay, onStep, onBad, onAnnotate } = props;
-  const hint = useHint();
   const remove = useDeleteTrack();
   const restore = useRestore();
   const navigate = useNavigate();
@@ -90,29 +76,14 @@ export function TrackBar(props: TrackBarProps) {
           {StatusIcon && <StatusIcon size={15} aria-hidden />}
           {status ?? "not tracked"}
         </Group>
-        <Tooltip label={hint(isPlaying ? "Pause" : "Play", "track.play")}>
-          <ActionIcon aria-label={isPlaying ? "Pause" : "Play"} onClick={onPlay}>
-            {isPlaying ? <IconPlayerPause size={18} /> : <IconPlayerPlay size={18} />}
-          </ActionIcon>
-        </Tooltip>
-        <Tooltip label={hint("Previous frame", "track.previous")}>
-          <ActionIcon aria-label="Previous frame" onClick={() => onStep(-1)}>
-            <IconChevronLeft size={18} />
-          </ActionIcon>
-        </Tooltip>
-        <Text size="sm" ta="center" miw={96} data-testid="frame">
-          frame {frame}
-        </Text>
-        <Tooltip label={hint("Next frame", "track.next")}>
-          <ActionIcon aria-label="Next frame" onClick={() => onStep(1)}>
-            <IconChevronRight size={18} />
-          </ActionIcon>
-        </Tooltip>
-        <Tooltip label={hint(hasLost ? "Next lost frame" : "Next of the worst frames", "track.nextBad")}>
-          <ActionIcon aria-label={hasLost ? "Next lost frame" : "Next of the worst frames"} onClick={() => onBad(1)}>
-            <IconPlayerTrackNext size={18} />
-          </ActionIcon>
-        </Tooltip>
+        <FrameSteps isPlaying={isPlaying} actions={STEPS} onPlay={onPlay} onStep={onStep}>
+          <Text size="sm" ta="center" miw={96} data-testid="frame">
+            frame {frame}
+          </Text>
+        </FrameSteps>
+        <KeyIcon label={hasLost ? "Next lost frame" : "Next of the worst frames"} action="track.nextBad" onClick={() => onBad(1)}>
+          <IconPlayerTrackNext size={18} />
+        </KeyIcon>
         <Tooltip label="Annotate this frame (A)">
           <Button size="compact-sm" variant="default" ml="sm" leftSection={<IconPencil size={14} aria-hidden />} onClick={onAnnotate}>
             Annotate
@@ -123,35 +94,23 @@ export function TrackBar(props: TrackBarProps) {
             <IconChartBar size={18} />
           </ActionIcon>
         </Tooltip>
-        <Menu position="bottom-end">
-          <Menu.Target>
-            <ActionIcon aria-label="More">
-              <IconDots size={18} />
-            </ActionIcon>
-          </Menu.Target>
-          <Menu.Dropdown>
-            <Menu.Label>Download</Menu.Label>
-            {EXPORTS.filter((one) => !one.isOfHands || track.hands.length > 0).map(({ kind, label }) => (
-              <Menu.Item key={kind} component="a" href={exportUrl(track.id, kind)} leftSection={<IconDownload size={16} aria-hidden />}>
-                {label}
-              </Menu.Item>
-            ))}
-            <Menu.Item component="a" href={trackFileUrl(track.id, "summary.json")} leftSection={<IconDownload size={16} aria-hidden />}>
-              Summary (JSON)
+        <MoreMenu onDelete={drop}>
+          <Menu.Label>Download</Menu.Label>
+          {EXPORTS.filter((one) => !one.isOfHands || track.hands.length > 0).map(({ kind, label }) => (
+            <Menu.Item key={kind} component="a" href={exportUrl(track.id, kind)} leftSection={<IconDownload size={16} aria-hidden />}>
+              {label}
             </Menu.Item>
-            <Menu.Divider />
-            {track.job_id && (
-              <Menu.Item component={Link} to={`/jobs/${track.job_id}`}>
-                To the job
-              </Menu.Item>
-            )}
-            <For role="lead">
-              <Menu.Item color="red" onClick={drop} leftSection={<IconTrash size={16} aria-hidden />}>
-                Delete (can be undone)
-              </Menu.Item>
-            </For>
-          </Menu.Dropdown>
-        </Menu>
+          ))}
+          <Menu.Item component="a" href={trackFileUrl(track.id, "summary.json")} leftSection={<IconDownload size={16} aria-hidden />}>
+            Summary (JSON)
+          </Menu.Item>
+          <Menu.Divider />
+          {track.job_id && (
+            <Menu.Item component={Link} to={`/jobs/${track.job_id}`}>
+              To the job
+            </Menu.Item>
+          )}
+        </MoreMenu>
       </Group>
     </div>
   );

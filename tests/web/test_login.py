@@ -265,8 +265,9 @@ def test_what_one_person_left_is_not_sent_in_the_name_of_the_next(
 ) -> None:
     from playwright.sync_api import expect
 
-    page = open_lab("Anna")
+    page = open_lab()
     picture = annotate(page, lab, 3)
+    log_in(page, "Anna")
     picture.wait()
     end_logins(page, lab, lambda: picture.click(*synthesized.joints[0]))
     assert page.evaluate(UNSAVED) == 1, "the gesture is kept in the browser"
@@ -297,8 +298,9 @@ def test_a_page_of_the_person_before_cannot_write_as_the_next(
     """Two tabs of one browser: in the second one somebody else logs in."""
     from playwright.sync_api import expect
 
-    page = open_lab("Anna")
+    page = open_lab()
     picture = annotate(page, lab, 5)
+    log_in(page, "Anna")
     picture.wait()
     # Nothing that the page asks by itself may tell it before the gesture that Anna is gone.
     page.route("**/api/v1/**", lambda route: None if route.request.method == "GET" else route.continue_())

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.annotations import JOINT_NAMES, Annotation, Annotations
+from tracker.capture.exposure import brighten_frame
 from tracker.capture.frame import Frame
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.capture.sequence import Sequence
@@ -66,7 +67,7 @@ def annotated_images(
         frames = sorted({item.frame for item in annotations.items if item.camera == camera.id})
         for index in [frame for frame in frames if frame < sequence.frame_count][::step]:
             hands = [item for item in annotations.at(index) if item.camera == camera.id]
-            frame = sequence.frame(index, camera.id)
+            frame = brighten_frame(sequence.frame(index, camera.id))
             found = _cut_out(f"{sequence.name}, frame {index}", frame, camera, hands, use_skin)
             if found is not None:
                 yield found

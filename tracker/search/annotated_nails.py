@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.capture.annotations import JOINT_NAMES, Annotation, Annotations
+from tracker.capture.exposure import brighten
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
 from tracker.detection.annotated_images import AnnotatedImage
@@ -110,7 +111,7 @@ def _cut_out(
     marks: list[Annotation | None],
 ) -> AnnotatedImage | None:
     recorded = sequence.camera(camera_id)
-    image, camera = undistort(Frame(frame, camera_id, sequence.color(frame, camera_id), None), recorded)
+    image, camera = undistort(Frame(frame, camera_id, brighten(sequence.color(frame, camera_id)), None), recorded)
     assert image.color is not None
     view = draw_nail_view(posed, places, camera, image.color)
     if view is None:

@@ -1,5 +1,8 @@
 """The part of an image in which hands are marked."""
 
+import shutil
+
+import cv2
 import numpy as np
 import pytest
 
@@ -50,6 +53,15 @@ def test_as_many_are_taken_as_were_counted(recording, annotations):
 def test_one_of_so_many_is_taken(recording, annotations):
     names = [item.name for item in annotated_images(recording, annotations, step=4)]
     assert [name.split()[-1] for name in names] == ["0", "4"]
+
+
+def test_a_dim_recording_is_learnt_from_as_brightly_as_it_is_tracked(recording, annotations, tmp_path):
+    copy = load_sequence(shutil.copytree(recording.folder, tmp_path / "dim"))
+    path = copy.image_path("color", 0, "cam0")
+    cv2.imwrite(str(path), (0.3 * cv2.imread(str(path))).astype(np.uint8))
+    (full, dim) = (next(annotated_images(each, annotations)).image for each in (recording, copy))
+    assert np.abs(full.color.astype(float) - dim.color).mean() < 0.2 * full.color.mean()
+    assert np.mean(full.mask != dim.mask) < 0.05
 
 
 def test_images_without_depth_at_any_mark_are_left_out(recording):

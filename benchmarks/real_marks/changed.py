@@ -1,7 +1,8 @@
 """Real recordings, changed: `python -m benchmarks.real_marks.changed DATA [--only NAME ...] [--write]`.
 
 The same hands as in `benchmarks.real_marks`, mirrored (a left hand), upside down, backwards (another start), with every
-second and every third frame left (two and three times the motion), and with dim colours. Nothing was chosen on these.
+second and every third frame left (two and three times the motion), and with dim colours. Nothing was
+chosen on these, but that dim images are brightened was seen to be needed on them.
 With `--write` the table goes into `benchmarks/results/real_changed.md`.
 """
 

@@ -35,8 +35,8 @@ MIN_SIZE, MAX_SIZE = 4.0, 4.0
 """A square smaller than this, px, or larger than this many images, is of no hand."""
 
 WIDER = 1.25
-"""Times a hand's square, in which something else often is no hand any more: a red tool that was taken for one in 8 of 8
-frames of a film is found in none so, of 27 hands in three recordings 26 are."""
+"""Times a hand's square, in which something else often is no hand any more: a red tool is one in none of 4 frames of a
+film that were looked at, and all 27 hands of three recordings are; a false hand of 50 px in one of them is too."""
 
 
 class HandDetector:

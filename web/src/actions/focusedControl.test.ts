@@ -40,8 +40,8 @@ describe("keepsKey", () => {
     const box = control("INPUT", { type: "checkbox" });
     for (const chord of ["Space", "Enter", "Tab", "Delete"]) expect(keepsKey(box, chord)).toBe(true);
     for (const chord of ["Right", "Home", "N", "Ctrl+S"]) expect(keepsKey(box, chord)).toBe(false);
-    expect(keepsKey(control("BUTTON"), "Right")).toBe(false);
-    expect(keepsKey(control("BUTTON"), "Space")).toBe(true);
+    for (const chord of ["Right", "Home", "End"]) expect(keepsKey(control("BUTTON"), chord)).toBe(false);
+    for (const chord of ["Space", "Down"]) expect(keepsKey(control("BUTTON"), chord)).toBe(true);
     expect(keepsKey(control("INPUT", { type: "radio" }), "Right")).toBe(true);
     expect(keepsKey(control("BUTTON", { getAttribute: (name) => (name === "role" ? "tab" : null) }), "Right")).toBe(true);
   });

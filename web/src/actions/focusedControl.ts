@@ -26,7 +26,7 @@ const CONTROL_KEYS = new Set(["Tab", "Shift+Tab", "Space", "Enter", "Left", "Rig
 
 /** Of these, what a box and a plain button have no use for: after a click on one of them the frames are still walked by arrows. */
 const UNUSED_BY_BOX = new Set(["Left", "Right", "Up", "Down", "Home", "End"]);
-const UNUSED_BY_BUTTON = new Set(["Left", "Right"]);
+const UNUSED_BY_BUTTON = new Set(["Left", "Right", "Home", "End"]);
 
 export function keepsKey(control: FocusedControl, chord: string): boolean {
   if (!CONTROL_KEYS.has(chord)) return false;

@@ -62,7 +62,7 @@ def start_tracking(
     progress: Progress | None = None,
     detector: OwnDetector | None = None,
 ) -> tuple[TrackSetup, TrackState]:
-    """Place the hands in the first frame, from its annotation or else from the depth alone, and calibrate them.
+    """Place the hands in the first frame, from its annotation, the hand detector or the depth alone, and calibrate.
 
     Args:
         sequence: The recording.

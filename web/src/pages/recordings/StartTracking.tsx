@@ -14,7 +14,7 @@ interface StartTrackingProps {
 
 /** What the tracker begins with, to follow "It starts". */
 export const whereItStarts = (recording: Recording): string =>
-  `from the annotation of the first frame when there is one, otherwise from ${recording.cameras.some((camera) => camera.has_depth) ? "the depth alone" : "the hand that is found in the pictures"}.`;
+  `from the annotation of the first frame when there is one, otherwise from ${recording.cameras.some((camera) => camera.has_color) ? "the hands that are found in the pictures" : "the depth alone"}.`;
 
 /** Start a tracking job: the fields, defaults and help come from the server. */
 export function StartTracking({ recording, isOpen, onClose }: StartTrackingProps) {

@@ -92,9 +92,11 @@ def truth(surrounded: Path, cameras) -> dict[str, np.ndarray]:
     return {name: camera.project(joints) for name, camera in cameras.items()}
 
 
-def open_cameras(open_page, picture_of, recording, names, **size):
-    """The annotator with these cameras, and the picture of each."""
+def open_cameras(open_page, picture_of, recording, names, has_detector: bool = False, **size):
+    """The annotator with these cameras, and the picture of each; without the hand detector only marks suggest joints."""
     page = open_page(**size)
+    if not has_detector:
+        page.route(re.compile("/detector$"), lambda route: route.fulfill(json={"items": [], "next_cursor": None}))
     page.goto(f"/recordings/{recording['id']}/annotate?camera={names[0]}&cameras={','.join(names)}")
     pictures = {name: picture_of(page, index) for index, name in enumerate(names)}
     for picture in pictures.values():
@@ -180,6 +182,28 @@ def test_two_marks_suggest_the_third_and_a_person_accepts_it(
     expect(page.locator("[data-camera=cam2]")).to_contain_text("0/21")
     pictures["cam0"].wait_until_saved()
     assert find_points(studio, recording, "cam2") is None, "undone in one step"
+
+
+def test_the_detector_suggests_in_every_picture_and_one_key_accepts_the_frame(
+    studio, recording, truth, open_page, picture_of, screenshots
+):
+    from playwright.sync_api import expect
+
+    names = ["cam0", "cam1", "cam2"]
+    page, pictures = open_cameras(open_page, picture_of, recording, names, has_detector=True)
+    page.mouse.move(5, 300)
+    for index, name in enumerate(names):
+        expect_drawn(page, pictures[name], index, truth[name][0], radius=12)
+    screenshots.take(page, "cameras-detected")
+    page.get_by_test_id("suggested-by").get_by_role("button", name="Accept all in every picture").click()
+    pictures["cam0"].wait_until_saved()
+    for name in names:
+        expect(page.locator(f"[data-camera={name}]")).to_contain_text("21/21")
+        points = np.array(find_points(studio, recording, name))
+        assert np.median(np.linalg.norm(points[:, :2] - truth[name], axis=1)) < 8.0
+    page.keyboard.press("Control+z")
+    pictures["cam0"].wait_until_saved()
+    assert [find_points(studio, recording, name) for name in names] == [None, None, None], "undone in one step"
 
 
 def expect_drawn(page, picture, index: int, place, is_there: bool = True, **how: int) -> None:

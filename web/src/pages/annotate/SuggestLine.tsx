@@ -7,13 +7,14 @@ import { activeKey, activePose } from "../../state/annotator";
 import { useHint, useKeyOf } from "../../state/keys";
 import { useAnnotating } from "./annotating";
 import classes from "./SuggestLine.module.css";
-import { useAnnotation, usePage, useSuggestions } from "./reading";
+import { useAnnotation, usePage, useShownCameras, useSuggestions } from "./reading";
 import { useOpenJoints } from "./useOpenJoints";
 
 /** Who suggests what for the active hand, and the button that takes it. */
 export function SuggestLine() {
   const { run } = useAnnotating();
   const isLocked = usePage((page) => page.lock !== null);
+  const areSeveral = useShownCameras().length > 1;
   const hint = useHint();
   const keyOf = useKeyOf();
   const key = useAnnotation((state) => keyText(activeKey(state)));
@@ -46,6 +47,11 @@ export function SuggestLine() {
             Accept {formatCount(count, "joint")}
           </Button>
         </Tooltip>
+      )}
+      {count > 0 && areSeveral && (
+        <Button fullWidth size="compact-xs" variant="subtle" color="violet" disabled={isLocked} onClick={() => run("suggestion.frame")} rightSection={<kbd className={classes.key}>{keyOf("suggestion.frame")}</kbd>}>
+          Accept all in every picture
+        </Button>
       )}
     </div>
   );

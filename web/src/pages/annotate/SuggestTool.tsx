@@ -39,7 +39,7 @@ function Suggest() {
   const failure = useFitSuggestion(!hidden.has("fit"));
   const hasColor = useCamera().has_color;
   const detectJobs = useDetectJobs(recording.id);
-  const detectorFailure = useDetectedSuggestions(detectJobs.found?.id, detectJobs.isKnown && hasColor && !hidden.has("detector"));
+  const detectorFailure = useDetectedSuggestions(detectJobs.found?.id, detectJobs.isKnown && !hidden.has("detector"));
   const toggle = (): void => setHidden(session.suggestions, isOn ? SOURCES : []);
   useActions({
     "suggestion.joint": () => act(acceptJoint, session.suggestions.get()),

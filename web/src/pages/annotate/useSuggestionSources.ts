@@ -1,11 +1,12 @@
-import { useEffect, useEffectEvent, useRef, useState } from "react";
+import { useEffect, useEffectEvent, useMemo, useRef, useState } from "react";
 import { fetchDetected, fetchFit, fetchTrackSuggestions } from "../../api/suggestions";
+import type { Camera } from "../../api/types";
 import { keyText, parseKey, placedCount, statusOf } from "../../model/pose";
 import type { Source, Suggestion } from "../../model/suggestion";
 import { activeKey } from "../../state/annotator";
 import { suggest, withdraw } from "../../state/suggestions";
 import { useAnnotating } from "./annotating";
-import { useAnnotation } from "./reading";
+import { useAnnotation, useShownCameras } from "./reading";
 import { usePatience } from "./usePatience";
 
 /** With fewer joints a model may be anywhere; the server says the same. */
@@ -17,15 +18,22 @@ const REST_MS = 60;
 
 type Ask = (camera: string, frame: number, signal: AbortSignal) => Promise<Suggestion[]>;
 
+/** The cameras whose pictures are shown, the active one first. */
+function useAskedCameras(): readonly Camera[] {
+  const shown = useShownCameras();
+  const active = useAnnotation((state) => state.camera);
+  return useMemo(() => [...shown.filter(({ id }) => id === active), ...shown.filter(({ id }) => id !== active)], [shown, active]);
+}
+
 /**
- * Keep what a source says of whole images at hand, of this one and of the next; the last failure, if that is the answer.
- * All is asked anew when `of` changes: it names what the source goes by.
+ * Keep what a source says of whole images at hand, of all that are shown and of the next ones; the last failure, if that
+ * is the answer. All is asked anew when `of` changes: it names what the source goes by.
  */
-function useImageSuggestions(source: Source, of: string | undefined, isWanted: boolean, fetch: Ask): string | null {
+function useImageSuggestions(source: Source, of: string | undefined, cameras: readonly Camera[], fetch: Ask): string | null {
   // What is asked changes with `of` alone.
   const fetchNow = useEffectEvent(fetch);
   const { suggestions } = useAnnotating().session;
-  const [camera, frame, frameCount] = [useAnnotation((state) => state.camera), useAnnotation((state) => state.frame), useAnnotation((state) => state.frameCount)];
+  const [frame, frameCount] = [useAnnotation((state) => state.frame), useAnnotation((state) => state.frameCount)];
   const asked = useRef(new Set<string>());
   const [failure, setFailure] = useState<string | null>(null);
   const { round, failed, succeeded } = usePatience();
@@ -36,12 +44,13 @@ function useImageSuggestions(source: Source, of: string | undefined, isWanted: b
   }, [suggestions, source, of]);
 
   useEffect(() => {
-    if (!isWanted) return;
+    if (cameras.length === 0) return;
     const call = new AbortController();
+    const images = [frame, frame + 1].filter((one) => one < frameCount).flatMap((one) => cameras.map(({ id }) => [id, one] as const));
     const ask = async (): Promise<void> => {
-      for (const one of [frame, frame + 1]) {
+      for (const [camera, one] of images) {
         const name = `${one}|${camera}`;
-        if (one >= frameCount || asked.current.has(name)) continue;
+        if (asked.current.has(name)) continue;
         asked.current.add(name);
         try {
           const found = await fetchNow(camera, one, call.signal);
@@ -65,21 +74,23 @@ function useImageSuggestions(source: Source, of: string | undefined, isWanted: b
       clearTimeout(timer);
       call.abort();
     };
-  }, [suggestions, camera, frame, frameCount, of, isWanted, round, failed, succeeded]);
+  }, [suggestions, cameras, frame, frameCount, of, round, failed, succeeded]);
 
-  return isWanted ? failure : null;
+  return cameras.length > 0 ? failure : null;
 }
 
 /** The track's hands. */
 export function useTrackSuggestions(track: string | undefined): void {
   const recording = useAnnotating().recording.get().id;
-  useImageSuggestions("track", track, true, (camera, frame, signal) => fetchTrackSuggestions(recording, camera, frame, track, signal));
+  useImageSuggestions("track", track, useAskedCameras(), (camera, frame, signal) => fetchTrackSuggestions(recording, camera, frame, track, signal));
 }
 
 /** The hands that the detector sees; `job` is the one that looked through the whole recording, if one did. */
 export function useDetectedSuggestions(job: string | undefined, isWanted: boolean): string | null {
   const recording = useAnnotating().recording.get().id;
-  return useImageSuggestions("detector", job, isWanted, (camera, frame, signal) => fetchDetected(recording, camera, frame, signal));
+  const asked = useAskedCameras();
+  const cameras = useMemo(() => (isWanted ? asked.filter((camera) => camera.has_color) : []), [asked, isWanted]);
+  return useImageSuggestions("detector", job, cameras, (camera, frame, signal) => fetchDetected(recording, camera, frame, signal));
 }
 
 /** Fit a model to the joints placed so far, a moment after each; an answer that is older than the joints is dropped. */

@@ -53,7 +53,7 @@ export function TrackPlots({ track, frames, lost, frame, camera, tab, onTab, onC
     [frames],
   );
 
-  const leftOut = evaluation && evaluation.left_out_joints > 0 ? `, ${evaluation.left_out_joints} joints that a track had a part in left out` : "";
+  const leftOut = evaluation && evaluation.left_out_joints > 0 ? `, ${evaluation.left_out_joints} suggested joints left out` : "";
   const hasDepth = frames.depth_residual_mm.some((value) => value !== null);
   const hasEnergy = Object.keys(frames.costs).length > 0;
   const stages = Object.entries(track.summary.stages_ms ?? {});

@@ -1,5 +1,7 @@
 /** The only file that talks to the network. */
 
+import { whileShown } from "./whileShown";
+
 export const API = "/api/v1";
 
 /** An answer that is not a success. `status` 0 means that no answer came at all. */
@@ -177,41 +179,47 @@ export function upload<T>(path: string, form: FormData, onProgress: (part: numbe
 const REOPEN_MS = 3000;
 
 /**
- * Server-sent events; returns the way to stop. It opens again by itself, after a login too. `address` is asked whenever it
- * is opened, and a handler gets the event's id, by which a stream goes on where it was.
+ * Server-sent events while the page is shown; returns the way to stop. It opens again by itself, after a login too.
+ * `address` is asked whenever it is opened, and a handler gets the event's id, by which a stream goes on where it was.
  */
 export function listen(
   address: () => string,
   handlers: Record<string, (data: unknown, id: string) => void>,
   onLink: (isUp: boolean) => void = () => undefined,
 ): () => void {
-  const stopping = new AbortController();
-  let source: EventSource;
+  let stopping = new AbortController();
+  let source: EventSource | undefined;
   const open = (): void => {
     if (stopping.signal.aborted) return;
-    source = new EventSource(API + address());
-    source.onopen = () => onLink(true);
-    source.onerror = () => {
+    const opened = new EventSource(API + address());
+    source = opened;
+    opened.onopen = () => onLink(true);
+    opened.onerror = () => {
       onLink(false);
       // The browser gives up on a refusal without saying which: a plain request finds out, and waits for a login.
-      if (source.readyState === EventSource.CLOSED) void reopen();
+      if (opened.readyState === EventSource.CLOSED) void reopen(stopping.signal);
     };
     for (const [event, handle] of Object.entries(handlers)) {
-      source.addEventListener(event, (message) => handle(JSON.parse((message as MessageEvent<string>).data), (message as MessageEvent<string>).lastEventId));
+      opened.addEventListener(event, (message) => handle(JSON.parse((message as MessageEvent<string>).data), (message as MessageEvent<string>).lastEventId));
     }
   };
-  const reopen = async (): Promise<void> => {
+  const reopen = async (signal: AbortSignal): Promise<void> => {
     try {
-      await send("GET", `${API}/account`, { signal: stopping.signal });
+      await send("GET", `${API}/account`, { signal });
       await new Promise((resolve) => setTimeout(resolve, REOPEN_MS / 3));
     } catch {
       await new Promise((resolve) => setTimeout(resolve, REOPEN_MS));
     }
-    open();
+    if (!signal.aborted) open();
   };
-  open();
-  return () => {
-    stopping.abort();
-    source.close();
-  };
+  return whileShown(
+    () => {
+      stopping = new AbortController();
+      open();
+    },
+    () => {
+      stopping.abort();
+      source?.close();
+    },
+  );
 }

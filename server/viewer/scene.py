@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tracker.inspection import FrameView
 
 HAND_SPAN = 0.24
-"""Height of what the first view shows at the distance of the hand, m."""
+"""Height of what the first view shows at the distance of the hand, m; a hand half as far aside is out of it."""
 
 POINT_SIZE = 0.0008
 """m; less than the spacing of a depth sensor's points at arm's length, so that the mesh shows between them."""
@@ -47,6 +47,7 @@ class ViewerScene:
         for request in (_messages.ShareUrlRequest, _messages.ShareUrlDisconnect):
             self.server._websock_server.unregister_handler(request)
         self._nodes = SceneNodes(self.server)
+        self._focus = focus
         self.set_dark(dark)
         self._place_camera(camera, focus)
 
@@ -73,7 +74,21 @@ class ViewerScene:
                 self._draw_cameras(view)
             draw_evidence(self._nodes, view, layers)
             self._nodes.end()
+        self.follow(np.concatenate([model.vertices for model in view.models]).mean(axis=0).astype(np.float64))
         self.server.flush()
+
+    def follow(self, middle: npt.NDArray[np.float64]) -> None:
+        """Turn every view by as much as the models' middle (3,) world, m, has moved, once it has left the first view.
+
+        Views turn where they stand: seen from the recording's camera the depth image has no holes.
+        """
+        shift = middle - self._focus
+        if np.linalg.norm(shift) < HAND_SPAN / 2.0:
+            return
+        self._focus = middle
+        self.server.initial_camera.look_at = middle
+        for client in self.server.get_clients().values():
+            client.camera.look_at = client.camera.look_at + shift
 
     def close(self) -> None:
         with contextlib.redirect_stdout(io.StringIO()):

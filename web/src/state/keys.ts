@@ -92,8 +92,10 @@ function change(map: readonly KeyBinding[]): void {
 /** At the start: the account's keys go before the browser's, except those that it has not been told yet. */
 export async function loadKeys(): Promise<void> {
   if (window.localStorage.getItem(UNSENT)) return send();
+  const before = store.get();
   try {
     const found = (await fetchPreferences())["keys"];
+    if (store.get() !== before) return; // changed meanwhile, and sent
     const remap = typeof found === "object" && found !== null ? (found as Remap) : {};
     keep(remap, false);
     store.set(withRemap(KEYMAP, remap), "server");

@@ -28,6 +28,7 @@ from server.imports.service import ImportContext, import_recording
 from server.settings import Settings
 from server.storage import Storage
 from server.tracks.service import add_track
+from tests.once import make_once
 from tests.postgres import NoPostgresError, run_postgres
 from tracker import (
     Registrar,
@@ -37,6 +38,7 @@ from tracker import (
     add_commands,
     join_chunks,
     load_annotations,
+    load_registration,
     load_sequence,
     save_registration,
     start_tracking,
@@ -288,13 +290,15 @@ RENDERED_FRAMES = 45
 @pytest.fixture(scope="session")
 def rendered(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A recording folder that Handloom rendered itself: a right hand that opens and closes, every frame annotated."""
-    folder = tmp_path_factory.mktemp("rendered") / "recording"
     parser = argparse.ArgumentParser()
     add_commands(parser.add_subparsers())
-    command = ["synthesize", "--motion", "open-close", "--frames", f"0:{RENDERED_FRAMES}", "--out", str(folder)]
-    args = parser.parse_args(command)
-    assert args.run(args) == 0
-    return folder
+    command = ["synthesize", "--motion", "open-close", "--frames", f"0:{RENDERED_FRAMES}", "--out"]
+
+    def render(folder: Path) -> None:
+        args = parser.parse_args([*command, str(folder / "recording")])
+        assert args.run(args) == 0
+
+    return make_once(tmp_path_factory, "rendered", render) / "recording"
 
 
 @dataclass(frozen=True)
@@ -309,27 +313,30 @@ class GeneratedHand:
 @pytest.fixture(scope="session")
 def generated_hand(tmp_path_factory: pytest.TempPathFactory) -> GeneratedHand:
     """A scan of few points, `hand.ply`, registered once for all tests."""
+    folder = make_once(tmp_path_factory, "generated-hand", _register_hand)
+    return GeneratedHand(load_scan(folder / "hand.ply"), load_registration(folder), folder)
+
+
+def _register_hand(folder: Path) -> None:
     from tracker.synthesis.scans.generate import ScanOptions, generate_scan
     from tracker.synthesis.scans.scanner import Scanner
 
     options = ScanOptions(scanner=Scanner(num_points=3000), has_forearm=False)
-    folder = tmp_path_factory.mktemp("hand")
     save_scan(generate_scan(3, 0, "right", 5, options).scan, folder / "hand.ply")
-    scan = load_scan(folder / "hand.ply")
-    found = Registrar(untrained_hand("right")).register(scan)
-    save_registration(found, folder)
-    return GeneratedHand(scan, found, folder)
+    save_registration(Registrar(untrained_hand("right")).register(load_scan(folder / "hand.ply")), folder)
 
 
 @pytest.fixture(scope="session")
 def tracked_folder(rendered: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A track of the first frames of `rendered`."""
-    folder = tmp_path_factory.mktemp("tracked") / "track"
-    sequence, frames = load_sequence(rendered), range(12)
-    options = TrackOptions(calibrate=False, last_frame=frames[-1])
-    setup, state = start_tracking(sequence, options, None, load_annotations(rendered / "annotations.json"))
-    join_chunks(sequence, setup, [track_frames(sequence, setup, state, frames)[1]]).save(folder)
-    return folder
+
+    def track(folder: Path) -> None:
+        sequence, frames = load_sequence(rendered), range(12)
+        options = TrackOptions(calibrate=False, last_frame=frames[-1])
+        setup, state = start_tracking(sequence, options, None, load_annotations(rendered / "annotations.json"))
+        join_chunks(sequence, setup, [track_frames(sequence, setup, state, frames)[1]]).save(folder)
+
+    return make_once(tmp_path_factory, "tracked", track)
 
 
 @dataclass

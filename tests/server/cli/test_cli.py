@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import resource
@@ -13,7 +14,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import cv2
@@ -21,6 +22,7 @@ import httpx
 import numpy as np
 import pytest
 
+from server.cli.main import main
 from tests.server.conftest import GeneratedHand
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -34,6 +36,16 @@ def environment(data: Path, **more: str) -> dict[str, str]:
 def handloom(data: Path, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "server.cli", *arguments]
     return subprocess.run(command, capture_output=True, text=True, env=environment(data, **more), timeout=240)
+
+
+def run_here(data: Path, *arguments: str, given: str = "") -> subprocess.CompletedProcess[str]:
+    """The same in this process, which has loaded all of it already; `given` comes through a pipe."""
+    told, failed = io.StringIO(), io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(told), redirect_stderr(failed):
+        patch.setenv("HANDLOOM_DATA_DIR", str(data))
+        patch.setattr(sys, "stdin", io.StringIO(given))
+        code = main(list(arguments))
+    return subprocess.CompletedProcess(arguments, code, told.getvalue(), failed.getvalue())
 
 
 @contextmanager
@@ -121,11 +133,7 @@ def test_a_host_that_others_can_reach_is_refused(tmp_path: Path) -> None:
 
 def test_people_are_added_with_a_password_from_a_pipe(tmp_path: Path) -> None:
     def account(*arguments: str, password: str = "") -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-m", "server.cli", "account", *arguments]
-        given = f"{password}\n"
-        return subprocess.run(
-            command, input=given, capture_output=True, text=True, env=environment(tmp_path), timeout=240
-        )
+        return run_here(tmp_path, "account", *arguments, given=f"{password}\n")
 
     short = account("add", "Lea", "--role", "admin", password="short")
     assert (short.returncode, "needed 10 to 200" in short.stderr) == (2, True)
@@ -169,19 +177,19 @@ def test_import_and_export_carry_a_recording_in_and_out_again(tmp_path: Path, re
     result = json.loads(done.stdout)
     assert (result["name"], result["frames"], result["report"]["ok"]) == ("a wave", 45, True)
     out = tmp_path / "annotations.json"
-    assert handloom(data, "export", "a wave", "--format", "annotations", "--out", str(out)).returncode == 0
+    assert run_here(data, "export", "a wave", "--format", "annotations", "--out", str(out)).returncode == 0
     assert len(json.loads(out.read_text())["items"]) == 45
-    again = handloom(data, "export", "a wave", "--format", "annotations", "--out", str(out))
+    again = run_here(data, "export", "a wave", "--format", "annotations", "--out", str(out))
     assert again.returncode == 2
     assert "is there already" in again.stderr
     folder = tmp_path / "copy"
-    assert handloom(data, "export", result["id"], "--format", "recording", "--out", str(folder)).returncode == 0
-    back = handloom(tmp_path / "other", "import", str(folder), "--json")
+    assert run_here(data, "export", result["id"], "--format", "recording", "--out", str(folder)).returncode == 0
+    back = run_here(tmp_path / "other", "import", str(folder), "--json")
     assert json.loads(back.stdout)["name"] == "a wave"
-    missing = handloom(data, "export", "nobody", "--format", "recording", "--out", str(tmp_path / "x"))
+    missing = run_here(data, "export", "nobody", "--format", "recording", "--out", str(tmp_path / "x"))
     assert missing.returncode == 2
     assert "'a wave'" in missing.stderr
-    untracked = handloom(data, "export", "a wave", "--format", "track", "--out", str(tmp_path / "x"))
+    untracked = run_here(data, "export", "a wave", "--format", "track", "--out", str(tmp_path / "x"))
     assert "has no track yet" in untracked.stderr
 
 
@@ -192,7 +200,7 @@ def test_what_is_no_recording_is_refused_and_nothing_stays(tmp_path: Path) -> No
     assert refused.returncode == 2
     assert "Traceback" not in refused.stderr
     assert list((tmp_path / "data" / "sequences").glob("*")) == []
-    assert handloom(tmp_path / "data", "import", str(tmp_path / "none")).returncode == 2
+    assert run_here(tmp_path / "data", "import", str(tmp_path / "none")).returncode == 2
 
 
 @pytest.mark.slow
@@ -284,13 +292,13 @@ def test_a_refused_recording_lists_every_option_that_is_needed_with_a_command_th
         for number in range(3):
             image = np.full((424, 512), far + number, np.uint16)
             (folder / kind / f"{number:03d}.png").write_bytes(cv2.imencode(".png", image)[1].tobytes())
-    refused = handloom(tmp_path / "data", "import", str(folder))
+    refused = run_here(tmp_path / "data", "import", str(folder))
     assert (refused.returncode, refused.stdout) == (2, "")
     for option in ("--depth-pattern", "--fx", "--cx", "--cy", "--depth-scale", "kinect_v2"):
         assert option in refused.stderr
     assert "--fy" not in refused.stderr.split("Needed:")[1]
     example = shlex.split(refused.stderr.split("For example: handloom ")[1].splitlines()[0])
-    done = handloom(tmp_path / "data", *example, "--json")
+    done = run_here(tmp_path / "data", *example, "--json")
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     assert found["frames"] == 3 and any("typical values of Kinect v2" in text for text in found["report"]["warnings"])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -18,15 +19,27 @@ import pytest
 
 from server.compute import Compute
 from server.compute.process import NICENESS, ComputeProcess, ComputeStoppedError, ComputeTooLongError
+from server.database import Database
+from server.settings import Settings
 from server.storage import Storage
 from tests.server.compute import work
 
 OF_NO_ERROR = {"__notes__"}
 
 
+@contextlib.contextmanager
+def open_compute(settings):
+    """Not started yet."""
+    with (
+        contextlib.closing(Database(settings.sqlalchemy_url)) as database,
+        contextlib.closing(Compute(settings, database, Storage(settings.data_dir))) as compute,
+    ):
+        yield compute
+
+
 @pytest.fixture
-def compute(settings, database):
-    with contextlib.closing(Compute(settings, database, Storage(settings.data_dir))) as compute:
+def compute(sqlite_settings):
+    with open_compute(sqlite_settings) as compute:
         yield compute
 
 
@@ -34,6 +47,16 @@ def compute(settings, database):
 def started(compute):
     compute.start(work.count)
     return compute
+
+
+@pytest.fixture(scope="module")
+def running(sqlite_template, tmp_path_factory):
+    """One for all tests that leave it as it is."""
+    folder = tmp_path_factory.mktemp("running")
+    shutil.copy(sqlite_template, folder / "own.sqlite3")
+    with open_compute(Settings(data_dir=folder, database_url=f"sqlite:///{folder}/own.sqlite3")) as compute:
+        compute.start(work.count)
+        yield compute
 
 
 def ask(compute, function, *arguments):
@@ -69,23 +92,25 @@ def test_before_it_is_started_it_computes_where_it_is_asked(compute):
     assert ask(compute, work.tell_process) == (os.getpid(), os.nice(0))
 
 
-def test_once_started_it_computes_in_one_process_of_low_priority(started):
+def test_once_started_it_computes_in_one_process_of_low_priority(running):
     async def ask_at_once():
-        return await asyncio.gather(*(started.run(work.tell_process) for _ in range(12)))
+        return await asyncio.gather(*(running.run(work.tell_process) for _ in range(12)))
 
     [(pid, niceness)] = set(asyncio.run(ask_at_once()))
     assert pid != os.getpid()
     assert niceness == min(19, os.nice(0) + NICENESS)
 
 
-def test_it_remembers_from_one_question_to_the_next(started):
-    wait_until(lambda: ask(started, work.count) > 1)
-    asked = ask(started, work.count)
-    assert [ask(started, work.count) for _ in range(3)] == [asked + 1, asked + 2, asked + 3]
+def test_it_remembers_from_one_question_to_the_next(running):
+    wait_until(lambda: ask(running, work.count) > 1)
+    asked = ask(running, work.count)
+    assert [ask(running, work.count) for _ in range(3)] == [asked + 1, asked + 2, asked + 3]
 
 
-def test_it_reads_the_studios_database(started):
-    assert ask(started, work.count_recordings) == 0
+def test_it_reads_the_studios_database(settings):
+    with open_compute(settings) as compute:
+        compute.start(work.count)
+        assert ask(compute, work.count_recordings) == 0
 
 
 def test_a_short_question_does_not_wait_for_a_long_one(started, tmp_path):
@@ -103,9 +128,9 @@ def test_a_short_question_does_not_wait_for_a_long_one(started, tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["api", "cursor", "tracker", "system", "database"])
-def test_what_it_raises_arrives_as_the_same_error(started, kind):
+def test_what_it_raises_arrives_as_the_same_error(running, kind):
     with pytest.raises(type(work.make_error(kind))) as caught:
-        ask(started, work.fail, kind)
+        ask(running, work.fail, kind)
     error, expected = caught.value, work.make_error(kind)
     assert type(error) is type(expected)
     assert str(error) == str(expected)
@@ -114,11 +139,11 @@ def test_what_it_raises_arrives_as_the_same_error(started, kind):
     assert "work.py" in error.__notes__[0], "the log can say where"
 
 
-def test_an_error_that_cannot_be_sent_is_told_and_hurts_nothing(started):
-    pid, _ = ask(started, work.tell_process)
+def test_an_error_that_cannot_be_sent_is_told_and_hurts_nothing(running):
+    pid, _ = ask(running, work.tell_process)
     with pytest.raises(Exception, match="lock"):
-        ask(started, work.fail, "unsendable")
-    assert ask(started, work.tell_process)[0] == pid
+        ask(running, work.fail, "unsendable")
+    assert ask(running, work.tell_process)[0] == pid
 
 
 def test_killed_in_the_middle_of_a_question_it_starts_again_and_answers_it(started, tmp_path):
@@ -132,6 +157,7 @@ def test_killed_in_the_middle_of_a_question_it_starts_again_and_answers_it(start
 def test_killed_under_many_questions_it_answers_all_of_them(started, tmp_path):
     """The questions that were under way are asked again; one process follows, not one for each."""
     pid, _ = ask(started, work.tell_process)
+    others = find_children(os.getpid()).keys() - {pid}
     marks = [tmp_path / str(n) for n in range(4)]
 
     def kill():
@@ -145,9 +171,8 @@ def test_killed_under_many_questions_it_answers_all_of_them(started, tmp_path):
     killer.start()
     assert asyncio.run(ask_at_once()) == ["slept"] * 4
     killer.join()
-    assert [pid for pid, command in find_children(os.getpid()).items() if "spawn_main" in command] == [
-        ask(started, work.tell_process)[0]
-    ]
+    found = {pid for pid, command in find_children(os.getpid()).items() if "spawn_main" in command}
+    assert found - others == {ask(started, work.tell_process)[0]}
 
 
 def test_a_question_that_kills_it_twice_is_refused_and_others_are_answered(started):
@@ -156,8 +181,8 @@ def test_a_question_that_kills_it_twice_is_refused_and_others_are_answered(start
     assert ask(started, work.tell_process)[0] != os.getpid()
 
 
-def test_a_question_that_takes_too_long_is_ended_with_the_time_that_it_had(settings, tmp_path):
-    with contextlib.closing(ComputeProcess(settings)) as process:
+def test_a_question_that_takes_too_long_is_ended_with_the_time_that_it_had(sqlite_settings, tmp_path):
+    with contextlib.closing(ComputeProcess(sqlite_settings)) as process:
         first, _ = process.ask(work.tell_process, ())
         began = time.monotonic()
         with pytest.raises(ComputeTooLongError, match=r"took longer than 1 s and was stopped") as told:
@@ -167,8 +192,8 @@ def test_a_question_that_takes_too_long_is_ended_with_the_time_that_it_had(setti
         assert process.ask(work.tell_process, ())[0] != first
 
 
-def test_a_process_that_stands_still_is_ended_too(settings):
-    with contextlib.closing(ComputeProcess(settings)) as process:
+def test_a_process_that_stands_still_is_ended_too(sqlite_settings):
+    with contextlib.closing(ComputeProcess(sqlite_settings)) as process:
         first, _ = process.ask(work.tell_process, ())
         os.kill(first, signal.SIGSTOP)
         with pytest.raises(ComputeTooLongError):
@@ -177,18 +202,18 @@ def test_a_process_that_stands_still_is_ended_too(settings):
         assert process.ask(work.tell_process, ())[0] != first
 
 
-def test_what_else_it_was_at_is_computed_in_the_next_one(settings, tmp_path):
-    with contextlib.closing(ComputeProcess(settings)) as process, ThreadPoolExecutor(1) as other:
+def test_what_else_it_was_at_is_computed_in_the_next_one(sqlite_settings, tmp_path):
+    with contextlib.closing(ComputeProcess(sqlite_settings)) as process, ThreadPoolExecutor(1) as other:
         process.ask(work.tell_process, ())
-        waiting = other.submit(process.ask, work.sleep, (4.0, tmp_path / "other"))
+        waiting = other.submit(process.ask, work.sleep, (2.5, tmp_path / "other"))
         wait_until((tmp_path / "other").exists)
         with pytest.raises(ComputeTooLongError):
             process.ask(work.sleep, (60.0, tmp_path / "mark"), limit_seconds=1.0)
         assert waiting.result(timeout=60) == "slept"
 
 
-def test_a_route_in_a_thread_gets_the_same_answers(started):
-    assert started.ask(work.tell_process) == ask(started, work.tell_process)
+def test_a_route_in_a_thread_gets_the_same_answers(running):
+    assert running.ask(work.tell_process) == ask(running, work.tell_process)
 
 
 def test_closed_it_leaves_no_process_and_no_folder(started):

@@ -35,6 +35,9 @@ DISPATCH_SECONDS = 0.25
 ADOPT_SECONDS = 5.0
 LOST_EXIT = 75
 
+IDLE_SECONDS = 2.0
+"""So long nothing is done before kernels are loaded for the first job to come."""
+
 
 def run_worker(settings: Settings) -> None:
     """Work until SIGTERM or SIGINT; never returns."""
@@ -63,7 +66,7 @@ def run_worker(settings: Settings) -> None:
     DBOS.launch()
     DBOS.register_queue(QUEUE, worker_concurrency=JOBS_AT_ONCE, polling_interval_sec=0.25, on_conflict="always_update")
     threading.Thread(target=_beat_forever, args=(database, worker_id), name="heartbeat", daemon=True).start()
-    threading.Thread(target=_warm_up, name="warm-up", daemon=True).start()
+    threading.Thread(target=_warm_up_when_idle, args=(database, worker_id), name="warm-up", daemon=True).start()
     log.info("worker %s ready, pid %d", held.name, os.getpid())
     _dispatch_until(stopping, Dispatcher(database, workflows))
     with database.writing() as session:
@@ -130,10 +133,17 @@ def _beat_forever(database: Database, worker_id: UUID) -> None:
             os._exit(LOST_EXIT)
 
 
-def _warm_up() -> None:
+def _warm_up_when_idle(database: Database, worker_id: UUID) -> None:
+    """A job loads the kernels that it needs; beside it the others would only take its time."""
     from tracker import warm_up
 
+    is_mine = (JobRow.state == "running") & (JobRow.worker_id == worker_id)
     try:
+        is_busy = True
+        while is_busy:
+            time.sleep(IDLE_SECONDS)
+            with database.reading() as session:
+                is_busy = session.scalar(select(JobRow.id).where(is_mine).limit(1)) is not None
         warm_up(lambda name, share: log.debug("warm-up: %s %.0f %%", name, 100 * share))
     except Exception:  # only a warm-up: the job that needs what failed tells its user
         log.exception("warm-up failed; the first job will show why")

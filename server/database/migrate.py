@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,9 @@ LOCK = 0x68616E646C6F6F6D
 
 def upgrade(database: Database, revision: str = "head") -> None:
     """Bring the tables to a revision, in one transaction. Processes that start together wait for the first."""
+    with database.engine.connect() as connection:
+        if find_current(connection) == (find_head() if revision == "head" else revision):
+            return
     _run(database, lambda config: command.upgrade(config, revision))
 
 
@@ -33,6 +37,7 @@ def downgrade(database: Database, revision: str) -> None:
     _run(database, lambda config: command.downgrade(config, revision))
 
 
+@cache
 def find_head() -> str:
     """The newest revision there is."""
     head = ScriptDirectory.from_config(_config()).get_current_head()

@@ -103,8 +103,9 @@ def database_kind(request: pytest.FixtureRequest) -> str:
 
 
 POSTGRESQL_IN_PROOFS = {
-    "app", "client", "evaluations", "exchange", "hand_models", "imports", "moving_scans", "quality", "registrations",
-    "scans", "sequences", "suggestions", "tracks", "training_sets",
+    "app", "bodies", "calibrations", "client", "evaluations", "exchange", "hand_models", "imports", "lineage",
+    "moving_scans", "quality", "refinements", "registrations", "scans", "sequences", "suggestions", "tracks",
+    "training_sets",
 }  # fmt: skip
 """Rooms that read more than they write. Where many write at once (labels, jobs, people), `make test` has both."""
 

@@ -167,9 +167,9 @@ def test_a_job_whose_worker_is_killed_again_and_again_ends_with_the_same_bits(be
 
 def test_a_cancelled_job_stops_at_once_and_resumes_where_it_was_with_the_same_bits(bench: Bench) -> None:
     bench.start_worker()
-    undisturbed, cancelled = bench.queue(), bench.queue()
+    undisturbed, cancelled = bench.queue(last_frame=29), bench.queue(last_frame=29)
     bench.wait_for_end(undisturbed)
-    bench.wait(cancelled, lambda job: job.frames_done >= 25)
+    bench.wait(cancelled, lambda job: job.frames_done >= 22)
     with bench.database.writing() as session:
         service.cancel_job(session, cancelled)
     began = time.monotonic()
@@ -189,7 +189,7 @@ def test_two_workers_share_the_jobs_and_do_none_twice(bench_on_both: Bench) -> N
     bench = bench_on_both
     first, second = bench.start_worker(), bench.start_worker()
     bench.wait_for_workers(2)
-    jobs = [bench.queue(last_frame=24) for _ in range(5)]
+    jobs = [bench.queue(last_frame=21) for _ in range(4)]
     for job_id in jobs:
         bench.wait_for_end(job_id)
     assert len({bench.job(job_id).worker_id for job_id in jobs}) == 2

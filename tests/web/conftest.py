@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import re
@@ -22,6 +21,8 @@ from typing import Any
 
 import httpx
 import pytest
+
+from tests.once import make_once
 
 ROOT = Path(__file__).resolve().parents[2]
 CHROMIUM_NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome")
@@ -153,19 +154,14 @@ class Synthesized:
 @pytest.fixture(scope="session")
 def synthesized(tmp_path_factory: pytest.TempPathFactory) -> Synthesized:
     """Made by the product itself, once for all processes of a run."""
-    own = tmp_path_factory.getbasetemp()
-    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "synthesized" / "opening-hand"
+    folder = make_once(tmp_path_factory, "synthesized", _synthesize) / "opening-hand"
     archive, marks = folder.with_suffix(".zip"), folder.with_suffix(".json")
-    folder.parent.mkdir(exist_ok=True)
-    with (folder.parent / "lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not marks.is_file():
-            marks.write_text(json.dumps(_synthesize(folder, archive)))
     return Synthesized(folder, archive, [(x, y) for x, y, _ in json.loads(marks.read_text())])
 
 
-def _synthesize(folder: Path, archive: Path) -> list[list[float]]:
-    """Without its annotations, for they are to be made in the browser; gives those of frame 0."""
+def _synthesize(where: Path) -> None:
+    """Without its annotations, for they are to be made in the browser; those of frame 0 lie beside it."""
+    folder = where / "opening-hand"
     command = ["synthesize", "--motion", "open-close", "--frames", f"0:{FRAMES}", "--out", str(folder)]
     subprocess.run([sys.executable, "-m", "server.cli", *command], cwd=ROOT, check=True, capture_output=True)
     first = next(i for i in json.loads((folder / "annotations.json").read_text())["items"] if i["frame"] == 0)
@@ -173,11 +169,11 @@ def _synthesize(folder: Path, archive: Path) -> list[list[float]]:
     description.pop("annotations", None)
     (folder / "sequence.json").write_text(json.dumps(description))
     (folder / "annotations.json").unlink()
-    with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as file:
+    with zipfile.ZipFile(folder.with_suffix(".zip"), "w", zipfile.ZIP_STORED) as file:
         for path in sorted(folder.rglob("*")):
             if path.is_file() and path.parts[-2] != "models":
-                file.write(path, path.relative_to(folder.parent))
-    return first["points"]
+                file.write(path, path.relative_to(where))
+    folder.with_suffix(".json").write_text(json.dumps(first["points"]))
 
 
 def import_copy(studio: Studio, synthesized: Synthesized) -> dict[str, Any]:

@@ -98,6 +98,7 @@ def test_every_page_fits_and_every_control_has_a_name(studio, track, open_page, 
         page.wait_for_timeout(6000 if name == "track" and screenshots.folder else 100)
         screenshots.take(page, f"{name}-{width}-{scheme}")
         assert page.evaluate(NAMELESS) == [], f"{name} has controls without a name"
+        assert page.get_by_role("heading", level=1).count() == (name != "missing"), f"{name} has one heading of level 1"
         for size in ((width, height), (1040, 720), (1280, 720), (1920, 1080)):
             page.set_viewport_size({"width": size[0], "height": size[1]})
             page.evaluate(REDRAWN)

@@ -41,6 +41,7 @@ export const Annotator = memo(function Annotator({ recording, session, replica }
       <AnnotatorPlayback />
       <CameraKeys />
       <div className={classes.page}>
+        <h1 className="visually-hidden">Annotate {recording.name}</h1>
         <FrameBar />
         {BARS.map((Bar, index) => (
           <Bar key={index} />

@@ -1,9 +1,50 @@
-import { Group, Table, Text } from "@mantine/core";
+import { Group, Text } from "@mantine/core";
 import { Link } from "react-router";
 import type { Track } from "../../api/types";
 import { formatAgo, formatNumber } from "../../model/format";
+import { CardTable, type Column } from "./CardTable";
 import { HandBadge } from "./HandBadge";
 import classes from "./TrackTable.module.css";
+
+const NAME: Column<Track> = {
+  head: "Track",
+  full: ({ name }) => name,
+  show: ({ id, name }) => (
+    <Link to={`/tracks/${id}`} className={classes.link}>
+      {name}
+    </Link>
+  ),
+};
+
+const FACTS: readonly Column<Track>[] = [
+  {
+    head: "Hands",
+    width: 136,
+    show: ({ hands }) => (
+      <Group gap="sm" wrap="nowrap">
+        {hands.map((hand) => (
+          <HandBadge key={hand} hand={hand} />
+        ))}
+      </Group>
+    ),
+  },
+  { head: "Frames", width: 88, isNumber: true, show: ({ frame_count: count }) => String(count) },
+  {
+    head: "Lost",
+    width: 72,
+    isNumber: true,
+    show: ({ summary: { lost } }) => (
+      <Text span inherit c={lost > 0 ? "var(--bad-text)" : undefined} fw={lost > 0 ? 600 : undefined}>
+        {lost}
+      </Text>
+    ),
+  },
+  { head: "Residual, mm", width: 128, isNumber: true, show: ({ summary }) => formatNumber(summary.depth_residual_mm) },
+  { head: "Silhouette IoU", width: 136, isNumber: true, show: ({ summary }) => formatNumber(summary.silhouette_iou, 2) },
+  { head: "Error, px", width: 96, isNumber: true, show: ({ error_px: error }) => formatNumber(error) },
+  { head: "Median, ms", width: 120, isNumber: true, show: ({ summary }) => formatNumber(summary.median_ms) },
+  { head: "Made", width: 128, isNumber: true, isQuiet: true, show: ({ created_at: when }) => formatAgo(when) },
+];
 
 interface TrackTableProps {
   tracks: readonly Track[];
@@ -12,56 +53,6 @@ interface TrackTableProps {
 }
 
 export function TrackTable({ tracks, nameOf }: TrackTableProps) {
-  return (
-    <div className={`card ${classes.frame}`}>
-      <Table highlightOnHover verticalSpacing="sm" horizontalSpacing="md">
-        <Table.Thead>
-          <Table.Tr>
-            <Table.Th>Track</Table.Th>
-            {nameOf && <Table.Th>Recording</Table.Th>}
-            <Table.Th>Hands</Table.Th>
-            <Table.Th ta="right">Frames</Table.Th>
-            <Table.Th ta="right">Lost</Table.Th>
-            <Table.Th ta="right">Residual, mm</Table.Th>
-            <Table.Th ta="right">Silhouette IoU</Table.Th>
-            <Table.Th ta="right">Error, px</Table.Th>
-            <Table.Th ta="right">Median, ms</Table.Th>
-            <Table.Th ta="right">Made</Table.Th>
-          </Table.Tr>
-        </Table.Thead>
-        <Table.Tbody>
-          {tracks.map((track) => (
-            <Table.Tr key={track.id}>
-              <Table.Td className={classes.name}>
-                <Link to={`/tracks/${track.id}`} className={classes.link}>
-                  {track.name}
-                </Link>
-              </Table.Td>
-              {nameOf && <Table.Td className={classes.name}>{nameOf(track.sequence_id) ?? "–"}</Table.Td>}
-              <Table.Td>
-                <Group gap="sm" wrap="nowrap">
-                  {track.hands.map((hand) => (
-                    <HandBadge key={hand} hand={hand} />
-                  ))}
-                </Group>
-              </Table.Td>
-              <Table.Td ta="right">{track.frame_count}</Table.Td>
-              <Table.Td ta="right" c={track.summary.lost > 0 ? "var(--bad-text)" : undefined} fw={track.summary.lost > 0 ? 600 : undefined}>
-                {track.summary.lost}
-              </Table.Td>
-              <Table.Td ta="right">{formatNumber(track.summary.depth_residual_mm)}</Table.Td>
-              <Table.Td ta="right">{formatNumber(track.summary.silhouette_iou, 2)}</Table.Td>
-              <Table.Td ta="right">{formatNumber(track.error_px)}</Table.Td>
-              <Table.Td ta="right">{formatNumber(track.summary.median_ms)}</Table.Td>
-              <Table.Td ta="right">
-                <Text size="sm" className="quiet one-line">
-                  {formatAgo(track.created_at)}
-                </Text>
-              </Table.Td>
-            </Table.Tr>
-          ))}
-        </Table.Tbody>
-      </Table>
-    </div>
-  );
+  const recording: Column<Track> = { head: "Recording", full: (track) => nameOf?.(track.sequence_id) ?? "", show: (track) => nameOf?.(track.sequence_id) };
+  return <CardTable items={tracks} columns={nameOf ? [NAME, recording, ...FACTS] : [NAME, ...FACTS]} />;
 }

@@ -109,6 +109,9 @@ export function TrackReview({ track, frames, recording }: TrackReviewProps) {
 
   return (
     <div className={classes.page}>
+      <h1 className="visually-hidden">
+        {track.name} of {recording.name}
+      </h1>
       <TrackBar
         track={track}
         recording={recording}

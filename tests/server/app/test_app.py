@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 from server.app import create_app
 from server.app.openapi import write_document
 from server.settings import Settings
-from tests.server.api_document import read_document
+from tests.server.api_document import COMMITTED, read_document
 from tests.server.conftest import BASE_URL, Studio
 
 
@@ -91,8 +91,10 @@ def operations() -> list[tuple[str, str, dict[str, Any]]]:
     ]
 
 
-def test_the_document_is_the_same_each_time() -> None:
-    assert write_document() == write_document()
+def test_the_document_is_the_same_each_time_and_as_it_is_committed() -> None:
+    document = write_document()
+    assert write_document() == document
+    assert COMMITTED.read_text() == document, "run `make api` and commit what it writes"
 
 
 def test_every_operation_has_a_name_of_its_own_that_reads_well() -> None:

@@ -43,8 +43,14 @@ def start(client: TestClient, calibration: str) -> uuid.UUID:
     return uuid.UUID(answer.json()["id"])
 
 
-def test_films_become_cameras_with_a_report_and_files(bench: ScanBench, client: TestClient) -> None:
+def test_films_become_cameras_with_a_report_and_files_and_an_import_takes_them(
+    bench: ScanBench, client: TestClient
+) -> None:
     calibration = send(client, render_films())
+    sent = send_import(client)
+    too_early = client.put(f"{API}/imports/{sent['id']}/calibration", json={"calibration_id": calibration})
+    assert too_early.status_code == 404 and "not calibrated yet" in too_early.json()["detail"]
+    assert client.get(f"{API}/imports/{sent['id']}").json() == sent
     job_id = start(client, calibration)
     again = client.post(f"{API}/jobs/calibrate", json={"calibration_id": calibration})
     assert again.status_code == 422 and "being calibrated already" in again.json()["detail"]
@@ -53,14 +59,27 @@ def test_films_become_cameras_with_a_report_and_files(bench: ScanBench, client: 
     job = client.get(f"{API}/jobs/{job_id}").json()
     assert (job["title"], job["unit"], job["frames_done"], job["frames_total"]) == ("Rig", "cameras", 2, 2)
     assert any(line.startswith("cam0: the board was found in ") for line in bench.log(job_id))
-    done = client.get(f"{API}/calibrations/{calibration}").json()
-    assert done["job_id"] == str(job_id)
-    result = done["result"]
+    assert client.get(f"{API}/calibrations/{calibration}").json()["job_id"] == str(job_id)
+    check_result(client, calibration)
+    check_what_follows(client, calibration)
+    take_into_import(client, calibration, sent["id"])
+
+
+def send_import(client: TestClient) -> dict[str, Any]:
+    """The same films as a recording, which lacks a calibration."""
+    sent = client.post(f"{API}/imports", files=[("files", film) for film in render_films().items()]).json()
+    assert sent["state"] == "refused" and sent["calibration_id"] is None
+    assert "2 videos and no calibration" in sent["report"]["problems"][0]
+    return sent
+
+
+def check_result(client: TestClient, calibration: str) -> None:
+    place = f"{API}/calibrations/{calibration}"
+    result = client.get(place).json()["result"]
     second = result["cameras"][1]
     assert abs(second["time_offset"]["seconds"] - OFFSET_S) < 0.01
     assert result["residual_px"]["left_out"]["rms"] < 0.6
     assert any("cam1: is out of step" in warning for warning in result["warnings"])
-    place = f"{API}/calibrations/{calibration}"
     found = parse_anipose(client.get(f"{place}/files/cameras.toml").content, "cameras.toml")
     truth = np.linalg.norm(filmed().cameras[1].T_world_camera[:3, 3])
     assert np.linalg.norm(found[1].find_pose(1.0)[:3, 3]) == pytest.approx(truth, rel=0.05)
@@ -73,11 +92,36 @@ def test_films_become_cameras_with_a_report_and_files(bench: ScanBench, client: 
         picture = client.get(f"{place}/coverage/{number}.png").content
         assert cv2.imdecode(np.frombuffer(picture, np.uint8), cv2.IMREAD_COLOR).shape[1] == 960
     assert client.get(f"{place}/coverage/2.png").status_code == 404
+
+
+def check_what_follows(client: TestClient, calibration: str) -> None:
+    """It is not calibrated twice, and other options make another one."""
+    place = f"{API}/calibrations/{calibration}"
+    done = client.get(place).json()
     refused = client.post(f"{API}/jobs/calibrate", json={"calibration_id": calibration})
     assert refused.status_code == 422 and "calibrated already" in refused.json()["detail"]
     other = client.post(f"{place}/check", json={"options": {**done["options"], "left_out": 0.3}}).json()
     assert other["id"] != calibration and other["result"] is None and other["state"] == "checked"
     assert client.get(place).json() == done, "what has a result stays"
+
+
+def take_into_import(client: TestClient, calibration: str, import_id: str) -> None:
+    place = f"{API}/imports/{import_id}"
+    taken = client.put(f"{place}/calibration", json={"calibration_id": calibration}).json()
+    assert (taken["state"], taken["calibration_id"]) == ("checked", calibration), taken["report"]
+    assert taken["report"]["format"] == "synced_videos"
+    given_up = client.put(f"{place}/calibration", json={"calibration_id": None}).json()
+    assert (given_up["state"], given_up["calibration_id"]) == ("refused", None)
+    client.put(f"{place}/calibration", json={"calibration_id": calibration})
+    recording = client.post(f"{place}/confirm", json={"name": "hands"}).json()
+    cameras = client.get(f"{API}/sequences/{recording['id']}").json()["cameras"]
+    found = parse_anipose(client.get(f"{API}/calibrations/{calibration}/files/cameras.toml").content, "c.toml")
+    for camera, own in zip(cameras, found, strict=True):
+        assert camera["id"] == own.name
+        np.testing.assert_allclose(camera["K"], own.K)
+        np.testing.assert_allclose(camera["T_world_camera"], own.find_pose(1.0), atol=1e-9)
+    late = client.put(f"{place}/calibration", json={"calibration_id": None})
+    assert late.status_code == 409
 
 
 def test_a_wrong_board_fails_in_words_and_the_right_one_is_found_in_the_same_films(
@@ -120,33 +164,3 @@ def test_a_cancelled_job_goes_on_with_the_corners_it_has(bench: ScanBench, clien
     assert sum(line.startswith("cam0: the board was found") for line in bench.log(job_id)) == 1
     retry = client.post(f"{API}/jobs/{job_id}/retry")
     assert retry.status_code == 422 and "calibrated already" in retry.json()["detail"]
-
-
-def test_an_import_takes_the_cameras_of_a_kept_calibration(bench: ScanBench, client: TestClient) -> None:
-    films = render_films()
-    calibration = send(client, films)
-    sent = client.post(f"{API}/imports", files=[("files", film) for film in films.items()]).json()
-    place = f"{API}/imports/{sent['id']}"
-    assert sent["state"] == "refused" and sent["calibration_id"] is None
-    assert "2 videos and no calibration" in sent["report"]["problems"][0]
-    too_early = client.put(f"{place}/calibration", json={"calibration_id": calibration})
-    assert too_early.status_code == 404 and "not calibrated yet" in too_early.json()["detail"]
-    assert client.get(place).json() == sent
-    job_id = start(client, calibration)
-    bench.start_worker()
-    bench.wait_for_end(job_id)
-    taken = client.put(f"{place}/calibration", json={"calibration_id": calibration}).json()
-    assert (taken["state"], taken["calibration_id"]) == ("checked", calibration), taken["report"]
-    assert taken["report"]["format"] == "synced_videos"
-    given_up = client.put(f"{place}/calibration", json={"calibration_id": None}).json()
-    assert (given_up["state"], given_up["calibration_id"]) == ("refused", None)
-    client.put(f"{place}/calibration", json={"calibration_id": calibration})
-    recording = client.post(f"{place}/confirm", json={"name": "hands"}).json()
-    cameras = client.get(f"{API}/sequences/{recording['id']}").json()["cameras"]
-    found = parse_anipose(client.get(f"{API}/calibrations/{calibration}/files/cameras.toml").content, "c.toml")
-    for camera, own in zip(cameras, found, strict=True):
-        assert camera["id"] == own.name
-        np.testing.assert_allclose(camera["K"], own.K)
-        np.testing.assert_allclose(camera["T_world_camera"], own.find_pose(1.0), atol=1e-9)
-    late = client.put(f"{place}/calibration", json={"calibration_id": None})
-    assert late.status_code == 409

@@ -1,4 +1,4 @@
-/** Which way up people stand in scans, so that every moving scan is looked at from its broad side. */
+/** How people stand in scans, so that every moving scan is looked at from the front. */
 
 import { fromAxes, type Quaternion } from "./upright";
 
@@ -8,8 +8,11 @@ const UP_Y: Vector = [0, 1, 0];
 const UP_Z: Vector = [0, 0, 1];
 /** Z points up where the box is so many times as high along it as along y. */
 const CLEARLY = 1.2;
+/** Shares of a person's height: feet reach so high, and shins stand between. */
+const FEET = 0.04;
+const SHINS: readonly [number, number] = [0.1, 0.25];
 
-/** Rotation (xyzw) that brings a person upright: y or z up, whichever is longer, and the broad side to the viewer. */
+/** Rotation (xyzw) that brings a person upright: y or z up, whichever is longer, the broad side and the toes to the viewer. */
 export function standingUp(positions: ArrayLike<number>): Quaternion {
   const size = extentOf(positions);
   const up = size[2] > CLEARLY * size[1] ? UP_Z : UP_Y;
@@ -19,7 +22,23 @@ export function standingUp(positions: ArrayLike<number>): Quaternion {
   right[flat[0]] = broad[0];
   right[flat[1]] = broad[1];
   const out: Vector = [right[1] * up[2] - right[2] * up[1], right[2] * up[0] - right[0] * up[2], right[0] * up[1] - right[1] * up[0]];
-  return fromAxes(right, up, out);
+  if (toesAlong(positions, up === UP_Z ? 2 : 1, size, out) >= 0) return fromAxes(right, up, out);
+  return fromAxes(right.map((value) => -value), up, out.map((value) => -value));
+}
+
+/** How far the feet lie before the shins along a direction; 0 where a scan lacks either. */
+function toesAlong(positions: ArrayLike<number>, up: 1 | 2, size: Vector, direction: Vector): number {
+  let lowest = Infinity;
+  for (let at = up; at < positions.length; at += 3) lowest = Math.min(lowest, positions[at] as number);
+  const [feet, shins] = [{ sum: 0, count: 0 }, { sum: 0, count: 0 }];
+  for (let at = 0; at + 2 < positions.length; at += 3) {
+    const height = ((positions[at + up] as number) - lowest) / size[up];
+    const band = height < FEET ? feet : height > SHINS[0] && height < SHINS[1] ? shins : null;
+    if (!band) continue;
+    band.sum += direction.reduce((sum, value, axis) => sum + value * (positions[at + axis] as number), 0);
+    band.count += 1;
+  }
+  return feet.count > 0 && shins.count > 0 ? feet.sum / feet.count - shins.sum / shins.count : 0;
 }
 
 function extentOf(positions: ArrayLike<number>): Vector {

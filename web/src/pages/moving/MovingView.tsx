@@ -42,7 +42,7 @@ export function MovingView({ label, parts: { holder, canvas, stage, failure: noS
         </div>
       )}
       <div className={view.sides} role="group" aria-label="Look from">
-        <Tooltip label={hint("The whole person, from the first side", "moving.whole")}>
+        <Tooltip label={hint("The whole person, from the front", "moving.whole")}>
           <Button size="compact-xs" variant="default" onClick={() => stage?.reset()}>
             Front
           </Button>

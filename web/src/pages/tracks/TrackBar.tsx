@@ -45,7 +45,7 @@ export function TrackBar(props: TrackBarProps) {
 
   return (
     <div className={classes.bar}>
-      <Text className="one-line" fw={600} title={track.name}>
+      <Text className={`one-line ${classes.name}`} fw={600} title={track.name}>
         {track.name}
       </Text>
       <Text size="sm" className="quiet one-line">

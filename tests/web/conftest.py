@@ -13,10 +13,8 @@ import sys
 import time
 import zipfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import httpx
@@ -75,29 +73,8 @@ class Studio:
         return httpx.request(method, f"{self.url}/api/v1{path}", timeout=60, **options)
 
 
-MEMORY = Path("/dev/shm")
-ROOM = 2_000_000_000
-"""Bytes; a container may have far less of memory that looks like a disk."""
-
-
-@contextmanager
-def data_folder(otherwise: Path) -> Iterator[Path]:
-    """In memory where there is room: a studio waits for the disk after every file and every gesture that it keeps."""
-    if MEMORY.is_dir() and shutil.disk_usage(MEMORY).free > ROOM:
-        with TemporaryDirectory(prefix="handloom-", dir=MEMORY, ignore_cleanup_errors=True) as folder:
-            yield Path(folder)
-    else:
-        yield otherwise
-
-
 @pytest.fixture(scope="session")
-def studio_data(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    with data_folder(tmp_path_factory.mktemp("data")) as folder:
-        yield folder
-
-
-@pytest.fixture(scope="session")
-def studio(chromium: str, studio_data: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+def studio(chromium: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
     """`handloom serve` with its worker, on an empty data folder."""
     if not (ROOT / "web" / "dist" / "index.html").is_file():
         _lacking("The browser app is not built: run `make setup` first.")
@@ -106,7 +83,7 @@ def studio(chromium: str, studio_data: Path, tmp_path_factory: pytest.TempPathFa
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     log = folder / "studio.log"
-    environment = os.environ | {"HANDLOOM_DATA_DIR": str(studio_data)}
+    environment = os.environ | {"HANDLOOM_DATA_DIR": str(folder / "data")}
     with log.open("w") as output:
         process = subprocess.Popen(
             [sys.executable, "-m", "server.cli", "serve", "--port", str(port)],
@@ -115,7 +92,7 @@ def studio(chromium: str, studio_data: Path, tmp_path_factory: pytest.TempPathFa
             stdout=output,
             stderr=subprocess.STDOUT,
         )
-    studio = Studio(f"http://127.0.0.1:{port}", studio_data, log)
+    studio = Studio(f"http://127.0.0.1:{port}", folder / "data", log)
     try:
         _wait_until_up(studio, process)
         yield studio

@@ -32,7 +32,6 @@ from tests.web.conftest import (
     Synthesized,
     _lacking,
     _wait_until_up,
-    data_folder,
     wait_for_held,
 )
 from tests.web.hands import fill_studio
@@ -68,20 +67,13 @@ class Lab(Studio):
 
 
 @pytest.fixture(scope="module")
-def lab_data(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    with data_folder(tmp_path_factory.mktemp("data")) as folder:
-        yield folder
-
-
-@pytest.fixture(scope="module")
-def lab(
-    chromium: str, synthesized: Synthesized, lab_data: Path, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Lab]:
+def lab(chromium: str, synthesized: Synthesized, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
     if not (ROOT / "web" / "dist" / "index.html").is_file():
         _lacking("The browser app is not built: run `make setup` first.")
     folder = tmp_path_factory.mktemp("lab")
-    environment = os.environ | {"HANDLOOM_DATA_DIR": str(lab_data), "HANDLOOM_LOGIN": "required"}
-    with open_studio(Settings(data_dir=lab_data)) as opened:
+    data = folder / "data"
+    environment = os.environ | {"HANDLOOM_DATA_DIR": str(data), "HANDLOOM_LOGIN": "required"}
+    with open_studio(Settings(data_dir=data)) as opened:
         for name, role in PEOPLE:
             with opened.database.writing() as session:
                 account = add_account(session, None, name, role)
@@ -98,7 +90,7 @@ def lab(
             stdout=output,
             stderr=subprocess.STDOUT,
         )
-    lab = Lab(f"http://127.0.0.1:{port}", lab_data, log)
+    lab = Lab(f"http://127.0.0.1:{port}", data, log)
     try:
         _wait_until_up(lab, process)
         api = f"{lab.url}/api/v1"

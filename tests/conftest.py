@@ -31,7 +31,9 @@ ROOM = 6_000_000_000
 @pytest.hookimpl(tryfirst=True)
 def pytest_configure(config: pytest.Config) -> None:
     """Files of tests lie in memory where there is room: a studio waits for the disk after every file and every row."""
-    if config.option.basetemp or not MEMORY.is_dir() or min(shutil.disk_usage(MEMORY).free, _free_memory()) < ROOM:
+    if config.option.basetemp or not MEMORY.is_dir() or os.statvfs(MEMORY).f_flag & os.ST_NOEXEC:
+        return
+    if min(shutil.disk_usage(MEMORY).free, _free_memory()) < ROOM:
         return
     config.option.basetemp = folder = mkdtemp(prefix="handloom-tests-", dir=MEMORY)
     config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))

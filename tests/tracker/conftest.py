@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.once import make_once
 from tracker.capture.annotations import Annotations, load_annotations
-from tracker.capture.sequence import Sequence
+from tracker.capture.sequence import Sequence, load_sequence
 from tracker.capture.truth import Truth, load_truth
 from tracker.fitting.options import TrackOptions
 from tracker.model.default_hand import default_hand
@@ -38,11 +39,15 @@ class Recorded:
 @pytest.fixture(scope="session")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
     """Twelve frames of the default right hand opening and closing, with a sensor's noise."""
-    folder: Path = tmp_path_factory.mktemp("recorded") / "hand"
-    performance = perform({"right": default_hand("right")}, "open-close", 60)
-    sequence = write_recording(performance, folder, RecordingOptions(range(FRAMES)), save_npz_model)
+    folder = make_once(tmp_path_factory, "recorded", _record) / "hand"
+    sequence = load_sequence(folder)
     assert sequence.annotations_path is not None
     return Recorded(sequence, load_annotations(sequence.annotations_path), load_truth(folder / "truth.npz"))
+
+
+def _record(folder: Path) -> None:
+    performance = perform({"right": default_hand("right")}, "open-close", 60)
+    write_recording(performance, folder / "hand", RecordingOptions(range(FRAMES)), save_npz_model)
 
 
 @pytest.fixture(scope="session")

@@ -35,7 +35,10 @@ def pytest_configure(config: pytest.Config) -> None:
         return
     if min(shutil.disk_usage(MEMORY).free, _free_memory()) < ROOM:
         return
-    config.option.basetemp = folder = mkdtemp(prefix="handloom-tests-", dir=MEMORY)
+    for left in MEMORY.glob("handloom-tests-*"):  # by a run that was killed
+        if not Path("/proc", left.name.split("-")[2]).exists():
+            shutil.rmtree(left, ignore_errors=True)
+    config.option.basetemp = folder = mkdtemp(prefix=f"handloom-tests-{os.getpid()}-", dir=MEMORY)
     config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
 
 

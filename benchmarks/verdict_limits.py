@@ -1,10 +1,11 @@
 """Right and wrong registrations with what the verdict measures of them: `python -m benchmarks.verdict_limits FOLDER`.
 
-Each scan (real ones of FOLDER, the same hand in other poses, generated people 1 to 31) is registered from where it
-truly lies, and from starts that are wrong: a finger folded or stretched, fingers shifted by one, two fingers merged,
-the other side. What ends with a fingertip elsewhere is a wrong hand. Prints how many right ones and how many wrong ones
-today's limits call good; `--out` keeps the measures, from which limits are chosen, `--pictures` draws the wrong ones
-that are called good: the registration, the truth below it, and how far each vertex is off (yellow 15 mm and more).
+Each scan (real ones of FOLDER, the same hand in other poses, generated people 1 to 31, and last the same hand in 24
+more poses, on which no limit was chosen) is registered from where it truly lies, and from starts that are wrong: a
+finger folded or stretched, fingers shifted by one, two fingers merged, the other side. What ends with a fingertip
+elsewhere is a wrong hand. Prints how many right ones and how many wrong ones today's limits call good; `--out` keeps
+the measures, from which limits are chosen, `--pictures` draws the wrong ones that are called good: the registration,
+the truth below it, and how far each vertex is off (yellow 15 mm and more).
 """
 
 from __future__ import annotations
@@ -42,6 +43,9 @@ FINGERS = ("index", "middle", "ring", "little")
 FIRST = {"thumb": 13, "index": 1, "middle": 4, "ring": 10, "little": 7}
 """A finger's first joint."""
 
+KEPT = 24
+"""Poses of the real hand that no limit was chosen on."""
+
 
 @dataclass(frozen=True)
 class Known:
@@ -71,6 +75,11 @@ def make_known(folder: Path, people: int, registrar: Registrar) -> Iterator[Know
         made = generate_scan(subject, pose, side, 900 + subject, ScanOptions(strength=strength))
         name = f"{pose} of {subject}, {strength:g}"
         yield Known("generated", name, made.scan, side, made.true_vertices, made.true_vertices[tips])
+    kept = np.random.default_rng(77).permutation(POSE_NAMES)[:KEPT].tolist()
+    for number, (subject, pose) in enumerate(zip(reversed(TRAIN_SUBJECTS), kept, strict=False)):
+        name = ("2_spread", "4_rest")[number % 2]
+        scan, truth = repose(scans[name], first[name], find_pose(registrar, subject, pose))
+        yield Known("reposed, kept aside", f"{name}: {pose} of {subject}", scan, "left", truth, truth[tips])
 
 
 def make_starts(known: Known, registrar: Registrar) -> Iterator[tuple[str, RegistrationStart]]:

@@ -1,11 +1,11 @@
 """Right and wrong registrations with what the verdict measures of them: `python -m benchmarks.verdict_limits FOLDER`.
 
-Each scan (real ones of FOLDER, the same hand in other poses, generated people 1 to 31, and last the same hand in 24
-more poses, on which no limit was chosen) is registered from where it truly lies, and from starts that are wrong: a
-finger folded or stretched, fingers shifted by one, two fingers merged, the other side. What ends with a fingertip
-elsewhere is a wrong hand. Prints how many right ones and how many wrong ones today's limits call good; `--out` keeps
-the measures, from which limits are chosen, `--pictures` draws the wrong ones that are called good: the registration,
-the truth below it, and how far each vertex is off (yellow 15 mm and more).
+Each scan (real ones of FOLDER, the same hand in other poses, generated people 1 to 31, generated fists, and last the
+same hand in 24 more poses, on which no limit was chosen) is registered from where it truly lies, and from starts that
+are wrong: a finger folded or stretched, fingers shifted by one, two fingers merged, the other side. What ends with a
+fingertip elsewhere is a wrong hand. Prints how many right ones and how many wrong ones today's limits call good;
+`--out` keeps the measures, from which limits are chosen, `--pictures` draws the wrong ones that are called good: the
+registration, the truth below it, and how far each vertex is off (yellow 15 mm and more).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import argparse
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,7 @@ from tracker.registration.start_poses import FOLDED, HALF, STRAIGHT, curl_finger
 from tracker.registration.verdict import turn_over
 from tracker.registration.vertex_fit import fit_to_vertices
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan
-from tracker.synthesis.scans.pose_list import POSE_NAMES
+from tracker.synthesis.scans.pose_list import FISTS, POSE_NAMES
 from tracker.synthesis.scans.subject import TRAIN_SUBJECTS
 
 Array = npt.NDArray[np.float64]
@@ -75,6 +76,11 @@ def make_known(folder: Path, people: int, registrar: Registrar) -> Iterator[Know
         made = generate_scan(subject, pose, side, 900 + subject, ScanOptions(strength=strength))
         name = f"{pose} of {subject}, {strength:g}"
         yield Known("generated", name, made.scan, side, made.true_vertices, made.true_vertices[tips])
+    for number, (pose, strength) in enumerate(product(FISTS, (1.0, 2.5))):
+        subject, side = (32 + number // 2 % 6, 10 + number // 2)[number % 2], ("right", "left")[number // 2 % 2]
+        made = generate_scan(subject, pose, side, 3000 + subject, ScanOptions(strength=strength))
+        name = f"{pose} of {subject}, {strength:g}"
+        yield Known("generated fists", name, made.scan, side, made.true_vertices, made.true_vertices[tips])
     kept = np.random.default_rng(77).permutation(POSE_NAMES)[:KEPT].tolist()
     for number, (subject, pose) in enumerate(zip(reversed(TRAIN_SUBJECTS), kept, strict=False)):
         name = ("2_spread", "4_rest")[number % 2]

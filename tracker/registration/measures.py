@@ -11,7 +11,7 @@ from tracker.registration.free_fit import FreeSurface
 from tracker.registration.hand_state import HandState
 from tracker.registration.model_fit import MM, Evaluation, FitSettings, ModelFit
 from tracker.registration.scan_points import ScanPoints
-from tracker.registration.surface_search import MIN_COSINE, Matches
+from tracker.registration.surface_search import Matches
 
 Array = npt.NDArray[np.float64]
 
@@ -24,8 +24,8 @@ SQUARE = 16.0
 REACH = 0.016
 """No point and no vertex looks farther, m."""
 
-HIDING = 0.012
-"""A hand hides its own skin from a scanner where another part of it lies this near, m."""
+HIDING, FACING = 0.025, 0.5
+"""A hand hides its skin from a scanner where another part of it is this near, m, and so straight before it (cosine)."""
 
 
 def measure(
@@ -100,8 +100,8 @@ def _find_hidden(fit: ModelFit, vertices: Array) -> npt.NDArray[np.bool_]:
     normals = find_unit_normals(vertices, fit.search.faces)
     a, b = np.concatenate([pairs := KDTree(vertices).query_pairs(HIDING, output_type="ndarray"), pairs[:, ::-1]]).T
     towards = vertices[b] - vertices[a]
-    ahead = np.einsum("nd,nd->n", towards, normals[a]) > MIN_COSINE * np.linalg.norm(towards, axis=1)
-    faces_it = np.einsum("nd,nd->n", normals[a], normals[b]) < -MIN_COSINE
+    ahead = np.einsum("nd,nd->n", towards, normals[a]) > FACING * np.linalg.norm(towards, axis=1)
+    faces_it = np.einsum("nd,nd->n", normals[a], normals[b]) < -FACING
     hidden = np.zeros(len(vertices), dtype=bool)
     hidden[a[ahead & faces_it]] = True
     return hidden[fit.inner]

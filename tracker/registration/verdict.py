@@ -21,7 +21,7 @@ Array = npt.NDArray[np.float64]
 LIMITS = {
     "tip_stretch": 1.0,
     "scan_to_finger": 2.5,
-    "finger_to_scan": 3.6,
+    "finger_to_scan": 4.5,
     "scan_to_palm": 4.0,
     "shape": 1.8,
 }

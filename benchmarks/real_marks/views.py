@@ -90,9 +90,10 @@ def judge(recording: MarkedRecording, track: Track, camera: str) -> tuple[Array,
     apart = []
     for frame, marks in recording.marks.items():
         row = int(np.flatnonzero(track.frame == frame)[0])
-        apart.append(np.linalg.norm(track.joints_2d[row, :21, :][view] - marks, axis=1))
+        off = np.linalg.norm(track.joints_2d[row, :21, :][view] - marks, axis=1)
+        apart.append(np.where(np.isfinite(marks).all(axis=1) & ~np.isfinite(off), np.inf, off))
     table = np.array(apart)
-    return table[np.isfinite(table)], table[:, TIPS][np.isfinite(table[:, TIPS])]
+    return table[~np.isnan(table)], table[:, TIPS][~np.isnan(table[:, TIPS])]
 
 
 def write_row(recording: MarkedRecording, track: Track, camera: str) -> str:

@@ -35,7 +35,8 @@ from tracker.terms.collision import Collision
 from tracker.terms.contours import Contours
 from tracker.terms.flow import Flow, follow_surface, join_flows
 from tracker.terms.joint_prior import Regularization
-from tracker.tracking.fit_views import add_contours, fit_views, see_hands
+from tracker.tracking.fit_views import add_contours, fit_views
+from tracker.tracking.see_hands import see_hands
 from tracker.tracking.state import TrackState
 from tracker.tracking.view_edges import EDGE_MARGIN, find_place
 from tracker.tracking.view_objects import judge_objects, list_objects

@@ -33,8 +33,9 @@ from tracker.observation import Observation, observe
 from tracker.physics import find_support
 from tracker.rendering import View, render_view
 from tracker.tracking.as_written import compose_objective
-from tracker.tracking.fit_views import compose_near, see_hands
+from tracker.tracking.fit_views import compose_near
 from tracker.tracking.hold import with_contacts
+from tracker.tracking.see_hands import see_hands
 
 Array = npt.NDArray[np.float64]
 

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
 import numpy.typing as npt
 
-from tracker.capture.camera import Camera
-from tracker.capture.frame import CameraFrame, Frame
-from tracker.detection.image_hands import name_hands
+from tracker.capture.frame import CameraFrame
 from tracker.fitting.attempt import UNSETTLED
-from tracker.fitting.choose_views import choose_views
 from tracker.fitting.depth_view import DepthView
 from tracker.fitting.frame_fit import Fit, FitOptions, draw, fit_frame
-from tracker.fitting.map_views import map_views
 from tracker.fitting.measure_quality import measure_quality
 from tracker.fitting.objective import Objective
 from tracker.fitting.region import choose_stride, region_around
@@ -25,13 +21,13 @@ from tracker.fitting.sighting import find_hand_pixels
 from tracker.fitting.view_contours import ViewContours
 from tracker.fitting.view_hands import FOLLOWS, HOLDS, REACH, ViewHands
 from tracker.fitting.view_hold import choose_hold
-from tracker.landmarks import DetectedHand, HandDetector, default_hand_detector
 from tracker.model.scene import PosedScene
 from tracker.observation import observe
 from tracker.terms.contours import Contours
 from tracker.terms.joint_prior import Regularization
 from tracker.terms.marked_joints import MarkedJoints
 from tracker.terms.residual import Term
+from tracker.tracking.see_hands import is_inside
 from tracker.tracking.view_edges import EDGE_MARGIN, find_edges
 from tracker.tracking.view_objects import find_object_contours
 
@@ -40,98 +36,9 @@ Array = npt.NDArray[np.float64]
 FAR_REACH = 4.0 * REACH
 """mm; the first iterations of a frame hear joints from farther off, where a hand moved fast."""
 
-ALL_TURNS = (0, 1, 2, 3)
-
 BESIDE_JOINTS = 0.2
 """Share of their weights that the terms of depth have beside detected joints. Of 0.2, 1 and 10 this one follows
 `d405_take001` farthest (112, 105 and 93 of 126 frames, depth by stereo matching) and nearest to its marks."""
-
-MOST = 11
-"""So many of the 21 joints are most of a hand."""
-
-
-def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene, gone: set[int]) -> ViewHands:
-    """The hands in all colour images of a moment, looked for where the pose has them, else in whole images.
-
-    While two views see every hand, one view a frame is looked through for what it does not see, in turn. Of many views
-    only half look at all (`choose_views`), while none is gone.
-
-    Args:
-        setup: Models and options.
-        views: All.
-        posed: Where the hands are expected.
-        gone: Hands that nobody knows the place of.
-    """
-    looked_at = [view for view in views if view.frame.color is not None]
-    look = _Look(setup, looked_at, posed, [hand for hand in setup.hands if hand not in gone])
-    turn = range(len(looked_at)) if gone or not looked_at else choose_views(len(looked_at), looked_at[0].frame.index)
-    look.follow(turn)
-    if look.is_scarce():
-        look.follow(sorted(set(range(len(looked_at))) - set(turn)))
-        turn = range(len(looked_at))
-    for number in turn:
-        index = looked_at[number].frame.index
-        if look.lacks_hands(number) and (look.is_scarce() or index % len(looked_at) == number):
-            look.search(number, ALL_TURNS if gone else (0, 1 + index % 3))
-    return ViewHands(tuple(view.camera for view in looked_at), tuple(look.seen))
-
-
-class _Look:
-    """What the detector finds in the colour images of a moment, as they are looked at one after the other.
-
-    Attributes:
-        seen: Of each view the hands by name.
-    """
-
-    def __init__(
-        self, setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene, known: Sequence[int]
-    ) -> None:
-        self._setup, self._views, self._posed, self._known = setup, views, posed, known
-        self.seen: list[dict[str, DetectedHand]] = [{} for _ in views]
-
-    def follow(self, numbers: Sequence[int]) -> None:
-        """Look into views where the pose has the hands; each detector looks at one image at a time."""
-        threads = self._setup.options.threads
-        idle = [default_hand_detector(number) for number in range(threads)]
-
-        def follow_in(number: int) -> dict[str, DetectedHand]:
-            places = self._expect(self._views[number].camera)
-            if not places:
-                return {}
-            detector = idle.pop()
-            found = _find(detector, self._views[number].frame, self._setup.hand_names, places, ())
-            idle.append(detector)
-            return found
-
-        for number, hands in zip(numbers, map_views(follow_in, numbers, threads), strict=True):
-            self.seen[number] = hands
-
-    def search(self, number: int, turns: tuple[int, ...]) -> None:
-        """Look through a whole image for the hands that were not seen in it."""
-        frame, before = self._views[number].frame, self.seen[number]
-        detector = default_hand_detector()
-        found = _find(detector, frame, self._setup.hand_names, before, turns)
-        if frame.color is not None and len(self.seen) == 1:  # no other view can contradict
-            followed = list(before.values())
-            found = {
-                name: hand
-                for name, hand in found.items()
-                if any(hand.is_same(other) for other in followed) or detector.sees_wider(frame.color, hand)
-            }
-        self.seen[number] = found
-
-    def lacks_hands(self, number: int) -> bool:
-        return len(self.seen[number]) < len(self._setup.hand_names)
-
-    def is_scarce(self) -> bool:
-        """Whether two views, or the only one, do not see every hand."""
-        enough = min(2, len(self.seen))
-        return any(sum(name in hands for hands in self.seen) < enough for name in self._setup.hand_names)
-
-    def _expect(self, camera: Camera) -> dict[str, DetectedHand]:
-        names = {hand: self._setup.names[hand] for hand in self._known}
-        expected = {name: _expect(self._posed, hand, name, camera) for hand, name in names.items()}
-        return {name: hand for name, hand in expected.items() if hand is not None}
 
 
 def fit_views(
@@ -220,31 +127,6 @@ def judge_hand(setup: TrackSetup, seen: ViewHands, posed: PosedScene, hand: int)
     of all of them is not.
     """
     apart = seen.measure(posed, hand, setup.names[hand])
-    inside = sum(_is_inside(posed, hand, camera) for camera in seen.cameras)
+    inside = sum(is_inside(posed, hand, camera) for camera in seen.cameras)
     is_held = inside > 0 and int(np.count_nonzero(apart < HOLDS)) >= min(2, inside)
     return is_held, is_held or bool(np.any(apart < FOLLOWS))
-
-
-def _find(
-    detector: HandDetector,
-    frame: Frame,
-    names: tuple[str, ...],
-    before: Mapping[str, DetectedHand],
-    turns: tuple[int, ...],
-) -> dict[str, DetectedHand]:
-    if frame.color is None:
-        return {}
-    found = detector.find(frame.color, len(names), [before[name] for name in names if name in before], turns)
-    return name_hands(found, names)
-
-
-def _expect(posed: PosedScene, hand: int, name: str, camera: Camera) -> DetectedHand | None:
-    """A hand as its pose says that an image shows it; None where most of it is outside."""
-    if not _is_inside(posed, hand, camera):
-        return None
-    return DetectedHand.expected(camera.project(posed.landmarks(hand)), name)
-
-
-def _is_inside(posed: PosedScene, hand: int, camera: Camera) -> bool:
-    """Whether most of a hand is in an image."""
-    return int(np.count_nonzero(camera.can_see(posed.landmarks(hand)))) >= MOST

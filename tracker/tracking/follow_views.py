@@ -14,8 +14,9 @@ from tracker.search.part import Part
 from tracker.search.place_in_views import place_in_views
 from tracker.search.tools import Tools
 from tracker.tracking.ahead import ViewsAhead, ViewsRead
-from tracker.tracking.fit_views import fit_views, judge_hand, see_hands
+from tracker.tracking.fit_views import fit_views, judge_hand
 from tracker.tracking.frame_result import FrameResult, sum_up, tell_statuses
+from tracker.tracking.see_hands import see_hands
 from tracker.tracking.state import TrackState
 from tracker.tracking.view_objects import judge_objects
 from tracker.tracking.watch_objects import stop_unseen

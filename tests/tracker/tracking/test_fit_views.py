@@ -30,7 +30,6 @@ from tracker.tracking.fit_views import (
     fit_views,
     judge_hand,
     leave_to_depth,
-    see_hands,
 )
 
 HAND = default_hand("right")
@@ -165,12 +164,3 @@ def test_a_hand_that_the_depth_settles_needs_no_joints_and_one_that_any_depth_co
     fist = np.r_[pose[:6], curl_fingers(HAND, 0.9)]
     assert settled(pose, SCENE.pose_at(fist), *CAMERAS[:2]) is None
     assert settled(pose, SCENE.pose_at(pose)) is None, "without depth nothing is settled by it"
-
-
-def test_in_images_without_colour_or_without_hands_none_is_seen(pose):
-    posed = SCENE.pose_at(pose)
-    assert see_hands(SETUP, [with_depth(pose, CAMERAS[0])], posed, set()) == ViewHands((), ())
-    for gone in (set(), {0}):
-        seen = see_hands(SETUP, blank(), posed, gone)
-        assert [camera.id for camera in seen.cameras] == list(SETUP.view_ids)
-        assert seen.count("right") == 0

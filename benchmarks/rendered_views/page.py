@@ -104,6 +104,10 @@ FOOT = """## What holds it back
 - With eight views the worst joint was a fingertip in frame 27 of "crossing" that no view tells of, 14.7 mm off. Bends
   that go on as they did in the frame before took it to where the table has it; in two views they do harm (3.8 mm for
   3.5), in four they change nothing (1.35 for 1.29).
+- With another noise and eight views the worst joint is a left thumb's tip in frames 16 to 19 of "crossing". Two of the
+  eight show it at most, and one tells of it in each of these frames, in frame 19 by 164 px wrong.
+- What our own detector sees of these drawn hands misleads the fit; the study does not look again for what is lost. One
+  view knows neither distance nor what is hidden.
 - Without S a finger that crossed another stays on the wrong contours ("crossing", E to ECO), and flow takes it along: O
   helps where S holds the fingers. Bends that go on make E worse there (2.43 mm before, with contours of before).
 - ECOS has 0.20 and 0.24 of the error of the swarm with 64 and 128 particles; in [T16] 0.31 and 0.32. A pose costs the

@@ -108,7 +108,7 @@ def _import_scans(studio: OpenStudio) -> None:
         made = Path(folder) / "scans"
         _run_tracker("synthesize-scans", *SCANS, "--out", str(made))
         options = ScanOptions(collection=SCANS_NAME, metres_per_unit=1.0)  # Handloom made them, so nothing is guessed
-        add_scans(studio.database, studio.storage, made, options, LOCAL_ACCOUNT_ID, moves=True)
+        add_scans(studio.database, studio.storage, made, options, LOCAL_ACCOUNT_ID, moves=False)
 
 
 def _render(sample: Sample, folder: Path) -> None:

@@ -173,9 +173,6 @@ def main() -> None:
             "\nIn `two_camera_rgb` the median distance of the track's joints from those of the detector alone,",
             f"triangulated, is {millimetres:.1f} mm; from the {from_marks.size} joints that are marked in both views,",
             f"triangulated, {np.median(from_marks):.1f} mm.",
-            "\nIn a left-out view frames 51, 67 and 83 of `d405_take001` are off most, where single fingers of a fist",
-            "point down or forward. There the detector itself lies far from the marks, even in the square that the",
-            "track of all views tells: in 51 and 83 41 and 39 px in `cam1` (median), 36 and 167 px in `cam2`.",
         )
     )
     if given.write:

@@ -47,7 +47,7 @@ def detect_alone(recording: MarkedRecording, images: Iterator[np.ndarray]) -> tu
         hands: list[DetectedHand] = detector.find(image, 1, before)
         before = hands
         if hands:
-            found[count - 1] = hands[0].points
+            found[count - 1] = hands[0].with_finger_ends().points
     return found, count
 
 

@@ -52,7 +52,7 @@ def suggest_detected(sequence: Sequence) -> Suggest:
         for frame in range(sequence.frame_count):
             before = detector.find(sequence.color(frame, camera.id), 1, before)
             if before:
-                found[frame, camera.id] = before[0].points
+                found[frame, camera.id] = before[0].with_finger_ends().points
     return lambda frame, camera: found.get((frame, camera), np.full((JOINTS, 2), np.nan))
 
 

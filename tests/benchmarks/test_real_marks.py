@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from benchmarks.real_marks.agreement import compare
 from benchmarks.real_marks.changed import CHANGES, Change
 from benchmarks.real_marks.corrections import count_corrections
 from benchmarks.real_marks.marked import FOLDER, MarkedRecording
+from benchmarks.real_marks.outlines import OUTLINES, compare_outline
 
 LIMIT = 8.0
 TIP = 8
@@ -78,3 +81,28 @@ def test_a_mark_in_a_changed_image_lies_on_the_same_pixel(change: Change):
     columns, rows = change.of_points(points, 7, 5).T
     assert change.of_image(image)[rows, columns].tolist() == image[points[:, 1], points[:, 0]].tolist()
     assert change.is_mirrored == (change.name == "mirrored")
+
+
+HAND = np.array([[20.0, 10.0], [40.0, 10.0], [40.0, 29.0], [20.0, 29.0]])
+"""The wrist is its left side."""
+
+
+def rectangle(left: int, right: int) -> np.ndarray:
+    drawn = np.zeros((40, 60), dtype=bool)
+    drawn[10:30, left:right] = True
+    return drawn
+
+
+@pytest.mark.parametrize(("drawn", "overlap"), [((20, 41), 1.0), ((0, 41), 1.0), ((20, 31), 11 / 21), ((0, 0), 0.0)])
+@pytest.mark.parametrize("turn", [1, -1])
+def test_a_drawn_hand_is_compared_with_an_outline_up_to_the_wrist(drawn, overlap, turn):
+    outline = HAND if turn == 1 else HAND[::-1]
+    assert compare_outline(rectangle(*drawn), outline) == pytest.approx(overlap)
+
+
+def test_outlines_lie_in_their_images():
+    paths = sorted(FOLDER.glob(f"*/{OUTLINES}"))
+    assert len(paths) == 3
+    for path in paths:
+        for outline in json.loads(path.read_text()).values():
+            assert (np.array(outline) >= 0).all() and (np.array(outline) < (640, 480)).all()

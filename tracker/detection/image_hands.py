@@ -43,10 +43,10 @@ class ImageHand:
         return self.detected.presence
 
     def annotate(self, frame: Frame) -> Annotation:
-        """As `annotations.json` has it; joints outside the image are left open."""
+        """As `annotations.json` has it, to the ends of the fingers; joints outside the image are left open."""
         assert frame.color is not None
         height, width = frame.color.shape[:2]
-        points = np.column_stack([self.detected.points, np.where(self.is_hidden, OCCLUDED, VISIBLE)])
+        points = np.column_stack([self.detected.with_finger_ends().points, np.where(self.is_hidden, OCCLUDED, VISIBLE)])
         x, y, _ = points.T
         points[(x < -0.5) | (x >= width - 0.5) | (y < -0.5) | (y >= height - 0.5)] = 0.0
         sources = tuple(SOURCE if v else None for v in points[:, 2])

@@ -8,7 +8,28 @@ from dataclasses import dataclass, replace
 from tracker.fitting.map_views import map_views
 from tracker.model.scene import PosedScene
 from tracker.terms.contours import Contours
-from tracker.terms.residual import JointResidual
+from tracker.terms.normal_equations import NormalEquations
+from tracker.terms.residual import JointResidual, Residual
+
+
+@dataclass(frozen=True)
+class ViewResidual(JointResidual):
+    """Correspondences of several views, whose sums are made side by side; the same bits for any number of threads.
+
+    Attributes:
+        threads: In which they are made.
+    """
+
+    threads: int = 1
+
+    def add_to(self, equations: NormalEquations) -> None:
+        def sum_up(part: Residual) -> NormalEquations:
+            own = NormalEquations.at(equations.posed)
+            part.add_to(own)
+            return own
+
+        for own in map_views(sum_up, self.parts.values(), self.threads):
+            equations.add(own)
 
 
 @dataclass(frozen=True)
@@ -25,10 +46,10 @@ class ViewContours:
     threads: int = 1
     weight: float = 1.0
 
-    def find(self, posed: PosedScene, context: object = None) -> JointResidual:
+    def find(self, posed: PosedScene, context: object = None) -> ViewResidual:
         """Match the contours in all views."""
         found = map_views(lambda own: own.find(posed), self.views.values(), self.threads)
-        return JointResidual(dict(zip(self.views, found, strict=True)))
+        return ViewResidual(dict(zip(self.views, found, strict=True)), self.threads)
 
     def reaching(self, distance: float) -> ViewContours:
         """The same that go to edges so far away, m."""

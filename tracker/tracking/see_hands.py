@@ -132,7 +132,8 @@ class Look:
         self, detector: HandDetector, number: int, before: list[DetectedHand], turns: tuple[int, ...]
     ) -> dict[str, DetectedHand]:
         color, names = self._views[number].frame.color, self._setup.hand_names
-        return {} if color is None else name_hands(detector.find(color, len(names), before, turns), names)
+        found = [] if color is None else detector.find(color, len(names), before, turns)
+        return name_hands([hand.with_finger_ends() for hand in found], names)
 
     def _order(self, hands: Mapping[str, DetectedHand]) -> list[DetectedHand]:
         return [hands[name] for name in self._setup.hand_names if name in hands]

@@ -15,7 +15,7 @@ from tracker.fitting.setup import TrackSetup
 from tracker.model.articulated import ArticulatedModel
 from tracker.search.start_object import place_object
 from tracker.search.tools import make_tools
-from tracker.tracking.fit_views import compose_near
+from tracker.tracking.fit_views import add_contours, compose_near
 from tracker.tracking.follow_views import follow_views
 from tracker.tracking.state import TrackState
 
@@ -73,7 +73,7 @@ def _place_objects(sequence: Sequence, setup: TrackSetup) -> tuple[TrackSetup, A
 def _calibrate(
     sequence: Sequence, setup: TrackSetup, frames: range, state: TrackState, progress: Progress
 ) -> tuple[ArticulatedModel, ...]:
-    """The models with shapes that explain the joints of all views in some of the frames."""
+    """The models with shapes that explain the joints and the contours of all views in some of the frames."""
     held = []
     with make_tools(setup, np.eye(4)) as tools:
         for index in frames:
@@ -87,6 +87,7 @@ def _calibrate(
         for place in np.linspace(0, len(held) - 1, min(CALIBRATED, len(held))):
             index, pose, seen = held[round(place)]
             views = setup.read_views(sequence, index)
-            objective = compose_near(tools.objective, setup, seen, views, setup.scene.pose_at(pose))
+            posed = setup.scene.pose_at(pose)
+            objective = add_contours(compose_near(tools.objective, setup, seen, views, posed), posed, views)
             chosen.append(CalibrationFrame(None, pose, objective=objective))
         return calibrate_shapes(setup.scene, chosen).models

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
         save_body_registration,
     )
     from tracker.bodies.body_scan_file import find_body_unit, load_body_scan
+    from tracker.bodies.chunks import CHAIN, cut_chunks, find_start, follow_chunk, join_chunk
     from tracker.bodies.follow_body import BodyFollower, FollowOptions
     from tracker.bodies.register_body import Registrar
     from tracker.bodies.template import (
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
         find_shape,
         make_own_model,
         register_for_template,
-        without_shape,
     )
     from tracker.model.body_hands import body_hand, body_pose
     from tracker.model.body_model import body_model

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from tracker.bodies.body_registration import (
     save_body_registration,
 )
 from tracker.bodies.body_scan_file import load_body_scan
+from tracker.bodies.chunks import cut_chunks, find_start, follow_chunk, join_chunk
 from tracker.bodies.follow_body import BodyFollower, FollowOptions
 from tracker.bodies.register_body import Registrar
 from tracker.bodies.template import (
@@ -26,7 +27,6 @@ from tracker.bodies.template import (
     find_shape,
     make_own_model,
     register_for_template,
-    without_shape,
 )
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan import Scan
@@ -36,10 +36,7 @@ from tracker.model.blend_model import BlendModel
 from tracker.model.body_motion import BodyMotion, save_body_motion
 
 TEMPLATE, SETTINGS, SUMMARY, MOTION = "template.npz", "settings.json", "summary.json", "motion.npz"
-FRAMES, TEMPLATES, JOINED = "frames", "template", "joined.json"
-
-AGREES_MM, AGREED = 0.5, 2
-"""Two chains of frames have met when this many frames in a row differ by less than this, over all vertices' mean."""
+FRAMES, TEMPLATES = "frames", "template"
 
 Progress = Callable[[float, str], None]
 
@@ -85,8 +82,40 @@ class Sequence:
 
     @property
     def chunks(self) -> list[range]:
-        size = self.options.chunk or max(len(self), 1)
-        return [range(first, min(first + size, len(self))) for first in range(0, len(self), size)]
+        return cut_chunks(0, len(self), self.options.chunk)
+
+
+class SequenceFrames:
+    """Frames of a sequence as files: what `tracker.bodies.chunks.KeptFrames` asks for."""
+
+    def __init__(self, sequence: Sequence, faces: npt.NDArray) -> None:
+        self._sequence, self._faces = sequence, faces
+
+    def read(self, frame: int) -> Scan:
+        return load_body_scan(self._sequence.paths[frame], self._sequence.options.metres_per_unit)[0]
+
+    def load(self, frame: int) -> BodyRegistration | None:
+        folder = self._sequence.folder(frame)
+        if not (folder / BODY_FILE).is_file():
+            return None
+        try:
+            return load_body_registration(folder)
+        except RegistrationError:
+            return None  # damaged: made anew
+
+    def keep(self, frame: int, registration: BodyRegistration) -> None:
+        save_body_registration(registration, self._faces, self._sequence.folder(frame))
+
+    def leave_out(self, frame: int, error: TrackerError) -> None:
+        path = self._sequence.error_file(frame)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, str(error).encode())
+
+    def begin(self, follower: BodyFollower, frame: int, scan: Scan) -> BodyRegistration:
+        """From what the template was made of, where it was, else without a start."""
+        folder = self._sequence.out / TEMPLATES / f"{frame:06d}"
+        known = load_body_registration(folder) if (folder / BODY_FILE).is_file() else None
+        return follower.begin(scan, find_start(known))
 
 
 def register_sequence(
@@ -110,93 +139,37 @@ def register_sequence(
     """
     tell = progress or (lambda share, detail: None)
     _check_settings(sequence)
-    own = _own_model(sequence, model, tell)
+    frames = SequenceFrames(sequence, model.faces)
+    own = _own_model(sequence, frames, model, tell)
+    follower = BodyFollower(own, sequence.options.follow)
     chunks = sequence.chunks
     if processes == 1 or len(chunks) == 1:
-        follower = BodyFollower(own, sequence.options.follow)
-        for number, _ in enumerate(chunks):
-            for frame in follow_chunk(sequence, follower, number):
+        for chunk in chunks:
+            for frame in follow_chunk(frames, follower, chunk):
                 tell(0.1 + 0.85 * (frame + 1) / len(sequence), f"frame {frame}")
     else:
         with ProcessPoolExecutor(processes) as pool:
-            jobs = [(sequence, own, number) for number in range(len(chunks))]
+            jobs = [(sequence, own, chunk) for chunk in chunks]
             try:
-                for done, number in enumerate(pool.map(_run_chunk, jobs)):
-                    tell(0.1 + 0.85 * (done + 1) / len(chunks), f"chunk {number}")
+                for number, _ in enumerate(pool.map(_run_chunk, jobs)):
+                    tell(0.1 + 0.85 * (number + 1) / len(chunks), f"chunk {number}")
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 raise
-        follower = BodyFollower(own, sequence.options.follow)
     for number in range(1, len(chunks)):
-        _join(sequence, follower, number)
+        join_chunk(frames, follower, chunks, number)
     tell(1.0, "done")
-    return _write_results(sequence, own, find_shape(model, own))
+    return _write_results(sequence, frames, own, find_shape(model, own))
 
 
-def follow_chunk(sequence: Sequence, follower: BodyFollower, number: int):
-    """Register the frames of a chunk that are not there yet, and yield each."""
-    before: BodyRegistration | None = None
-    for frame in sequence.chunks[number]:
-        done = _load(sequence, frame)
-        if done is None:
-            scan = _read(sequence, frame)
-            if scan is None:
-                continue
-            done = _begin(sequence, follower, frame, scan) if before is None else follower.follow(scan, before)
-            _save(sequence, follower, frame, done)
-        before = done
-        yield frame
-
-
-def _begin(sequence: Sequence, follower: BodyFollower, frame: int, scan: Scan) -> BodyRegistration:
-    """The first frame of a chunk: from what the template was made of, where it was, else without a start."""
-    folder = sequence.out / TEMPLATES / f"{frame:06d}"
-    if not (folder / BODY_FILE).is_file():
-        return follower.begin(scan)
-    return follower.begin(scan, without_shape(load_body_registration(folder)))
-
-
-def _run_chunk(job: tuple[Sequence, BlendModel, int]) -> int:
-    sequence, model, number = job
-    for _ in follow_chunk(sequence, BodyFollower(model, sequence.options.follow), number):
+def _run_chunk(job: tuple[Sequence, BlendModel, range]) -> None:
+    sequence, model, chunk = job
+    follower = BodyFollower(model, sequence.options.follow)
+    for _ in follow_chunk(SequenceFrames(sequence, model.faces), follower, chunk):
         pass
-    return number
 
 
-def _join(sequence: Sequence, follower: BodyFollower, number: int) -> None:
-    """Go on from the chunk before into this one until both chains of frames have met, so that no seam is left."""
-    joined = _read_joined(sequence)
-    if number in joined:
-        return
-    before = next(
-        (done for frame in reversed(range(sequence.chunks[number].start)) if (done := _load(sequence, frame))), None
-    )
-    met = 0
-    for frame in sequence.chunks[number] if before is not None else ():
-        stored, scan = _load(sequence, frame), _read(sequence, frame)
-        if stored is None or scan is None or before is None:
-            continue
-        if "chain" not in stored.measures:
-            done = follower.follow(scan, before)
-            apart = 1e3 * float(np.linalg.norm(done.vertices - stored.vertices, axis=1).mean())
-            met = met + 1 if apart < AGREES_MM else 0
-            done = replace(done, measures={**done.measures, "chain": float(number - 1)})
-            _save(sequence, follower, frame, done)
-            stored = done
-            if met == AGREED:
-                break
-        before = stored
-    write_atomically(sequence.out / JOINED, json.dumps(sorted({*joined, number})).encode())
-
-
-def _read_joined(sequence: Sequence) -> list[int]:
-    try:
-        return [int(number) for number in json.loads((sequence.out / JOINED).read_text())]
-    except (OSError, ValueError):
-        return []
-
-
-def _own_model(sequence: Sequence, model: BlendModel, tell: Progress) -> BlendModel:
+def _own_model(sequence: Sequence, frames: SequenceFrames, model: BlendModel, tell: Progress) -> BlendModel:
     """The person's own model; made once and kept."""
     path = sequence.out / TEMPLATE
     if path.is_file():
@@ -212,8 +185,10 @@ def _own_model(sequence: Sequence, model: BlendModel, tell: Progress) -> BlendMo
         if (folder / BODY_FILE).is_file():
             found.append(load_body_registration(folder))
             continue
-        scan = _read(sequence, frame)
-        if scan is None:
+        try:
+            scan = frames.read(frame)
+        except ScanError as error:
+            frames.leave_out(frame, error)
             continue
         registrar = registrar or Registrar(model)
         found.append(register_for_template(registrar, scan, found[-1] if found else None))
@@ -237,35 +212,11 @@ def _check_settings(sequence: Sequence) -> None:
         raise TrackerError(f"{sequence.out} holds a sequence of other scans or options; choose another folder.")
 
 
-def _load(sequence: Sequence, frame: int) -> BodyRegistration | None:
-    folder = sequence.folder(frame)
-    if not (folder / BODY_FILE).is_file():
-        return None
-    try:
-        return load_body_registration(folder)
-    except RegistrationError:
-        return None  # damaged: made anew
-
-
-def _save(sequence: Sequence, follower: BodyFollower, frame: int, registration: BodyRegistration) -> None:
-    save_body_registration(registration, follower.model.faces, sequence.folder(frame))
-
-
-def _read(sequence: Sequence, frame: int) -> Scan | None:
-    """A frame's scan; none, with the reason kept beside the frames, if it cannot be read."""
-    path = sequence.paths[frame]
-    try:
-        return load_body_scan(path, sequence.options.metres_per_unit)[0]
-    except ScanError as error:
-        path = sequence.error_file(frame)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_atomically(path, str(error).encode())
-        return None
-
-
-def _write_results(sequence: Sequence, model: BlendModel, shape: npt.NDArray[np.float64]) -> dict[str, Any]:
+def _write_results(
+    sequence: Sequence, frames: SequenceFrames, model: BlendModel, shape: npt.NDArray[np.float64]
+) -> dict[str, Any]:
     """`motion.npz` and `summary.json`; frames without a registration keep the pose of the one before."""
-    found = [_load(sequence, frame) for frame in range(len(sequence))]
+    found = [frames.load(frame) for frame in range(len(sequence))]
     known = [each for each in found if each is not None]
     if not known:
         raise TrackerError(f"None of {len(sequence)} scans could be registered.")

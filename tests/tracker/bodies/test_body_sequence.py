@@ -1,4 +1,4 @@
-"""A sequence goes on where it was stopped, keeps what is known, says what it could not read, and joins its chunks.
+"""A sequence goes on where it was stopped, keeps what is known, and says what it could not read.
 
 Frames that are there already are not registered again, so that most of these need no registration at all.
 """
@@ -11,8 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from tests.tracker.bodies.posed_bodies import A_POSE, MODEL, registration_of, stand
 from tracker.bodies.body_registration import save_body_registration
@@ -44,13 +42,6 @@ def begin(folder: Path, known: tuple[int, ...], verdict: str = "good", **options
             registration_of(standing_at(frame), seconds={"body": 1.0 + frame}), MODEL.faces, sequence.folder(frame)
         )
     return sequence
-
-
-@given(st.integers(1, 60), st.integers(0, 70))
-def test_chunks_are_all_frames_in_order_and_none_is_longer_than_asked(frames: int, chunk: int) -> None:
-    sequence = Sequence(tuple(map(Path, map(str, range(frames)))), Path("x"), SequenceOptions(chunk=chunk))
-    assert [frame for part in sequence.chunks for frame in part] == list(range(frames))
-    assert max(map(len, sequence.chunks)) <= (chunk or frames) and min(map(len, sequence.chunks)) > 0
 
 
 def test_a_whole_sequence_is_only_summed_up(tmp_path) -> None:
@@ -124,12 +115,3 @@ def test_work_that_is_ended_by_whoever_listens_goes_on_behind_the_last_frame(tmp
         register_sequence(sequence, MODEL, progress=stop_at_two)
     assert not (sequence.out / "summary.json").exists()
     assert register_sequence(sequence, MODEL)["registered"] == FRAMES
-
-
-def test_chunks_whose_seams_were_mended_are_not_mended_again(tmp_path) -> None:
-    sequence = begin(tmp_path, tuple(range(FRAMES)), chunk=2)
-    register_sequence(sequence, MODEL)
-    assert json.loads((sequence.out / "joined.json").read_text()) == [1, 2]
-    (sequence.out / "joined.json").write_text("[1]")
-    register_sequence(sequence, MODEL)
-    assert json.loads((sequence.out / "joined.json").read_text()) == [1, 2]

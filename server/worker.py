@@ -19,6 +19,7 @@ from server.evaluations.service import evaluate
 from server.jobs import workers
 from server.jobs.dispatcher import Dispatcher
 from server.jobs.models import JobRow
+from server.jobs.moving_workflow import CHUNK_QUEUE
 from server.jobs.run import WorkerContext
 from server.jobs.worker_name import WorkerName
 from server.jobs.workflow import APPLICATION, APPLICATION_VERSION, QUEUE, register_workflows
@@ -28,8 +29,8 @@ from server.tracks.service import get_track
 
 log = logging.getLogger(__name__)
 
-JOBS_AT_ONCE = 1
-"""Tracking keeps a core busy; more jobs at once take more workers."""
+AT_ONCE = 1
+"""Jobs, and chunks of jobs: tracking keeps a core busy; more at once take more workers."""
 
 DISPATCH_SECONDS = 0.25
 ADOPT_SECONDS = 5.0
@@ -64,7 +65,8 @@ def run_worker(settings: Settings) -> None:
     }
     DBOS(config=config)
     DBOS.launch()
-    DBOS.register_queue(QUEUE, worker_concurrency=JOBS_AT_ONCE, polling_interval_sec=0.25, on_conflict="always_update")
+    for queue in (QUEUE, CHUNK_QUEUE):
+        DBOS.register_queue(queue, worker_concurrency=AT_ONCE, polling_interval_sec=0.25, on_conflict="always_update")
     threading.Thread(target=_beat_forever, args=(database, worker_id), name="heartbeat", daemon=True).start()
     threading.Thread(target=_warm_up_when_idle, args=(database, worker_id), name="warm-up", daemon=True).start()
     log.info("worker %s ready, pid %d", held.name, os.getpid())

@@ -49,7 +49,7 @@ class Dispatcher:
                     DBOS.enqueue_workflow(QUEUE, self._workflows[job.kind], str(job.id), job.attempt)
                 self._note(job, job.attempt)
             else:
-                DBOS.cancel_workflow(workflow_id(job.id, job.dispatched_attempt))
+                DBOS.cancel_workflow(workflow_id(job.id, job.dispatched_attempt), cancel_children=True)
                 self._note(job, 0)
 
     def adopt(self) -> None:

@@ -12,7 +12,7 @@ from server.moving_scans.registration_schemas import Population, Prior
 
 
 class RegisterMovingCreate(BaseModel):
-    """A moving scan whose frames are to be registered one after the other."""
+    """A moving scan whose frames are to be registered, each from where the one before ended."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -30,6 +30,13 @@ class RegisterMovingCreate(BaseModel):
     population: Population = Field(default="neutral", description="Whose shapes the person's is looked for among.")
     template_frames: Whole = Field(
         default=6, ge=1, le=12, description="Frames that the person's own model is made from, at most."
+    )
+    chunk_frames: Whole = Field(
+        default=50,
+        ge=0,
+        le=5000,
+        description="Frames of a chunk. Free workers register chunks side by side; each is then joined to the one "
+        "before without a seam. 0: all frames one after the other.",
     )
 
 

@@ -70,14 +70,19 @@ class Pace:
         return min(drawn, LARGEST_RISE * said)
 
 
+MOST_PACES = 4
+
+
 class Paces:
-    """The pace of the job that this worker does, across its steps."""
+    """The paces of the jobs that this worker does, across their steps."""
 
     def __init__(self) -> None:
-        self._last: tuple[tuple[UUID, int], Pace] | None = None
+        self._paces: dict[tuple[UUID, int], Pace] = {}
 
     def find(self, job_id: UUID, attempt: int) -> Pace:
-        """Of one attempt of a job; a new one when another was done before."""
-        if self._last is None or self._last[0] != (job_id, attempt):
-            self._last = (job_id, attempt), Pace()
-        return self._last[1]
+        """Of one attempt of a job; those of the last few are kept."""
+        pace = self._paces.pop((job_id, attempt), None) or Pace()
+        self._paces[job_id, attempt] = pace
+        for oldest in list(self._paces)[:-MOST_PACES]:
+            self._paces.pop(oldest, None)
+        return pace

@@ -8,6 +8,7 @@ import time
 from typing import Any
 from uuid import UUID
 
+from sqlalchemy import case
 from sqlalchemy.exc import OperationalError
 
 from server.database import Database
@@ -31,9 +32,9 @@ class JobStoppedError(Exception):
 
 
 class JobProgress:
-    """Publishes one attempt of a job on behalf of one worker."""
+    """Publishes one attempt of a job on behalf of the worker that holds it; a part of it, which has none, beside it."""
 
-    def __init__(self, database: Database, job_id: UUID, attempt: int, worker_id: UUID, pace: Pace) -> None:
+    def __init__(self, database: Database, job_id: UUID, attempt: int, worker_id: UUID | None, pace: Pace) -> None:
         self._database, self._job_id, self._attempt, self._worker_id = database, job_id, attempt, worker_id
         self._published = 0.0
         self._last_stage = ""
@@ -56,6 +57,18 @@ class JobProgress:
         """Name what is being done in one part of the bar, and how much of it is done, 0 to 1."""
         first, last = span
         self._publish_stage(name, first + (last - first) * min(max(share, 0.0), 1.0))
+
+    def frame_done(self, total: int, begins: float) -> None:
+        """Say that one frame more is safe on disk, while others may be made elsewhere."""
+        with self._database.reading() as session:
+            before = service.get_job(session, self._job_id).frames_done
+        done = case((JobRow.frames_done < total, JobRow.frames_done + 1), else_=total)
+        share = begins + (TRACKING_ENDS - begins) * min(before + 1, total) / total
+        self._publish(True, progress=share, frames_done=done, frames_total=total, crashes=0)
+
+    def check(self) -> None:
+        """Raise if the job is to stop."""
+        self._publish(True)
 
     def kept(self) -> None:
         """Say that what was done so far is safe on disk."""
@@ -106,7 +119,8 @@ class JobProgress:
             self._let_go(job)
 
     def _let_go(self, job: JobRow | None) -> None:
-        if job is not None and job.state == "running" and job.attempt == self._attempt:
+        is_held = job is not None and job.state == "running" and job.attempt == self._attempt
+        if is_held and self._worker_id is not None:
             # This process slept so long that another worker took its work over. What it still has in memory must not be
             # recorded beside the other's: end like a crash, which every step survives.
             log.error("job %s was taken over by another worker; this one ends", self._job_id)

@@ -43,6 +43,7 @@ class JobRun:
 
     def __init__(self, context: WorkerContext, job_id: UUID) -> None:
         self.context, self.job_id = context, job_id
+        self.worker_id: UUID | None = context.worker_id
         with context.database.reading() as session:
             self.row = service.get_job(session, job_id)
         storage = context.storage
@@ -50,29 +51,48 @@ class JobRun:
 
     def progress(self, attempt: int) -> JobProgress:
         pace = self.context.paces.find(self.job_id, attempt)
-        return JobProgress(self.context.database, self.job_id, attempt, self.context.worker_id, pace)
+        return JobProgress(self.context.database, self.job_id, attempt, self.worker_id, pace)
 
     def attempt(self, number: int, work: Callable[[], None]) -> str:
         """Take the job and do it; whatever happens, say how it ended."""
-        try:
+
+        def take_and_do() -> str:
             if not self._claim(number):
                 if self.row.state == "succeeded":  # whoever ended it may have died before that
                     self.files.remove()
                 return "not wanted"
             work()
+            self.files.remove()
+            return "succeeded"
+
+        return self._settle(number, take_and_do)
+
+    def part(self, number: int, work: Callable[[], None]) -> str:
+        """Do a part of a job that another worker may hold; a part that fails ends the job."""
+        self.worker_id = None
+
+        def do() -> str:
+            if (self.row.state, self.row.attempt) != ("running", number):
+                return "not wanted"
+            work()
+            return "succeeded"
+
+        return self._settle(number, do)
+
+    def _settle(self, number: int, do: Callable[[], str]) -> str:
+        try:
+            return do()
         except JobStoppedError:
             log.info("job %s stopped", self.job_id)
             return "stopped"
         except Exception as error:
             self._fail(number, error)
             return "failed"
-        self.files.remove()
-        return "succeeded"
 
     def end(self, session: Session, attempt: int, state: str, **values: Any) -> bool:
         """End the job in the transaction that stores what it made."""
         values = {"state": state, "stage": state, "ended_at": utc_now(), "seconds_left": None, **values}
-        ended = service.update_running(session, self.job_id, attempt, self.context.worker_id, **values)
+        ended = service.update_running(session, self.job_id, attempt, self.worker_id, **values)
         if ended and state == "succeeded":
             service.append_log(session, self.job_id, "info", "done")
         return ended

@@ -268,8 +268,8 @@ def claim_job(session: Session, job_id: UUID, attempt: int, worker_id: UUID) -> 
     return job
 
 
-def update_running(session: Session, job_id: UUID, attempt: int, worker_id: UUID, **values: Any) -> bool:
-    """Set columns of a running job; False when it no longer runs in this attempt on this worker.
+def update_running(session: Session, job_id: UUID, attempt: int, worker_id: UUID | None, **values: Any) -> bool:
+    """Set columns of a running job; False when it no longer runs in this attempt on this worker, or on any if None.
 
     Neither its progress nor its count of frames goes back: what a crash or a cancelled attempt has cost is done again
     while both stand still. Scans are counted anew by every round of a loop.
@@ -279,7 +279,9 @@ def update_running(session: Session, job_id: UUID, attempt: int, worker_id: UUID
     if "frames_done" in values:
         is_behind = JobRow.kind.in_(FRAME_KINDS) & (JobRow.frames_done > values["frames_done"])
         values["frames_done"] = case((is_behind, JobRow.frames_done), else_=values["frames_done"])
-    is_ours = (JobRow.state == "running") & (JobRow.attempt == attempt) & (JobRow.worker_id == worker_id)
+    is_ours = (JobRow.state == "running") & (JobRow.attempt == attempt)
+    if worker_id is not None:
+        is_ours &= JobRow.worker_id == worker_id
     return _change(session, job_id, is_ours, **values)
 
 

@@ -14,7 +14,7 @@ from server.jobs.track_workflow import register_track_workflow
 
 QUEUE = "jobs"
 APPLICATION = "handloom"
-APPLICATION_VERSION = "4"
+APPLICATION_VERSION = "5"
 """Of the steps and their files. A job begun under one version is only continued by workers of that version."""
 
 Workflow = Callable[[str, int], str]

@@ -15,6 +15,7 @@ from server.moving_scans.accepted import find_last, number_registrations
 from server.moving_scans.decisions import find_standing, list_decisions
 from server.moving_scans.models import FrameRegistrationRow, MovingRegistrationRow
 from server.moving_scans.registration_schemas import FrameRegistrationOut, Hand, MovingRegistrationOut
+from server.moving_scans.storing import name_frame
 
 
 def get_registration(session: Session, id_: uuid.UUID) -> MovingRegistrationRow:
@@ -32,28 +33,29 @@ def list_registrations(session: Session, moving_scan_id: uuid.UUID) -> Sequence[
     return session.scalars(query.order_by(*order)).all()
 
 
+def find_frame(session: Session, registration_id: uuid.UUID, frame: int) -> FrameRegistrationRow | None:
+    """What a registration made of a frame, where it is done."""
+    return session.get(FrameRegistrationRow, name_frame(registration_id, frame))
+
+
 def get_frame(session: Session, registration_id: uuid.UUID, frame: int) -> FrameRegistrationRow:
     """What a registration made of a frame."""
-    query = select(FrameRegistrationRow).where(
-        FrameRegistrationRow.registration_id == registration_id, FrameRegistrationRow.frame == frame
-    )
-    row = session.scalars(query).one_or_none()
+    row = find_frame(session, registration_id, frame)
     if row is None:
         raise NotFoundError(f"The registration {registration_id} has no frame {frame}, or not yet.")
     return row
 
 
-def find_before(session: Session, row: MovingRegistrationRow, frame: int) -> FrameRegistrationRow | None:
-    """The nearest earlier frame of a registration, or of the one that it goes on from."""
-    at: MovingRegistrationRow | None = row
-    while at is not None:
+def find_before(session: Session, parent_id: uuid.UUID | None, frame: int) -> FrameRegistrationRow | None:
+    """The nearest earlier frame of the registration that one goes on from, or of its own ancestors."""
+    while parent_id is not None:
         query = select(FrameRegistrationRow).where(
-            FrameRegistrationRow.registration_id == at.id, FrameRegistrationRow.frame < frame
+            FrameRegistrationRow.registration_id == parent_id, FrameRegistrationRow.frame < frame
         )
         found = session.scalars(query.order_by(FrameRegistrationRow.frame.desc()).limit(1)).one_or_none()
         if found is not None:
             return found
-        at = None if at.parent_id is None else session.get_one(MovingRegistrationRow, at.parent_id)
+        parent_id = session.get_one(MovingRegistrationRow, parent_id).parent_id
     return None
 
 

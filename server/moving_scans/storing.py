@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import uuid
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import KDTree
+from sqlalchemy.exc import IntegrityError
 
 from server.database import Database
 from server.moving_scans.frame_files import choose_view_points
@@ -32,29 +36,39 @@ def name_frame(registration_id: uuid.UUID, frame: int) -> uuid.UUID:
     return uuid.uuid5(NAMESPACE, f"{registration_id}/{frame}")
 
 
-def store_frame(
-    database: Database,
-    storage: Storage,
-    place: tuple[uuid.UUID, int],
-    found: BodyRegistration,
-    model: BlendModel,
-    scan: tuple[Scan, str],
-) -> FrameRegistrationRow:
-    """Keep a registered frame: the files first, then its row.
+def write_frame(folder: Path, found: BodyRegistration, model: BlendModel, scan: tuple[Scan, str]) -> None:
+    """Write the files of a registered frame.
 
     Args:
-        place: The registration and the frame.
+        folder: Where to.
         found: What was found.
         model: Of the body.
         scan: What it was laid onto, and the SHA-256 of that file.
     """
     from tracker.bodies import save_body_registration
 
-    id_ = name_frame(*place)
-    folder = storage.folder(AREA, id_)
     save_body_registration(found, model.faces, folder)
     (folder / VIEW).write_bytes(pack_frame(found, model, *scan))
+
+
+def store_frame(database: Database, storage: Storage, place: tuple[uuid.UUID, int], source: Path) -> None:
+    """Keep a registered frame for good: the files first, then its row. One that is kept stays as it is.
+
+    Args:
+        place: The registration and the frame.
+        source: The folder with its files.
+    """
+    from tracker.bodies import load_body_registration
+
+    id_ = name_frame(*place)
+    with database.reading() as session:
+        if session.get(FrameRegistrationRow, id_) is not None:
+            return
+    folder = storage.folder(AREA, id_)
+    shutil.rmtree(folder, ignore_errors=True)  # left by a crash
+    shutil.copytree(source, folder, copy_function=os.link)
     storage.publish(AREA, id_)
+    found = load_body_registration(folder)
     told = found.summary()["scan_to_mesh_mm"]
     row = FrameRegistrationRow(
         id=id_,
@@ -68,9 +82,8 @@ def store_frame(
         has_right=found.are_shown[1],
         seconds=float(sum(found.seconds.values())),
     )
-    with database.writing() as session:
+    with suppress(IntegrityError), database.writing() as session:  # another process kept it at this very moment
         session.add(row)
-    return row
 
 
 def pack_frame(found: BodyRegistration, model: BlendModel, scan: Scan, digest: str) -> bytes:

@@ -95,6 +95,9 @@ def test_a_moving_scan_is_registered_looked_at_and_curated_by_stretch(
     scan_id = page.url.split("/")[-1].split("?")[0]
     page.get_by_role("button", name="Register …").click()
     page.get_by_label("First frame").fill("2")
+    expect(page.get_by_label("Frames of a chunk")).to_have_value("50")
+    screenshots.take(page, "moving-register")
+    page.get_by_label("Frames of a chunk").fill("1")
     page.get_by_role("dialog").get_by_role("button", name="Register", exact=True).click()
     expect(page.get_by_role("region", name="The job")).to_be_visible()
     expect(page.get_by_role("dialog")).to_have_count(0)

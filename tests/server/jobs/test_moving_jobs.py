@@ -1,9 +1,12 @@
-"""Jobs that register a moving scan: a killed worker loses one frame at most, and another prior goes on from a frame."""
+"""Jobs that register a moving scan: a killed worker loses one frame at most, chunks end as those of the command line,
+and another prior goes on from a frame."""
 
 from __future__ import annotations
 
 import itertools
 import uuid
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,34 +15,40 @@ from sqlalchemy import select
 
 from server.access.models import LOCAL_ACCOUNT_ID
 from server.compute import Compute
+from server.database import Database
+from server.jobs.models import WorkerRow
 from server.jobs.moving import make_moving_job
 from server.jobs.moving_run import FAILED
 from server.jobs.moving_schemas import RegisterMovingCreate
 from server.jobs.restarting import list_kept
+from server.jobs.workers import LOST_AFTER
 from server.moving_scans.adding import add_moving_scan
 from server.moving_scans.models import FrameRegistrationRow, MovingRegistrationRow
 from server.moving_scans.schemas import MovingScanOptions
+from server.moving_scans.service import find_scan_file, get_moving_scan
 from server.moving_scans.storing import AREA, TEMPLATE, TEMPLATES
 from server.scans.geometry import unpack_arrays
+from server.settings import Settings
 from tests.server.jobs.scan_bench import ScanBench, bench
 from tests.server.moving_scans.moving import MovingPerson, moving_person
-from tracker.bodies import BodyRegistration, load_body_registration
+from tracker.bodies import CHAIN, BodyRegistration, body_model, load_body_registration
+from tracker.bodies.body_sequence import Sequence, SequenceOptions, register_sequence
 
 __all__ = ["bench", "moving_person"]
 
 
-def add(bench: ScanBench, person: MovingPerson, folder: Path) -> uuid.UUID:
-    """The three frames, and a broken file between the first and the second."""
+def add(bench: ScanBench, person: MovingPerson, folder: Path, broken: str = "frame0b.ply") -> uuid.UUID:
+    """The three frames, and a broken file between two of them."""
     folder.mkdir()
     for name, data in person.files.items():
         (folder / name).write_bytes(data)
-    (folder / "frame0b.ply").write_bytes(b"ply\nnothing\n")
+    (folder / broken).write_bytes(b"ply\nnothing\n")
     compute = Compute(bench.settings, bench.database, bench.storage)
     row, _ = add_moving_scan(
         bench.database, bench.storage, compute, folder, "moving", MovingScanOptions(), LOCAL_ACCOUNT_ID
     )
     compute.close()
-    assert [frame["problem"] is None for frame in row.frames] == [True, False, True, True]
+    assert [frame["name"] for frame in row.frames if frame["problem"] is not None] == [broken]
     return row.id
 
 
@@ -65,8 +74,9 @@ def test_a_killed_job_goes_on_at_its_frame_and_one_with_another_prior_goes_on_fr
     bench.wait(job_id, lambda job: job.frames_done >= 1, 240.0)
     bench.kill(worker)
     before = find_frames(bench, job_id)[1]
-    kept = list_kept(bench.storage, bench.job(job_id))
-    assert kept == ["the person's own model", f"{len(before)} registered frame" + "s" * (len(before) > 1)]
+    done = bench.job(job_id).frames_done
+    told = f"{done} registered frame" + "s" * (done > 1)
+    assert list_kept(bench.storage, bench.job(job_id)) == ["the person's own model", told]
     bench.start_worker()
     job = bench.wait_for_end(job_id)
     assert (job.frames_done, job.frames_total, job.progress, job.moving_scan_id) == (3, 3, 1.0, scan_id)
@@ -99,6 +109,82 @@ def test_a_killed_job_goes_on_at_its_frame_and_one_with_another_prior_goes_on_fr
     assert 0.0 < apart < 10.0, "another prior, from the same frame before"
     assert not bench.storage.folder("jobs", job_id).exists(), "working files go when the job has ended"
     assert bench.job(other_id).title.endswith("frames 2 to 3, on from registration 1, Gaussian prior")
+
+
+@dataclass
+class Chunked:
+    """A job with two chunks, and what the command line makes of the same files."""
+
+    bench: ScanBench
+    scan_id: uuid.UUID
+    job_id: uuid.UUID
+    sequence: Sequence
+
+    def check_same(self) -> None:
+        """Frame by frame to the last bit, the seam too."""
+        frames = find_frames(self.bench, self.job_id)[1]
+        assert [row.frame for row in frames] == [0, 1, 3], "the file of frame 2, the first of its chunk, is broken"
+        for row in frames:
+            ours, theirs = load(self.bench, row), load_body_registration(self.sequence.folder(row.frame))
+            np.testing.assert_array_equal(ours.vertices, theirs.vertices)
+            np.testing.assert_array_equal(ours.state.pose, theirs.state.pose)
+            assert ours.measures == theirs.measures and (CHAIN in ours.measures) == (row.frame == 3)
+
+
+@pytest.fixture
+def chunked(settings: Settings, database: Database, moving_person: MovingPerson, tmp_path: Path) -> Iterator[Chunked]:
+    bench = ScanBench(settings, database)
+    scan_id = add(bench, moving_person, tmp_path / "walking", "frame1b.ply")
+    asked = RegisterMovingCreate(moving_scan_id=scan_id, template_frames=1, chunk_frames=2)
+    with bench.database.reading() as session:
+        row = get_moving_scan(session, scan_id)
+    paths = tuple(find_scan_file(bench.storage, row, frame) for frame in range(4))
+    sequence = Sequence(paths, tmp_path / "out", SequenceOptions(template_frames=1, chunk=2))
+    register_sequence(sequence, body_model())
+    yield Chunked(bench, scan_id, bench.make(make_moving_job, asked), sequence)
+    for process in bench.processes:
+        if process.poll() is None:
+            bench.kill(process)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("database_kind", ["sqlite"])
+def test_one_worker_does_all_chunks_and_when_they_were_cancelled_goes_on_to_the_same_bits(
+    chunked: Chunked,
+) -> None:
+    bench, job_id = chunked.bench, chunked.job_id
+    bench.start_worker()
+    bench.wait(job_id, lambda job: job.frames_done >= 1, 240.0)
+    assert [row.frame for row in find_frames(bench, job_id)[1]] in ([], [0]), "the second chunk is not joined yet"
+    bench.cancel(job_id)
+    done = bench.job(job_id).frames_done
+    bench.resume(job_id)
+    counts: list[int] = []
+    job = bench.wait(job_id, lambda job: counts.append(job.frames_done) or job.state == "succeeded", 240.0)
+    assert counts == sorted(counts) and counts[0] >= done and (job.frames_done, job.progress) == (3, 1.0)
+    assert any(
+        "frame 3 joined to the one before; 1 frame registered again for it" in line for line in bench.log(job_id)
+    )
+    chunked.check_same()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("database_kind", ["postgresql"])
+def test_two_workers_share_the_chunks_and_one_goes_on_for_the_other_that_is_killed(chunked: Chunked) -> None:
+    bench, job_id = chunked.bench, chunked.job_id
+    workers = [bench.start_worker(), bench.start_worker()]
+    bench.wait_for_workers(2)
+    bench.wait(job_id, lambda job: job.frames_done >= 1, 240.0)
+    assert sum("registering frames" in line for line in bench.log(job_id)) == 2, "both chunks at once"
+    with bench.database.reading() as session:
+        holder = session.get_one(WorkerRow, bench.job(job_id).worker_id)
+    bench.kill(next(process for process in workers if process.pid != holder.pid))
+    with bench.database.writing() as session:
+        for row in session.query(WorkerRow).where(WorkerRow.pid != holder.pid):
+            row.last_seen_at -= LOST_AFTER  # as if the other had waited that long
+    job = bench.wait_for_end(job_id)
+    assert (job.frames_done, job.progress, job.worker_id) == (3, 1.0, holder.id)
+    chunked.check_same()
 
 
 def test_what_cannot_be_registered_is_refused_before_it_is_queued(

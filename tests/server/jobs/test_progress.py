@@ -54,3 +54,24 @@ def test_a_job_that_was_cancelled_stops_at_its_next_word(database, sequence_id) 
     with pytest.raises(JobStoppedError):
         progress.scans_done(1, 3, WHOLE_BAR)
     assert stored(database, job_id).frames_done == 0
+
+
+def test_frames_that_several_workers_make_at_once_are_all_counted_and_a_cancelled_job_stops_each(
+    database, sequence_id
+) -> None:
+    job_id = queue_job(database, sequence_id)
+    claim(database, job_id, 1, WORKER)
+    workers = [JobProgress(database, job_id, 1, None, Pace(Clock())) for _ in range(3)]
+    for done in range(1, 9):
+        workers[done % 3].frame_done(7, 0.1)
+        row = stored(database, job_id)
+        assert (row.frames_done, row.frames_total, row.worker_id) == (min(done, 7), 7, WORKER)
+        assert row.progress == pytest.approx(0.1 + 0.88 * min(done, 7) / 7)
+    act(database, service.cancel_job, job_id)
+    for worker in workers:
+        with pytest.raises(JobStoppedError):
+            worker.check()
+    act(database, service.resume_job, job_id)
+    claim(database, job_id, 2, WORKER)
+    with pytest.raises(JobStoppedError):
+        workers[0].frame_done(7, 0.1)

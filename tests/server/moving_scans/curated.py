@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import uuid
 from dataclasses import dataclass, replace
 from typing import Any
@@ -12,7 +13,7 @@ from scipy.spatial import KDTree
 
 from server.access.models import LOCAL_ACCOUNT_ID
 from server.moving_scans.models import MovingRegistrationRow
-from server.moving_scans.storing import TEMPLATE, TEMPLATES, store_frame
+from server.moving_scans.storing import TEMPLATE, TEMPLATES, store_frame, write_frame
 from tests.server.conftest import Studio
 from tests.server.moving_scans.moving import MovingPerson, add, moving_person
 from tests.server.teams.conftest import Join, Person, join
@@ -93,7 +94,10 @@ def lay(studio: Studio, scan_id: str, person: MovingPerson, prior: str, first: i
             from server.moving_scans.service import get_moving_scan
 
             digest = get_moving_scan(session, row.moving_scan_id).frames[frame]["digest"]
-        store_frame(studio.database, storage, (id_, frame), found, model, (scan, digest))
+        made = storage.root / "frame-as-made"
+        write_frame(made, found, model, (scan, digest))
+        store_frame(studio.database, storage, (id_, frame), made)
+        shutil.rmtree(made)
     return str(id_)
 
 

@@ -8812,6 +8812,12 @@ export interface components {
          */
         RegisterMovingJobCreate: {
             /**
+             * Chunk Frames
+             * @description Frames of a chunk. Free workers register chunks side by side; each is then joined to the one before without a seam. 0: all frames one after the other.
+             * @default 50
+             */
+            chunk_frames: number;
+            /**
              * First Frame
              * @default 0
              */

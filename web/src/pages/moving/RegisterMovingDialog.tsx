@@ -17,6 +17,9 @@ interface RegisterMovingDialogProps {
   onStarted: (jobId: string) => void;
 }
 
+/** Frames of a chunk that are offered first. */
+const CHUNK = 50;
+
 const POPULATIONS = [
   { value: "neutral", label: "Everybody" },
   { value: "female", label: "Women" },
@@ -35,7 +38,8 @@ export function RegisterMovingDialog({ scan, parent, frames, onClose, onStarted 
   const [population, setPopulation] = useState<string>("neutral");
   const [holds, setHolds] = useState(true);
   const [hasVelocity, setVelocity] = useState(true);
-  const isWhole = typeof first === "number" && typeof last === "number";
+  const [chunk, setChunk] = useState<number | string>(CHUNK);
+  const isWhole = [first, last, chunk].every((value) => typeof value === "number");
   const wish: RegisterMovingWish = {
     kind: "register_moving",
     moving_scan_id: scan.id,
@@ -44,6 +48,7 @@ export function RegisterMovingDialog({ scan, parent, frames, onClose, onStarted 
     prior,
     holds_hands: holds,
     has_velocity: hasVelocity,
+    chunk_frames: Number(chunk),
     ...(parent ? { parent_id: parent.id } : { population: population as "neutral" }),
   };
   const check = useJobCheck(wish, isWhole);
@@ -79,6 +84,15 @@ export function RegisterMovingDialog({ scan, parent, frames, onClose, onStarted 
       </Radio.Group>
       <Switch checked={holds} onChange={(event) => setHolds(event.currentTarget.checked)} label="A hand that a frame does not show keeps its pose" />
       <Switch checked={hasVelocity} onChange={(event) => setVelocity(event.currentTarget.checked)} label="The pose is held a little to that of the frame before" />
+      <NumberInput
+        label="Frames of a chunk"
+        description="Free workers register chunks side by side; each is then joined to the one before without a seam. 0: all frames one after the other."
+        min={0}
+        max={5000}
+        allowDecimal={false}
+        value={chunk}
+        onChange={setChunk}
+      />
       {!parent && <Select label="Whose shapes the person’s is looked for among" data={POPULATIONS} value={population} allowDeselect={false} onChange={(value) => setPopulation(value ?? "neutral")} />}
     </FormDialog>
   );

@@ -12,6 +12,7 @@ from server.jobs.models import ENDED_STATES, JobRow
 from server.jobs.moving_schemas import RegisterMovingCreate
 from server.jobs.obstacles import refuse_at
 from server.moving_scans.accepted import number_registrations
+from server.moving_scans.person_models import get_person_model
 from server.moving_scans.registrations import get_registration
 from server.moving_scans.service import get_moving_scan, list_usable
 from server.moving_scans.storing import TEMPLATE, TEMPLATES
@@ -25,6 +26,8 @@ def find_moving_obstacles(session: Session, storage: Storage, asked: RegisterMov
     try:
         row = get_moving_scan(session, asked.moving_scan_id)
         parent = None if asked.parent_id is None else get_registration(session, asked.parent_id)
+        if asked.person_model_id is not None:
+            get_person_model(session, asked.person_model_id)
     except StudioError as error:
         return [error.detail]
     last = row.frame_count - 1 if asked.last_frame is None else asked.last_frame
@@ -36,6 +39,8 @@ def find_moving_obstacles(session: Session, storage: Storage, asked: RegisterMov
         return [f"None of the frames {asked.first_frame} to {last} of “{row.name}” can be used. Choose others."]
     if parent is None:
         return []
+    if asked.person_model_id is not None:
+        return ["A registration that goes on from another has its model of the person. Leave one of the two out."]
     if parent.moving_scan_id != row.id:
         return [f"The registration {parent.id} is of another moving scan than “{row.name}”."]
     if not (storage.folder(TEMPLATES, parent.template_id) / TEMPLATE).is_file():
@@ -59,6 +64,10 @@ def make_moving_job(session: Session, storage: Storage, asked: RegisterMovingCre
         number = number_registrations(session, {row.id})[parent.id]
         params |= {"population": parent.population}
         part += f", on from registration {number}"
+    elif asked.person_model_id is not None:
+        model = get_person_model(session, asked.person_model_id)
+        params |= {"population": model.population}
+        part += f", with the model {model.name[:60]}"
     title = f"{row.name[:200]}{part}, {PRIOR_WORDS[asked.prior]}"
     return service.create_job(
         session, KIND, None, params, created_by=account_id, title=title, moving_scan_id=asked.moving_scan_id

@@ -50,7 +50,8 @@ class MovingRun(JobRun):
         self.chunks = [frames for frames in usable if frames]
         self.total = sum(map(len, self.chunks))
         frames = [frame for chunk in self.chunks for frame in chunk]
-        self.template = [] if asked.parent_id else choose_template_frames(frames, asked.template_frames)
+        has_model = asked.parent_id is not None or asked.person_model_id is not None
+        self.template = [] if has_model else choose_template_frames(frames, asked.template_frames)
 
     @cached_property
     def follower(self) -> BodyFollower:
@@ -76,7 +77,7 @@ class MovingRun(JobRun):
                         moving_scan_id=asked.moving_scan_id,
                         job_id=self.job_id,
                         parent_id=asked.parent_id,
-                        template_id=self.registration_id if parent is None else parent.template_id,
+                        template_id=asked.person_model_id or (parent.template_id if parent else self.registration_id),
                         prior=asked.prior,
                         holds_hands=asked.holds_hands,
                         has_velocity=asked.has_velocity,

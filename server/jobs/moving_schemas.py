@@ -22,6 +22,11 @@ class RegisterMovingCreate(BaseModel):
         description="A registration to go on from: its model of the person is used, and the first frame follows from "
         "the one before it there. `population` and `template_frames` are then its own.",
     )
+    person_model_id: uuid.UUID | None = Field(
+        default=None,
+        description="A model of the person to begin with, in place of one made from the first frames. `population` and "
+        "`template_frames` are then its own.",
+    )
     first_frame: FrameNumber = 0
     last_frame: FrameNumber | None = Field(default=None, description="Null: the last one there is.")
     prior: Prior = Field(default="mixture", description="What hands are expected to do.")

@@ -17,5 +17,5 @@ router = APIRouter(prefix="/lineage", tags=["curation"], responses=error_respons
 
 @router.get("/{kind}/{id}")
 def get_lineage(kind: Kind, id: uuid.UUID, session: SessionDep, account_id: AccountIdDep) -> Lineage:
-    """From scan to model or set of bodies, by registration and decision: where a thing comes from, what came of it."""
+    """From scan to model, by registration and decision: where a thing comes from, what came of it."""
     return service.find_lineage(session, kind, id, account_id)

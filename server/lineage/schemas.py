@@ -18,11 +18,12 @@ Kind = Literal[
     "moving_registration",
     "stretch_decision",
     "body_set",
+    "person_model",
 ]
 
 
 class LineageItem(BaseModel):
-    """One thing on the way from a scan to a model, or to a set of bodies."""
+    """One thing on the way from a scan to a model of hands, or of a person."""
 
     kind: Kind
     id: uuid.UUID

@@ -1,5 +1,5 @@
 """Walks up and down the chains scan - registration - decision - training set - model, and moving scan - registration -
-decision about a stretch - set of bodies."""
+decision about a stretch - set of bodies - model of the person."""
 
 from __future__ import annotations
 
@@ -15,7 +15,13 @@ from server.errors import NotFoundError
 from server.hand_models.models import HandModelRow
 from server.lineage.schemas import Kind, Lineage, LineageGroup, LineageItem
 from server.lineage.steps import AT_ONCE, Ids, Step, find_results, find_sources
-from server.moving_scans.models import BodySetRow, MovingRegistrationRow, MovingScanRow, StretchDecisionRow
+from server.moving_scans.models import (
+    BodySetRow,
+    MovingRegistrationRow,
+    MovingScanRow,
+    PersonModelRow,
+    StretchDecisionRow,
+)
 from server.registrations.decision_models import DecisionRow
 from server.registrations.models import RegistrationRow
 from server.registrations.service import is_hidden_from
@@ -97,6 +103,7 @@ TABLES = {
     "moving_registration": MovingRegistrationRow,
     "stretch_decision": StretchDecisionRow,
     "body_set": BodySetRow,
+    "person_model": PersonModelRow,
 }
 
 
@@ -140,6 +147,6 @@ class _Names:
             name = f"{row.decision} by {self._people.get(row.account_id, '')}"
             detail = f"frames {row.first_frame} to {row.last_frame}"
         else:
-            assert isinstance(row, BodySetRow)
+            assert isinstance(row, BodySetRow | PersonModelRow)
             name, detail = row.name, say_count(row.frame_count, "frame")
         return LineageItem(kind=kind, id=row.id, name=name, detail=detail, created_at=row.created_at)

@@ -10,7 +10,13 @@ from sqlalchemy.orm import Session
 
 from server.hand_models.models import HandModelRow
 from server.lineage.schemas import Kind
-from server.moving_scans.models import BodySetRow, FrameRegistrationRow, MovingRegistrationRow, StretchDecisionRow
+from server.moving_scans.models import (
+    BodySetRow,
+    FrameRegistrationRow,
+    MovingRegistrationRow,
+    PersonModelRow,
+    StretchDecisionRow,
+)
 from server.registrations.decision_models import DecisionRow
 from server.registrations.models import RegistrationRow
 from server.registrations.training_set_models import TrainingMemberRow
@@ -55,10 +61,14 @@ def find_sources(session: Session, kind: Kind, ids: Ids) -> Step:
         return [("moving_registration", pick(StretchDecisionRow.registration_id, StretchDecisionRow.id))]
     if kind == "moving_registration":
         made = MovingRegistrationRow
+        models = {id_ for id_ in pick(made.template_id, made.id) if id_ is not None}
         return [
             ("moving_scan", pick(made.moving_scan_id, made.id)),
             ("moving_registration", pick(made.parent_id, made.id)),
+            ("person_model", _pick(session, PersonModelRow.id, PersonModelRow.id, models)),
         ]
+    if kind == "person_model":
+        return [("body_set", pick(PersonModelRow.body_set_id, PersonModelRow.id))]
     return []
 
 
@@ -96,6 +106,10 @@ def find_results(session: Session, kind: Kind, ids: Ids) -> Step:
         query = select(BodySetRow.id, BodySetRow.members).where(BodySetRow.moving_scan_id.in_(scans))
         rows = session.execute(query)
         return [("body_set", [id_ for id_, members in rows if _read_ids(members, "decision_id") & ids])]
+    if kind == "body_set":
+        return [("person_model", pick(PersonModelRow.id, PersonModelRow.body_set_id))]
+    if kind == "person_model":
+        return [("moving_registration", pick(MovingRegistrationRow.id, MovingRegistrationRow.template_id))]
     return []
 
 

@@ -51,7 +51,7 @@ def write_archive(context: ComputeContext, set_id: uuid.UUID, path: Path) -> Non
     with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as archive:
         archive.writestr("README.txt", README)
         for each in members:
-            folder = _check(context.storage, row.name, each)
+            folder = check_member(context.storage, row.name, each)
             found = load_body_registration(folder / BODY)
             poses.append(found.state.pose)
             places.append(found.state.translation)
@@ -118,7 +118,7 @@ def describe_lineage(
     }
 
 
-def _check(storage: Storage, name: str, member: Accepted) -> Path:
+def check_member(storage: Storage, name: str, member: Accepted) -> Path:
     """The folder of a frame, whose file must be what was accepted."""
     folder = storage.folder(AREA, member.frame_registration_id)
     if not (folder / BODY).is_file() or compute_digest(folder / BODY) != member.digest:

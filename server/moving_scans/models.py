@@ -55,7 +55,7 @@ class MovingRegistrationRow(Base):
     parent_id: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("moving_registrations.id"))
     """The registration that this one goes on from, with another prior."""
     template_id: Mapped[uuid.UUID]
-    """The registration whose folder holds the person's own model: this one, or the first of its ancestors."""
+    """Whose folder holds the person's own model: this one, the first of its ancestors, or a model made before."""
     prior: Mapped[str] = mapped_column(String(10))
     holds_hands: Mapped[bool]
     has_velocity: Mapped[bool]
@@ -132,5 +132,23 @@ class BodySetRow(Base):
     frame_count: Mapped[int]
     members: Mapped[list[Any]]
     """`{"frame", "frame_registration_id", "digest", "decision_id"}` of each, in the order of frames."""
+    created_at: Mapped[datetime] = mapped_column(default=utc_now)
+    created_by: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))
+
+
+class PersonModelRow(Base):
+    """The model of a person, from a set. `moving_registrations/<id>/template.npz` never changes: it lies where those of
+    registrations do, so that a registration takes either."""
+
+    __tablename__ = "person_models"
+    __table_args__ = (UniqueConstraint("body_set_id"),)
+
+    body_set_id: Mapped[uuid.UUID] = mapped_column(ForeignKey(BodySetRow.id))
+    name: Mapped[str] = mapped_column(String(200))
+    population: Mapped[str] = mapped_column(String(10))
+    digest: Mapped[str] = mapped_column(String(64))
+    """SHA-256 of the file, hexadecimal."""
+    frame_count: Mapped[int]
+    """Frames of the set that it was made from."""
     created_at: Mapped[datetime] = mapped_column(default=utc_now)
     created_by: Mapped[uuid.UUID | None] = mapped_column(ForeignKey("accounts.id"))

@@ -12,6 +12,7 @@ import pytest
 
 from tests.server.moving_scans.moving import MovingPerson, moving_person
 from tests.web.conftest import OpenPage, Screenshots, Studio
+from tracker import load_mano
 
 __all__ = ["moving_person"]
 
@@ -140,6 +141,22 @@ def test_a_moving_scan_is_registered_looked_at_and_curated_by_stretch(
         lineage = json.loads(archive.read("lineage.json"))
     assert [each["scan"] for each in lineage["frames"]] == ["frame1.ply", "frame2.ply"]
     assert lineage["set"]["stretches"][0]["accepted_by_name"]
+
+    page.get_by_role("button", name="Make the person’s model of Waving hands").click()
+    page.get_by_role("button", name="The person’s model of Waving hands", exact=True).click(timeout=60_000)
+    screenshots.take(page, "moving-model")
+    with page.expect_download() as made:
+        page.get_by_role("menuitem", name="As SMPL-H, .npz").click()
+    made.value.save_as(tmp_path / "SMPLH.npz")
+    assert load_mano(tmp_path / "SMPLH.npz").num_bones == 52
+    page.get_by_role("button", name="Register …").click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_label("Whose shapes")).to_be_visible()
+    dialog.get_by_role("combobox", name="The person’s own model").click()
+    page.get_by_role("option", name="Waving hands, from 2 frames").click()
+    expect(dialog.get_by_label("Whose shapes")).to_have_count(0)
+    screenshots.take(page, "moving-register-with-model")
+    page.keyboard.press("Escape")
 
     page.get_by_role("button", name=re.compile("Register again from frame 2")).click()
     dialog = page.get_by_role("dialog")

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         choose_template_frames,
         find_shape,
         make_own_model,
+        make_template,
         register_for_template,
     )
     from tracker.model.body_hands import body_hand, body_pose

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -28,25 +28,28 @@ def unpose(model: BlendModel, registration: BodyRegistration) -> Array:
     return back - (posed.rest - posed.arrays.shaped)
 
 
-def make_template(model: BlendModel, registrations: list[BodyRegistration]) -> BlendModel:
+def make_template(model: BlendModel, registrations: Iterable[tuple[BlendModel, BodyRegistration]]) -> BlendModel:
     """The model of one person, without shape directions.
 
     Differs from the paper: nobody picks the registrations by eye; the median of each coordinate is taken, and hands
     count only where the scan has them.
 
     Args:
-        model: That of the registrations.
-        registrations: Of the person, good ones.
+        model: A body with the mesh of all models.
+        registrations: Of the person, good ones, each with the model it was made with. Looked at one by one.
     """
-    assert registrations
-    unposed = np.array([unpose(model, each) for each in registrations])
-    template = np.median(unposed, axis=0)
+    unposed, are_shown = [], []
+    for made_with, each in registrations:
+        unposed.append(unpose(made_with, each))
+        are_shown.append(each.are_shown)
+    assert unposed
+    surfaces, shown = np.array(unposed), np.array(are_shown)
+    template = np.median(surfaces, axis=0)
     for k, side in enumerate(("left", "right")):
-        shown = [number for number, each in enumerate(registrations) if each.are_shown[k]]
         ids = body_hand(model, side).vertices
-        if shown:
-            template[ids] = np.median(unposed[shown][:, ids], axis=0)
-    provenance = {**model.provenance, "template": f"median of {len(registrations)} unposed registrations"}
+        if shown[:, k].any():
+            template[ids] = np.median(surfaces[shown[:, k]][:, ids], axis=0)
+    provenance = {**model.provenance, "template": f"median of {len(unposed)} unposed registrations"}
     return replace(
         model,
         name=f"{model.name}, own template",
@@ -86,7 +89,7 @@ def make_own_model(model: BlendModel, found: list[BodyRegistration]) -> BlendMod
     if not good:
         why = "; ".join(found[0].reasons) if found else "none of its scans can be read"
         raise TrackerError(f"No frame of the sequence shows one whole person: {why}.")
-    return make_template(model, good)
+    return make_template(model, ((model, each) for each in good))
 
 
 def without_shape(registration: BodyRegistration) -> BodyState:

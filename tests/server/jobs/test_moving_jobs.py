@@ -14,7 +14,7 @@ import pytest
 from sqlalchemy import select
 
 from server.access.models import LOCAL_ACCOUNT_ID
-from server.compute import Compute
+from server.compute import Compute, ComputeContext
 from server.database import Database
 from server.jobs.models import WorkerRow
 from server.jobs.moving import make_moving_job
@@ -23,7 +23,11 @@ from server.jobs.moving_schemas import RegisterMovingCreate
 from server.jobs.restarting import list_kept
 from server.jobs.workers import LOST_AFTER
 from server.moving_scans.adding import add_moving_scan
+from server.moving_scans.body_sets import create_body_set
+from server.moving_scans.decision_schemas import BodySetMake, StretchDecisionMake
+from server.moving_scans.decisions import decide
 from server.moving_scans.models import FrameRegistrationRow, MovingRegistrationRow
+from server.moving_scans.person_models import make_person_model, name_person_model
 from server.moving_scans.schemas import MovingScanOptions
 from server.moving_scans.service import find_scan_file, get_moving_scan
 from server.moving_scans.storing import AREA, TEMPLATE, TEMPLATES
@@ -109,6 +113,39 @@ def test_a_killed_job_goes_on_at_its_frame_and_one_with_another_prior_goes_on_fr
     assert 0.0 < apart < 10.0, "another prior, from the same frame before"
     assert not bench.storage.folder("jobs", job_id).exists(), "working files go when the job has ended"
     assert bench.job(other_id).title.endswith("frames 2 to 3, on from registration 1, Gaussian prior")
+
+
+def make_model(bench: ScanBench, registration: MovingRegistrationRow) -> uuid.UUID:
+    """Accept the first frame, keep it, and make the person's model of it."""
+    with bench.database.writing() as session:
+        accepted = StretchDecisionMake(decision="accept", first_frame=0, last_frame=0, operation_id=uuid.uuid4())
+        decide(session, registration, LOCAL_ACCOUNT_ID, accepted)
+        scan = get_moving_scan(session, registration.moving_scan_id)
+        made = BodySetMake(moving_scan_id=scan.id, name="frame 0")
+        set_id = create_body_set(session, scan, made, LOCAL_ACCOUNT_ID)[0].id
+    assert make_person_model(ComputeContext(bench.database, bench.storage), set_id, LOCAL_ACCOUNT_ID)
+    return name_person_model(set_id)
+
+
+@pytest.mark.slow
+def test_a_model_of_accepted_frames_takes_the_place_of_one_from_the_first_frames(
+    bench: ScanBench, moving_person: MovingPerson, tmp_path: Path
+) -> None:
+    scan_id = add(bench, moving_person, tmp_path / "walking")
+    bench.start_worker()
+    first = RegisterMovingCreate(moving_scan_id=scan_id, template_frames=1, last_frame=0)
+    registration, _ = find_frames(bench, bench.wait_for_end(bench.make(make_moving_job, first)).id)
+    model_id = make_model(bench, registration)
+    job_id = bench.make(
+        make_moving_job,
+        RegisterMovingCreate(moving_scan_id=scan_id, person_model_id=model_id, first_frame=2, last_frame=2),
+    )
+    bench.wait_for_end(job_id)
+    again, [frame] = find_frames(bench, job_id)
+    assert again.template_id == model_id and not any("the person's own model" in line for line in bench.log(job_id))
+    body = moving_person.bodies[1]
+    apart = 1e3 * np.linalg.norm(load(bench, frame).vertices - body.true_vertices, axis=1)
+    assert apart[body.is_seen].mean() < 6.0 and frame.scan_to_mesh_mm["mean"] < 2.0
 
 
 @dataclass

@@ -1,14 +1,18 @@
-"""`/lineage`: from a scan to the model and back, from a moving scan to a set of bodies and back."""
+"""`/lineage`: from a scan to the model and back, from a moving scan to the person's model and back."""
 
 from __future__ import annotations
 
 import uuid
+from typing import Any
 
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID
+from server.moving_scans.models import MovingRegistrationRow
 from tests.server.curation import Curation, curation, join
 from tests.server.moving_scans.curated import Curated, curated, moving_person
-from tests.server.teams.conftest import Person
+from tests.server.moving_scans.moving import MovingPerson, add
+from tests.server.moving_scans.people import keep, lay, person
+from tests.server.teams.conftest import Join, Person
 
 __all__ = ["curated", "curation", "join", "moving_person"]
 
@@ -131,3 +135,62 @@ def test_of_many_things_the_newest_fifty_are_listed_and_all_are_counted(curated:
     [decisions] = [group for group in groups if group["kind"] == "stretch_decision"]
     assert decisions["total"] == 52
     assert [item["id"] for item in decisions["items"]] == made[:1:-1]
+
+
+def groups(told: dict[str, Any], way: str) -> dict[str, set[str]]:
+    return {group["kind"]: {item["id"] for item in group["items"]} for group in told[way]}
+
+
+def test_the_model_leads_back_to_the_decisions_and_on_to_the_registration_that_begins_with_it(
+    curated: Curated, moving_person: MovingPerson, join: Join
+) -> None:
+    lea = join("lea", "lead")
+    registration = lay(curated, moving_person, person(0.5), range(3))
+    decision = curated.decide(curated.rob, registration, "accept", 0, 1).json()
+    kept = keep(curated, "Ada's frames")
+    model = curated.rob.send("POST", f"/body-sets/{kept['id']}/model").json()
+    files = {f"later{name}": data for name, data in list(moving_person.files.items())[1:]}
+    later = add(curated.studio, files, subject="Ada")
+    stranger = add(curated.studio, dict(list(moving_person.files.items())[:1]), subject="Bo")
+    for scan_id, offered in ((curated.scan_id, [model]), (later["id"], [model]), (stranger["id"], [])):
+        assert curated.ann.get("/person-models", moving_scan_id=scan_id)["items"] == offered
+    assert curated.ann.get("/person-models")["items"] == [model]
+
+    asked = {"kind": "register_moving", "moving_scan_id": later["id"], "person_model_id": model["id"]}
+    for wrong, why in (
+        ({"parent_id": registration, "moving_scan_id": curated.scan_id}, "Leave one of the two out"),
+        ({"person_model_id": kept["id"]}, "no model of a person"),
+    ):
+        refused = lea.send("POST", "/jobs", asked | wrong)
+        assert refused.status_code == 422 and why in refused.text
+    job = lea.send("POST", "/jobs", asked)
+    assert job.status_code == 201, job.text
+    assert job.json()["params"]["population"] == "female"
+    assert job.json()["title"].endswith("with the model Ada's frames, mixture prior")
+    with curated.studio.database.writing() as session:
+        row = session.get_one(MovingRegistrationRow, uuid.UUID(registration))
+        next_one = MovingRegistrationRow(
+            **{
+                column.name: getattr(row, column.name)
+                for column in MovingRegistrationRow.__table__.columns
+                if column.name not in ("id", "moving_scan_id", "template_id", "created_at")
+            },
+            id=uuid.uuid4(),
+            moving_scan_id=uuid.UUID(later["id"]),
+            template_id=uuid.UUID(model["id"]),
+        )
+        session.add(next_one)
+
+    told = curated.ann.get(f"/lineage/person_model/{model['id']}")
+    assert (told["of"]["name"], told["of"]["detail"]) == ("Ada's frames", "2 frames")
+    assert groups(told, "comes_from") == {
+        "body_set": {kept["id"]},
+        "stretch_decision": {decision["id"]},
+        "moving_registration": {registration},
+        "moving_scan": {curated.scan_id},
+    }
+    assert groups(told, "went_into") == {"moving_registration": {str(next_one.id)}}
+    back = groups(curated.ann.get(f"/lineage/moving_registration/{next_one.id}"), "comes_from")
+    assert back["person_model"] == {model["id"]} and back["stretch_decision"] == {decision["id"]}
+    on = groups(curated.ann.get(f"/lineage/stretch_decision/{decision['id']}"), "went_into")
+    assert on["person_model"] == {model["id"]} and on["moving_registration"] == {str(next_one.id)}

@@ -42,7 +42,7 @@ def test_a_posed_model_unposed_is_its_person_at_rest() -> None:
 
 def test_a_template_leaves_out_hands_that_no_scan_shows_and_has_no_shape_left() -> None:
     found = [registered(1), registered(2, (True, False), (1,)), registered(3, (False, True), (0,)), registered(4)]
-    own = make_template(body_model(), found)
+    own = make_template(body_model(), ((body_model(), each) for each in found))
     assert own.num_shape == 0
     assert np.abs(own.template - body_model().shaped(found[0].state.shape)).max() < 1e-9
 

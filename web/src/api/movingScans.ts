@@ -19,6 +19,7 @@ export type FrameRegistration = Schemas["FrameRegistrationOut"];
 export type StretchDecision = Schemas["StretchDecisionOut"];
 export type AcceptedFrames = Schemas["AcceptedFrames"];
 export type BodySet = Schemas["BodySetOut"];
+export type PersonModel = Schemas["PersonModelOut"];
 export type Prior = MovingRegistration["prior"];
 
 export interface MovingScanOptions {
@@ -120,6 +121,21 @@ export function useKeepAccepted(id: string) {
   });
 }
 
+/** Models of the person of a moving scan, the newest first. */
+export const usePersonModels = (id: string) =>
+  useQuery({
+    queryKey: [...movingKeys.one(id), "models"],
+    queryFn: () => fetchAll<PersonModel>("/person-models", { moving_scan_id: id }),
+  });
+
+export function useMakePersonModel(id: string) {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: (set: string) => request<PersonModel>("POST", `/body-sets/${set}/model`),
+    onSettled: () => refresh(client, id),
+  });
+}
+
 export function useDeleteMovingScan() {
   const client = useQueryClient();
   return useMutation({
@@ -144,6 +160,7 @@ export function sendMovingScan(files: readonly DroppedFile[], options: MovingSca
 }
 
 export const movingThumbnailUrl = (id: string): string => `${API}/moving-scans/${id}/thumbnail.png`;
+export const personModelUrl = (id: string, kind: "npz" | "pkl"): string => `${API}/person-models/${id}/smplh.${kind}`;
 export const bodySetUrl = (id: string): string => `${API}/body-sets/${id}/archive.zip`;
 
 /** A frame as it is drawn: the scan, and the body that was laid onto it when there is one. */

@@ -690,6 +690,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/body-sets/{body_set_id}/model": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Create Person Model
+         * @description Make the model of the person from a set. There is one of each: 200 where it is there.
+         */
+        post: operations["create_person_model"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/calibrations": {
         parameters: {
             query?: never;
@@ -2066,7 +2086,7 @@ export interface paths {
         };
         /**
          * Get Lineage
-         * @description From scan to model or set of bodies, by registration and decision: where a thing comes from, what came of it.
+         * @description From scan to model, by registration and decision: where a thing comes from, what came of it.
          */
         get: operations["get_lineage"];
         put?: never;
@@ -2423,6 +2443,46 @@ export interface paths {
          * @description Everybody who can be given work, by name.
          */
         get: operations["list_people"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/person-models": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Person Models
+         * @description Models of people, the newest first. `register_moving` takes one as `person_model_id`.
+         */
+        get: operations["list_person_models"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/person-models/{person_model_id}/smplh.{kind}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Download Person Model
+         * @description The model as a file that `smplx.SMPLH` loads; `betas` count from the person.
+         */
+        get: operations["download_person_model"];
         put?: never;
         post?: never;
         delete?: never;
@@ -7396,13 +7456,13 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model" | "moving_scan" | "moving_registration" | "stretch_decision" | "body_set";
+            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model" | "moving_scan" | "moving_registration" | "stretch_decision" | "body_set" | "person_model";
             /** Total */
             total: number;
         };
         /**
          * LineageItem
-         * @description One thing on the way from a scan to a model, or to a set of bodies.
+         * @description One thing on the way from a scan to a model of hands, or of a person.
          */
         LineageItem: {
             /**
@@ -7424,7 +7484,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model" | "moving_scan" | "moving_registration" | "stretch_decision" | "body_set";
+            kind: "scan" | "registration" | "decision" | "training_set" | "hand_model" | "moving_scan" | "moving_registration" | "stretch_decision" | "body_set" | "person_model";
             /** Name */
             name: string;
         };
@@ -8033,6 +8093,16 @@ export interface components {
              */
             next_cursor: string | null;
         };
+        /** Page[PersonModelOut] */
+        Page_PersonModelOut_: {
+            /** Items */
+            items: components["schemas"]["PersonModelOut"][];
+            /**
+             * Next Cursor
+             * @description For `?cursor=` to get what follows; null at the end.
+             */
+            next_cursor: string | null;
+        };
         /** Page[PersonOut] */
         Page_PersonOut_: {
             /** Items */
@@ -8297,6 +8367,49 @@ export interface components {
              * @enum {string}
              */
             role: "annotator" | "reviewer" | "lead" | "admin";
+        };
+        /**
+         * PersonModel
+         * @description The body of one person: accepted frames taken back to the zero pose, and their median.
+         */
+        PersonModelOut: {
+            /**
+             * Body Set Id
+             * Format: uuid
+             */
+            body_set_id: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Created By Name */
+            created_by_name: string | null;
+            /**
+             * Digest
+             * @description SHA-256 of its file.
+             */
+            digest: string;
+            /**
+             * Frame Count
+             * @description Frames of the set that it was made from, spread over it.
+             */
+            frame_count: number;
+            /**
+             * Id
+             * Format: uuid
+             */
+            id: string;
+            /**
+             * Name
+             * @description Of the set.
+             */
+            name: string;
+            /**
+             * Population
+             * @enum {string}
+             */
+            population: "neutral" | "male" | "female";
         };
         /**
          * Person
@@ -8854,6 +8967,11 @@ export interface components {
              * @description A registration to go on from: its model of the person is used, and the first frame follows from the one before it there. `population` and `template_frames` are then its own.
              */
             parent_id?: string | null;
+            /**
+             * Person Model Id
+             * @description A model of the person to begin with, in place of one made from the first frames. `population` and `template_frames` are then its own.
+             */
+            person_model_id?: string | null;
             /**
              * Population
              * @description Whose shapes the person's is looked for among.
@@ -14310,6 +14428,109 @@ export interface operations {
                 };
                 content: {
                     "application/zip": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    create_person_model: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                body_set_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PersonModelOut"];
+                };
+            };
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PersonModelOut"];
                 };
             };
             /** @description Unauthorized */
@@ -21060,7 +21281,7 @@ export interface operations {
             query?: never;
             header?: never;
             path: {
-                kind: "scan" | "registration" | "decision" | "training_set" | "hand_model" | "moving_scan" | "moving_registration" | "stretch_decision" | "body_set";
+                kind: "scan" | "registration" | "decision" | "training_set" | "hand_model" | "moving_scan" | "moving_registration" | "stretch_decision" | "body_set" | "person_model";
                 id: string;
             };
             cookie?: never;
@@ -22839,6 +23060,182 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Page_Person_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    list_person_models: {
+        parameters: {
+            query?: {
+                /** @description Those of its person: made from its sets, or of the same subject. */
+                moving_scan_id?: string;
+                /** @description `next_cursor` of the page before. */
+                cursor?: string;
+                /** @description Most items of a page. */
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_PersonModelOut_"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    download_person_model: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                person_model_id: string;
+                kind: "npz" | "pkl";
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": string;
                 };
             };
             /** @description Unauthorized */

@@ -1,5 +1,5 @@
 import { Group, Skeleton, Stack, Text, Title } from "@mantine/core";
-import { IconChecks, IconHandStop, IconPackage, IconScan, IconStack2 } from "@tabler/icons-react";
+import { IconChecks, IconHandStop, IconPackage, IconScan, IconStack2, IconUser } from "@tabler/icons-react";
 import { Link } from "react-router";
 import { useLineage, type Lineage, type LineageItem, type LineageKind } from "../../api/handModels";
 import { formatCount } from "../../model/format";
@@ -15,6 +15,7 @@ const KINDS: Record<LineageKind, { one: string; many: string; icon: typeof IconS
   moving_registration: { one: "registration", many: "registrations", icon: IconStack2 },
   stretch_decision: { one: "decision", many: "decisions", icon: IconChecks },
   body_set: { one: "kept set", many: "kept sets", icon: IconPackage },
+  person_model: { one: "model of a person", many: "models of people", icon: IconUser },
 };
 const SHOWN = 5;
 

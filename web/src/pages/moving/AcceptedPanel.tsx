@@ -1,9 +1,9 @@
-import { Button, Text, TextInput, Title } from "@mantine/core";
+import { Button, Menu, Text, TextInput, Title } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
-import { IconDownload } from "@tabler/icons-react";
+import { IconDownload, IconUser } from "@tabler/icons-react";
 import { useState } from "react";
 import { Link } from "react-router";
-import { bodySetUrl, useAcceptedFrames, useBodySets, useKeepAccepted, type AcceptedFrames, type MovingScan } from "../../api/movingScans";
+import { bodySetUrl, useAcceptedFrames, personModelUrl, useBodySets, useKeepAccepted, useMakePersonModel, usePersonModels, type AcceptedFrames, type BodySet, type MovingScan } from "../../api/movingScans";
 import { formatAgo, formatCount } from "../../model/format";
 import { sayStretch } from "../../model/stretch";
 import { Dialog, FormDialog } from "../parts/Dialog";
@@ -32,6 +32,42 @@ function Stretches({ stretches, onRegistration }: { stretches: readonly Accepted
         </li>
       ))}
     </ul>
+  );
+}
+
+/** The model of the person of a set: made once, then taken as a file. */
+function SetModel({ set, scan }: { set: BodySet; scan: string }) {
+  const model = usePersonModels(scan).data?.find((one) => one.body_set_id === set.id);
+  const make = useMakePersonModel(scan);
+  if (model) {
+    return (
+      <Menu position="bottom-end">
+        <Menu.Target>
+          <Button size="compact-xs" variant="default" leftSection={<IconUser size={14} aria-hidden />} aria-label={`The person’s model of ${set.name}`}>
+            Model
+          </Button>
+        </Menu.Target>
+        <Menu.Dropdown>
+          {(["npz", "pkl"] as const).map((kind) => (
+            <Menu.Item key={kind} component="a" href={personModelUrl(model.id, kind)} download>
+              As SMPL-H, .{kind}
+            </Menu.Item>
+          ))}
+        </Menu.Dropdown>
+      </Menu>
+    );
+  }
+  return (
+    <For role="reviewer">
+      <Button size="compact-xs" variant="default" loading={make.isPending} onClick={() => make.mutate(set.id)} aria-label={`Make the person’s model of ${set.name}`}>
+        Make model
+      </Button>
+      {make.error && (
+        <Text size="xs" c="var(--bad-text)" role="alert" w="100%">
+          {make.error.message}
+        </Text>
+      )}
+    </For>
   );
 }
 
@@ -80,7 +116,7 @@ export function AcceptedPanel({ scan, onRegistration }: AcceptedPanelProps) {
           </Title>
           <ul className={classes.list}>
             {sets.map((one) => (
-              <li key={one.id}>
+              <li key={one.id} style={{ flexWrap: "wrap" }}>
                 <button type="button" className={`${classes.jump} one-line`} style={{ flex: "0 1 auto" }} title={`${one.name}: where it comes from`} onClick={() => setShown(one.id)}>
                   {one.name}
                 </button>
@@ -90,6 +126,7 @@ export function AcceptedPanel({ scan, onRegistration }: AcceptedPanelProps) {
                 <Button component="a" href={bodySetUrl(one.id)} size="compact-xs" variant="default" leftSection={<IconDownload size={14} aria-hidden />} aria-label={`Download ${one.name}`}>
                   .zip
                 </Button>
+                <SetModel set={one} scan={scan.id} />
               </li>
             ))}
           </ul>

@@ -1,8 +1,9 @@
 import { Group, NumberInput, Radio, Select, Stack, Switch, Text } from "@mantine/core";
 import { useState } from "react";
 import { mayStart, useJobCheck } from "../../api/jobChecks";
-import type { MovingRegistration, MovingScan, Prior } from "../../api/movingScans";
+import { usePersonModels, type MovingRegistration, type MovingScan, type Prior } from "../../api/movingScans";
 import { useStartJob, type RegisterMovingWish } from "../../api/startJob";
+import { formatCount } from "../../model/format";
 import type { Stretch } from "../../model/stretch";
 import { FormDialog } from "../parts/Dialog";
 import { PRIORS } from "./priors";
@@ -36,6 +37,8 @@ export function RegisterMovingDialog({ scan, parent, frames, onClose, onStarted 
   const [last, setLast] = useState<number | string>(frames.last);
   const [prior, setPrior] = useState<Prior>(parent ? otherThan(parent.prior) : "mixture");
   const [population, setPopulation] = useState<string>("neutral");
+  const models = usePersonModels(scan.id).data ?? [];
+  const [model, setModel] = useState("");
   const [holds, setHolds] = useState(true);
   const [hasVelocity, setVelocity] = useState(true);
   const [chunk, setChunk] = useState<number | string>(CHUNK);
@@ -49,7 +52,7 @@ export function RegisterMovingDialog({ scan, parent, frames, onClose, onStarted 
     holds_hands: holds,
     has_velocity: hasVelocity,
     chunk_frames: Number(chunk),
-    ...(parent ? { parent_id: parent.id } : { population: population as "neutral" }),
+    ...(parent ? { parent_id: parent.id } : model ? { person_model_id: model } : { population: population as "neutral" }),
   };
   const check = useJobCheck(wish, isWhole);
   const submit = (): void => start.mutate(wish, { onSuccess: (job) => onStarted(job.id) });
@@ -69,7 +72,7 @@ export function RegisterMovingDialog({ scan, parent, frames, onClose, onStarted 
       <Text size="sm" className="quiet">
         {parent
           ? `The person’s own model and the frame before are those of registration ${parent.number}. It stays as it is; the new one stands beside it.`
-          : "The person’s own model is made from the first frames; then the body with both hands is laid onto every frame, each from where the one before ended."}
+          : "The person’s own model is made from the first frames, unless there is one; then the body with both hands is laid onto every frame, each from where the one before ended."}
       </Text>
       <Group grow gap="md">
         <NumberInput label="First frame" min={0} max={most} allowDecimal={false} value={first} onChange={setFirst} />
@@ -93,7 +96,16 @@ export function RegisterMovingDialog({ scan, parent, frames, onClose, onStarted 
         value={chunk}
         onChange={setChunk}
       />
-      {!parent && <Select label="Whose shapes the person’s is looked for among" data={POPULATIONS} value={population} allowDeselect={false} onChange={(value) => setPopulation(value ?? "neutral")} />}
+      {!parent && models.length > 0 && (
+        <Select
+          label="The person’s own model"
+          data={[{ value: "", label: "Made from the first frames" }, ...models.map((one) => ({ value: one.id, label: `${one.name}, from ${formatCount(one.frame_count, "frame")}` }))]}
+          value={model}
+          allowDeselect={false}
+          onChange={(value) => setModel(value ?? "")}
+        />
+      )}
+      {!parent && !model && <Select label="Whose shapes the person’s is looked for among" data={POPULATIONS} value={population} allowDeselect={false} onChange={(value) => setPopulation(value ?? "neutral")} />}
     </FormDialog>
   );
 }

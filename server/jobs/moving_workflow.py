@@ -60,8 +60,8 @@ def _wait(chunk: WorkflowHandle[str]) -> None:
         raise JobStoppedError("The job was cancelled.") from None
     except DBOSAwaitedWorkflowMaxRecoveryAttemptsExceeded:
         raise StudioError(
-            f"Workers ended {MAX_RESTARTS} times while they did the same chunk of frames, by a crash or for want of "
-            "memory. The log of the worker says more; `resume` tries once again."
+            f"Workers ended {MAX_RESTARTS + 1} times while they did the same chunk of frames, by a crash or for want "
+            "of memory. The log of the worker says more; `resume` tries once again."
         ) from None
     if outcome != "succeeded":
         raise JobStoppedError("The job ended with one of its chunks.")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import uuid
 from itertools import pairwise
 
 import pytest
 
-from server.jobs.pace import Pace
+from server.jobs.pace import MOST_PACES, Pace, Paces
 
 
 class Clock:
@@ -91,3 +92,14 @@ def test_a_bar_that_would_go_back_stands_still() -> None:
     first = pace.estimate(0.5)
     clock.seconds += 1.0
     assert first is not None and (pace.estimate(0.2) or 0.0) <= first, "what is done again was counted before"
+
+
+def test_the_paces_of_a_job_and_of_a_chunk_of_another_stand_side_by_side_and_old_ones_go() -> None:
+    paces, jobs = Paces(), [uuid.uuid4() for _ in range(MOST_PACES + 1)]
+    first = paces.find(jobs[0], 1)
+    for job in jobs[1:MOST_PACES]:
+        assert paces.find(job, 1) is paces.find(job, 1) is not first
+    assert paces.find(jobs[0], 1) is first is not paces.find(jobs[0], 2)
+    for job in jobs:
+        paces.find(job, 3)
+    assert paces.find(jobs[0], 1) is not first

@@ -19,6 +19,7 @@ from server.evaluations.service import evaluate
 from server.jobs import workers
 from server.jobs.dispatcher import Dispatcher
 from server.jobs.models import JobRow
+from server.jobs.moving import KIND as MOVING
 from server.jobs.moving_workflow import CHUNK_QUEUE
 from server.jobs.run import WorkerContext
 from server.jobs.worker_name import WorkerName
@@ -136,10 +137,11 @@ def _beat_forever(database: Database, worker_id: UUID) -> None:
 
 
 def _warm_up_when_idle(database: Database, worker_id: UUID) -> None:
-    """A job loads the kernels that it needs; beside it the others would only take its time."""
+    """A job loads the kernels that it needs; beside it the others would only take its time. Who does chunks of a
+    moving scan need not hold its job."""
     from tracker import warm_up
 
-    is_mine = (JobRow.state == "running") & (JobRow.worker_id == worker_id)
+    is_mine = (JobRow.state == "running") & ((JobRow.worker_id == worker_id) | (JobRow.kind == MOVING))
     try:
         is_busy = True
         while is_busy:

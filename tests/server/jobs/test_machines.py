@@ -15,17 +15,29 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from sqlalchemy import select
 
 from server.access.models import LOCAL_ACCOUNT_ID
 from server.app import create_app
+from server.compute import Compute
 from server.database import Database
 from server.imports.service import ImportContext, import_recording
 from server.jobs import workers
 from server.jobs.models import JobRow, WorkerRow
+from server.jobs.moving import make_moving_job
+from server.jobs.moving_schemas import RegisterMovingCreate
+from server.moving_scans.adding import add_moving_scan
+from server.moving_scans.models import FrameRegistrationRow
+from server.moving_scans.schemas import MovingScanOptions
+from server.moving_scans.storing import AREA, BODY
 from server.settings import Settings
 from server.storage import open_storage
+from server.storage.digest import compute_digest
 from tests.server.conftest import BASE_URL, S3, _make_postgres_database
 from tests.server.jobs.test_worker import PARAMS, TIMING
+from tests.server.moving_scans.moving import MovingPerson, moving_person
+
+__all__ = ["moving_person"]
 
 ROOT = Path(__file__).resolve().parents[3]
 API = "/api/v1"
@@ -135,6 +147,35 @@ def test_a_worker_that_dies_for_good_is_noticed_and_another_machine_ends_its_job
         assert "its worker crashed; going on after the last finished step" in lines
         assert lines.count("placing the right hand") == 1, "the third machine began where the second had been"
         assert web.arrays(done.track_id) == web.arrays(ended.track_id) == third.arrays(ended.track_id)
+
+
+@pytest.mark.slow
+def test_two_machines_share_the_chunks_of_a_moving_scan_and_a_third_reads_its_frames(
+    machines: list[Machine], moving_person: MovingPerson, tmp_path: Path
+) -> None:
+    web, second, third = machines
+    folder = tmp_path / "walking"
+    folder.mkdir()
+    for name, data in moving_person.files.items():
+        (folder / name).write_bytes(data)
+    compute = Compute(web.settings, web.database, web.storage)
+    account = LOCAL_ACCOUNT_ID
+    row, _ = add_moving_scan(web.database, web.storage, compute, folder, "moving", MovingScanOptions(), account)
+    compute.close()
+    with second.worker(), third.worker():
+        time.sleep(10.0)  # both are there before the chunks are
+        with web.database.writing() as session:
+            asked = RegisterMovingCreate(moving_scan_id=row.id, template_frames=1, chunk_frames=2)
+            job_id = make_moving_job(session, web.storage, asked, account).id
+        web.wait(job_id, seconds=300.0)
+        time.sleep(1.0)  # the working files go last
+    left = [list(machine.storage.folder("jobs", job_id).glob("frame-*.json")) for machine in (second, third)]
+    assert sorted(map(len, left))[0] == 0 < sorted(map(len, left))[1] < 3, "of the one that does not hold the job"
+    with web.database.reading() as session:
+        frames = list(session.scalars(select(FrameRegistrationRow).order_by(FrameRegistrationRow.frame)))
+    assert [frame.frame for frame in frames] == [0, 1, 2]
+    for frame in frames:
+        assert compute_digest(web.storage.folder(AREA, frame.id) / BODY) == frame.digest
 
 
 def _pass_time(machine: Machine, host: str) -> None:

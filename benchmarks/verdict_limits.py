@@ -1,7 +1,7 @@
 """Right and wrong registrations with what the verdict measures of them: `python -m benchmarks.verdict_limits FOLDER`.
 
 Each scan (real ones of FOLDER, the same hand in other poses, generated people 1 to 31, generated fists, and last the
-same hand in 24 more poses, on which no limit was chosen) is registered from where it truly lies, and from starts that
+same hand in all 51 poses, on which no limit was chosen) is registered from where it truly lies, and from starts that
 are wrong: a finger folded or stretched, fingers shifted by one, two fingers merged, the other side. What ends with a
 fingertip elsewhere is a wrong hand. Prints how many right ones and how many wrong ones today's limits call good;
 `--out` keeps the measures, from which limits are chosen, `--pictures` draws the wrong ones that are called good: the
@@ -14,7 +14,7 @@ import argparse
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import cycle, product
 from pathlib import Path
 from typing import Any
 
@@ -43,9 +43,6 @@ Array = npt.NDArray[np.float64]
 FINGERS = ("index", "middle", "ring", "little")
 FIRST = {"thumb": 13, "index": 1, "middle": 4, "ring": 10, "little": 7}
 """A finger's first joint."""
-
-KEPT = 24
-"""Poses of the real hand that no limit was chosen on."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +78,8 @@ def make_known(folder: Path, people: int, registrar: Registrar) -> Iterator[Know
         made = generate_scan(subject, pose, side, 3000 + subject, ScanOptions(strength=strength))
         name = f"{pose} of {subject}, {strength:g}"
         yield Known("generated fists", name, made.scan, side, made.true_vertices, made.true_vertices[tips])
-    kept = np.random.default_rng(77).permutation(POSE_NAMES)[:KEPT].tolist()
-    for number, (subject, pose) in enumerate(zip(reversed(TRAIN_SUBJECTS), kept, strict=False)):
+    kept = np.random.default_rng(77).permutation(POSE_NAMES).tolist()
+    for number, (subject, pose) in enumerate(zip(cycle(reversed(TRAIN_SUBJECTS)), kept, strict=False)):
         name = ("2_spread", "4_rest")[number % 2]
         scan, truth = repose(scans[name], first[name], find_pose(registrar, subject, pose))
         yield Known("reposed, kept aside", f"{name}: {pose} of {subject}", scan, "left", truth, truth[tips])

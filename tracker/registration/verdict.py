@@ -34,7 +34,7 @@ LEAST_COVERED = 0.35
 
 UNLIKE = 0.5
 """A palm at this share of its limit is unlike those that the model knows: its person is strange, or its side wrong."""
-OVER = (FitSettings(10.0, 8, to_scan=0.3), FitSettings(5.0, 8, to_scan=0.1))
+OVER = (FitSettings(10.0, 30, to_scan=0.3), FitSettings(5.0, 30, to_scan=0.1))
 OVER_POINTS = 3000
 
 TOLD = {

@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from benchmarks.hand_pictures import draw_beside_truth
 from benchmarks.reposed_scans import find_pose, repose
-from benchmarks.scan_rotations import MARKS, METRES_PER_UNIT, NEAR, REPOSED
+from benchmarks.scan_rotations import MARKS, METRES_PER_UNIT, REPOSED, are_tips_right
 from tracker.capture.scan import Scan, load_scan
 from tracker.model.blend_limits import blend_limits
 from tracker.model.untrained_hand import untrained_hand
@@ -123,10 +123,7 @@ def _start(side: str, state: HandState) -> RegistrationStart:
 
 
 def is_right(known: Known, found: Registration) -> bool:
-    away = np.linalg.norm(found.vertices[untrained_hand().tips][:, None] - known.tips, axis=2)
-    return found.side == known.side and bool(
-        (away.argmin(axis=1) == np.arange(5)).all() and away.diagonal().max() < NEAR
-    )
+    return found.side == known.side and are_tips_right(found.vertices[untrained_hand().tips], known.tips)
 
 
 def describe(known: Known, what: str, found: Registration) -> dict[str, Any]:

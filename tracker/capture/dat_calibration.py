@@ -29,22 +29,28 @@ def _parse_sections(data: bytes, file: str) -> dict[str, list]:
         text = line.strip()
         if text.startswith("#"):
             break
-        if not text:
-            continue
         if text.endswith(":"):
             name = _SECTIONS.get(text[:-1].strip().lower())
             if name is None or name in sections:
                 raise CalibrationError(f"{file}, line {number}: section {text[:40]!r} is unknown or there twice.")
             current = sections[name] = []
-            continue
-        try:
-            row = [float(part) for part in text.split()]
-        except ValueError:
-            row = []
-        if current is None or not row:
-            raise CalibrationError(f"{file}, line {number}: is {text[:60]!r}; needed numbers in a section like 'R:'.")
-        current.append(row)
-    widths = {len(row) for rows in sections.values() for row in rows}
-    if any(len({len(row) for row in rows}) != 1 for rows in sections.values()):
-        raise CalibrationError(f"{file}: rows of one section have different lengths ({sorted(widths)}).")
+        elif text:
+            row = _parse_row(text)
+            if current is None or not row:
+                raise CalibrationError(
+                    f"{file}, line {number}: is {text[:60]!r}; needed numbers in a section like 'R:'."
+                )
+            current.append(row)
+    widths = [{len(row) for row in rows} for rows in sections.values()]
+    if any(len(of_section) != 1 for of_section in widths):
+        different = sorted(set().union(*widths))
+        raise CalibrationError(f"{file}: rows of one section have different lengths ({different}).")
     return sections
+
+
+def _parse_row(text: str) -> list[float]:
+    """Numbers of a line; none where one of its words is no number."""
+    try:
+        return [float(part) for part in text.split()]
+    except ValueError:
+        return []

@@ -50,49 +50,59 @@ def parse_opencv(data: bytes, file: str) -> dict[str, Any]:
 
 def find_cameras(values: dict[str, Any], file: str, name: str) -> list[VideoCamera]:
     """Cameras in the values of one file; a single unnumbered one is called `name`. Empty when there is none."""
-    listed = values.get("cameras")
-    tables = {str(i): v for i, v in enumerate(listed)} if isinstance(listed, list) else listed
-    if not isinstance(tables, dict):
-        tables = {k: v for k, v in values.items() if isinstance(v, dict) and "K" in _gather(v)[0].get("", {})}
+    tables = _find_tables(values)
     if tables:
-        cameras = []
-        for key, table in list(tables.items())[:64]:
-            own = _gather(table)[0].get("", {}) if isinstance(table, dict) else {}
-            if "K" not in own:
-                raise CalibrationError(f"{file}: camera {key} has no camera matrix.")
-            label = next((table[k] for k in ("id", "name") if isinstance(table.get(k), str)), key)
-            cameras.append(make_camera(str(label)[:100], f"{file}: {key}", own))
-        return cameras
-    numbered, _ = _gather(values)
+        return [_make_from_table(key, table, file) for key, table in list(tables.items())[:64]]
+    numbered = _gather(values)
     if "K" in numbered.get("", {}):
         return [make_camera(name, file, numbered[""])]
     shared = numbered.pop("", {})
-    with_matrix = {key: own for key, own in sorted(numbered.items()) if "K" in own}
-    cameras = []
-    for place, (key, own) in enumerate(with_matrix.items()):
-        is_stereo = len(with_matrix) == 2 and "R" in shared and "t" in shared
-        if is_stereo:  # OpenCV's stereo pair: x2 = R x1 + T, R1 and R2 rectify; the world is the first camera.
-            own = {meaning: value for meaning, value in own.items() if meaning not in ("R", "t")}
-            own |= {"R": shared["R"], "t": shared["t"]} if place == 1 else {}
-        cameras.append(make_camera(key, f"{file}: camera {key}", {"size": shared.get("size")} | own))
-    return cameras
+    own = {key: values for key, values in sorted(numbered.items()) if "K" in values}
+    if len(own) == 2 and "R" in shared and "t" in shared:
+        own = _place_stereo_pair(own, shared)
+    size = {"size": shared.get("size")}
+    return [make_camera(key, f"{file}: camera {key}", size | values) for key, values in own.items()]
 
 
-def _gather(values: dict[str, Any]) -> tuple[dict[str, dict[str, Any]], list[str]]:
-    """Values by camera suffix and meaning (`cameraMatrix1` is K of `1`), and the names that mean nothing here."""
+def _find_tables(values: dict[str, Any]) -> dict[str, Any]:
+    """Cameras that have a table each: those listed under `cameras`, else every table with a camera matrix."""
+    listed = values.get("cameras")
+    if isinstance(listed, list):
+        return {str(i): table for i, table in enumerate(listed)}
+    return listed if isinstance(listed, dict) else {k: v for k, v in values.items() if "K" in _gather_unnumbered(v)}
+
+
+def _make_from_table(key: str, table: Any, file: str) -> VideoCamera:
+    own = _gather_unnumbered(table)
+    if "K" not in own:
+        raise CalibrationError(f"{file}: camera {key} has no camera matrix.")
+    label = next((table[k] for k in ("id", "name") if isinstance(table.get(k), str)), key)
+    return make_camera(str(label)[:100], f"{file}: {key}", own)
+
+
+def _place_stereo_pair(own: dict[str, dict[str, Any]], shared: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """OpenCV's stereo pair: x2 = R x1 + T, and the world is the first camera; R1 and R2, which rectify, are left."""
+    (first, second) = own
+    inside = {key: {k: v for k, v in values.items() if k not in ("R", "t")} for key, values in own.items()}
+    return {first: inside[first], second: inside[second] | {"R": shared["R"], "t": shared["t"]}}
+
+
+def _gather_unnumbered(table: Any) -> dict[str, Any]:
+    return _gather(table).get("", {}) if isinstance(table, dict) else {}
+
+
+def _gather(values: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Values by camera suffix and meaning (`cameraMatrix1` is K of `1`); names that mean nothing are left out."""
     found: dict[str, dict[str, Any]] = {}
-    unknown: list[str] = []
     for key, value in values.items():
         match = re.fullmatch(r"([A-Za-z]+)([0-9]{0,3})", str(key).replace("_", "").replace("-", ""))
         meaning = _MEANING.get(match[1].lower()) if match else None
-        if match is None or meaning is None or value is None:
-            unknown.append(str(key))
-            continue
-        found.setdefault(match[2], {}).setdefault(meaning, value)
+        if match and meaning and value is not None:
+            found.setdefault(match[2], {}).setdefault(meaning, value)
     width, height = values.get("image_width"), values.get("image_height")
     if width is not None and height is not None:
         found.setdefault("", {}).setdefault("size", [width, height])
-    return found, unknown
+    return found
 
 
 def _parse_npz(data: bytes, file: str) -> dict[str, Any]:

@@ -17,13 +17,27 @@ NEEDED = "an npz with points (N, 3), and perhaps normals (N, 3), faces (F, 3), c
 
 def read_npz_scan(path: Path, data: bytes) -> RawScan:
     """Read the arrays; no pickles, and nothing that unpacks to more than MAX_FILE_BYTES."""
+    found = _load_arrays(path, data)
+    _check_arrays(path, found)
+    return RawScan(
+        points=found["points"].astype(np.float64),
+        faces=found["faces"].astype(np.int64) if "faces" in found else None,
+        normals=found["normals"].astype(np.float64) if "normals" in found else None,
+        colors=to_bytes_of_color(found["colors"]) if "colors" in found else None,
+    )
+
+
+def _load_arrays(path: Path, data: bytes) -> dict[str, npt.NDArray]:
     with reading(ScanError, path, NEEDED):
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             unpacked = sum(entry.file_size for entry in archive.infolist())
         if unpacked > MAX_FILE_BYTES:
             raise ScanError(path, f"{unpacked} bytes when unpacked", f"at most {MAX_FILE_BYTES}")
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            found = {name: arrays[name] for name in ("points", "normals", "faces", "colors") if name in arrays}
+            return {name: arrays[name] for name in ("points", "normals", "faces", "colors") if name in arrays}
+
+
+def _check_arrays(path: Path, found: dict[str, npt.NDArray]) -> None:
     if "points" not in found:
         raise ScanError(path, "an npz without points", NEEDED)
     for name, array in found.items():
@@ -33,12 +47,6 @@ def read_npz_scan(path: Path, data: bytes) -> RawScan:
             raise ScanError(path, f"{len(array)} {name} for {len(found['points'])} points", NEEDED)
     if len(found["points"]) > MAX_FILE_POINTS or len(found.get("faces", ())) > MAX_FILE_FACES:
         raise ScanError(path, f"{len(found['points'])} points", f"at most {MAX_FILE_POINTS}")
-    return RawScan(
-        points=found["points"].astype(np.float64),
-        faces=found["faces"].astype(np.int64) if "faces" in found else None,
-        normals=found["normals"].astype(np.float64) if "normals" in found else None,
-        colors=to_bytes_of_color(found["colors"]) if "colors" in found else None,
-    )
 
 
 def pack_npz_scan(

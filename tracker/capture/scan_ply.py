@@ -90,37 +90,52 @@ def _read_header(path: Path, data: bytes) -> tuple[str, list[Element], int]:
         raise ScanError(path, "no line 'ply' at its beginning", NEEDED)
     order: str | None = None
     elements: list[Element] = []
-    while True:
-        line = stream.readline()
-        words = line.decode("ascii", "replace").split()
-        if not line or stream.tell() >= MAX_HEADER:
-            raise ScanError(path, "a header without end", NEEDED)
-        if not words or words[0] in ("comment", "obj_info"):
-            continue
-        if words[0] == "end_header":
-            break
+    while (words := _read_words(path, stream))[0] != "end_header":
         if words[0] == "format" and len(words) > 1:
             order = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}.get(words[1])
         elif words[0] == "element" and len(words) == 3 and words[2].isdigit() and len(words[2]) < 12:
             elements.append(Element(words[1], int(words[2]), []))
-        elif words[0] == "property" and elements and len(words) == 3 and words[1] in TYPES:
-            elements[-1].properties.append((words[2], TYPES[words[1]], ""))
-        elif words[:2] == ["property", "list"] and elements and len(words) == 5 and {words[2], words[3]} <= set(TYPES):
-            elements[-1].properties.append((words[4], TYPES[words[3]], TYPES[words[2]]))
+        elif elements and (found := _parse_property(words)):
+            elements[-1].properties.append(found)
         else:
             raise ScanError(path, f"the line {' '.join(words)[:60]!r} in its header", NEEDED)
     if order is None:
         raise ScanError(path, "no known format", "ascii, binary_little_endian or binary_big_endian")
     for element in elements:
-        limit = MAX_FILE_POINTS if element.name == "vertex" else MAX_FILE_FACES
-        if element.count > limit:
-            raise ScanError(path, f"{element.count} of the element {element.name}", f"at most {limit}")
-        names = [name for name, _, _ in element.properties]
-        if not names:
-            raise ScanError(path, f"an element {element.name!r} without properties", NEEDED)
-        if len(set(names)) != len(names):
-            raise ScanError(path, f"two properties of one name in {names[:9]} of {element.name}", "each once")
+        _check_element(path, element)
     return order, elements, stream.tell()
+
+
+def _read_words(path: Path, stream: io.BytesIO) -> list[str]:
+    """Words of the next line of the header that is neither empty nor a comment."""
+    while True:
+        line = stream.readline()
+        if not line or stream.tell() >= MAX_HEADER:
+            raise ScanError(path, "a header without end", NEEDED)
+        words = line.decode("ascii", "replace").split()
+        if words and words[0] not in ("comment", "obj_info"):
+            return words
+
+
+def _parse_property(words: list[str]) -> tuple[str, str, str] | None:
+    """Name, type and, of a list, type of its count; None where the line is no property of a known type."""
+    match words:
+        case ["property", kind, name] if kind in TYPES:
+            return name, TYPES[kind], ""
+        case ["property", "list", count, kind, name] if count in TYPES and kind in TYPES:
+            return name, TYPES[kind], TYPES[count]
+    return None
+
+
+def _check_element(path: Path, element: Element) -> None:
+    limit = MAX_FILE_POINTS if element.name == "vertex" else MAX_FILE_FACES
+    if element.count > limit:
+        raise ScanError(path, f"{element.count} of the element {element.name}", f"at most {limit}")
+    names = [name for name, _, _ in element.properties]
+    if not names:
+        raise ScanError(path, f"an element {element.name!r} without properties", NEEDED)
+    if len(set(names)) != len(names):
+        raise ScanError(path, f"two properties of one name in {names[:9]} of {element.name}", "each once")
 
 
 def _read_table(path, element: Element, data: bytes, words, order: str, place: int) -> tuple[npt.NDArray, int]:

@@ -56,12 +56,7 @@ class VideoCamera:
 def to_array(value: Any, what: str) -> Array:
     """Numbers from outside as a float64 array; OpenCV's `{rows, cols, data}` and `{sizes, data}` are ones too."""
     if isinstance(value, dict) and "data" in value and ({"rows", "cols"} <= value.keys() or "sizes" in value):
-        flat = to_array(value["data"], what).ravel()
-        sizes = value["sizes"] if "sizes" in value else [value["rows"], value["cols"]]
-        sizes = sizes if isinstance(sizes, list) else [sizes]
-        if not sizes or any(type(n) is not int or n < 0 for n in sizes) or math.prod(sizes) != flat.size:
-            raise CalibrationError(f"{what}: says {str(sizes)[:60]} numbers and has {flat.size}.")
-        return flat.reshape(sizes)
+        return _to_sized_array(value, what)
     try:
         array = np.asarray(value)
         if array.dtype.kind not in "fiu" or array.size > 10_000:
@@ -72,6 +67,15 @@ def to_array(value: Any, what: str) -> Array:
     if not np.isfinite(array).all():
         raise CalibrationError(f"{what}: holds NaN or infinity.")
     return array
+
+
+def _to_sized_array(value: dict[str, Any], what: str) -> Array:
+    flat = to_array(value["data"], what).ravel()
+    sizes = value["sizes"] if "sizes" in value else [value["rows"], value["cols"]]
+    sizes = sizes if isinstance(sizes, list) else [sizes]
+    if not sizes or any(type(n) is not int or n < 0 for n in sizes) or math.prod(sizes) != flat.size:
+        raise CalibrationError(f"{what}: says {str(sizes)[:60]} numbers and has {flat.size}.")
+    return flat.reshape(sizes)
 
 
 @reads(CalibrationError, "a camera: K of 3x3 numbers, R of 3x3 or a rotation vector, t of three")

@@ -125,55 +125,76 @@ def _read_table(name: str, data: bytes, labels: LabelSet, hints: ImportHints, co
 def _read_header(
     name: str, header: list[list[str]], labels: LabelSet, hints: ImportHints, collector: ImportCollector
 ) -> tuple[dict[int, Column], int]:
+    """What each column of labels is, and where they begin."""
     rows = {row[0].strip().lower(): row for row in header}
-    if set(rows) - {"individuals"} != {"scorer", "bodyparts", "coords"} or len({len(row) for row in header}) != 1:
-        raise AnnotationError(
-            f"{name}: the header has the rows {', '.join(rows)}; needed scorer, (individuals,) bodyparts and coords, "
-            "all of one length."
-        )
-    width = len(header[0])
-    if width > MAX_COLUMNS:
-        raise AnnotationError(f"{name}: has {width} columns; at most {MAX_COLUMNS} are read.")
-    coords = [cell.strip() for cell in rows["coords"]]
-    if "likelihood" in coords:
-        raise AnnotationError(
-            f"{name}: has a column 'likelihood': it holds predictions of a network, not labels. Only labels "
-            "(CollectedData_....csv) are imported."
-        )
-    start = next((i for i, cell in enumerate(coords) if i and cell), width)
+    coords = _check_header(name, rows, header)
+    start = next((i for i, cell in enumerate(coords) if i and cell), len(coords))
     if len(set(rows["scorer"][start:])) > 1:
         raise AnnotationError(f"{name}: holds labels of several scorers; import one scorer at a time.")
-    single = None
-    if "individuals" not in rows:
-        single = hints.hand or (labels.sequence.hands[0] if len(labels.sequence.hands) == 1 else None)
-        if single is None:
-            raise AnnotationError(
-                f"{name}: has no row 'individuals', and both hands are seen in the recording. Say which hand it is "
-                "with the option hand (right or left)."
-            )
-        if hints.hand is None:
-            collector.warnings.add(f"The table knows one individual, which was taken as the {single} hand")
+    if "individuals" in rows:
+        individuals = [cell.strip().lower() for cell in rows["individuals"]]
+    else:
+        individuals = [_find_only_hand(name, labels, hints, collector)] * len(coords)
     columns: dict[int, Column] = {}
-    for i in range(start, width):
-        who = single or rows["individuals"][i].strip().lower()
-        side = next((hand for hand in HANDS if hand in who), None)
-        joint = find_joint(rows["bodyparts"][i])
-        if side is None or joint is None or coords[i] not in ("x", "y"):
-            what = f"{rows['bodyparts'][i]} of {who}"[:80]
+    for i in range(start, len(coords)):
+        column = _find_column(individuals[i], rows["bodyparts"][i], coords[i])
+        if column is None:
+            what = f"{rows['bodyparts'][i]} of {individuals[i]}"[:80]
             collector.warnings.add(
                 "{n} [column is|columns are] no joint of the right or left hand and [was|were] left out", what
             )
-            continue
-        column = (side, joint, "xy".index(coords[i]))
-        if column in columns.values():
-            raise AnnotationError(f"{name}: two columns are the {coords[i]} of {rows['bodyparts'][i]} of {who}.")
-        columns[i] = column
+        elif column in columns.values():
+            raise AnnotationError(
+                f"{name}: two columns are the {coords[i]} of {rows['bodyparts'][i]} of {individuals[i]}."
+            )
+        else:
+            columns[i] = column
     if not columns:
         raise AnnotationError(
             f"{name}: no column is a joint of a hand. Name body parts like {', '.join(HAND_JOINTS[:3])} ..., "
             "individuals right and left."
         )
     return columns, start
+
+
+def _check_header(name: str, rows: dict[str, list[str]], header: list[list[str]]) -> list[str]:
+    """The cells of the row `coords`."""
+    if set(rows) - {"individuals"} != {"scorer", "bodyparts", "coords"} or len({len(row) for row in header}) != 1:
+        raise AnnotationError(
+            f"{name}: the header has the rows {', '.join(rows)}; needed scorer, (individuals,) bodyparts and coords, "
+            "all of one length."
+        )
+    coords = [cell.strip() for cell in rows["coords"]]
+    if len(coords) > MAX_COLUMNS:
+        raise AnnotationError(f"{name}: has {len(coords)} columns; at most {MAX_COLUMNS} are read.")
+    if "likelihood" in coords:
+        raise AnnotationError(
+            f"{name}: has a column 'likelihood': it holds predictions of a network, not labels. Only labels "
+            "(CollectedData_....csv) are imported."
+        )
+    return coords
+
+
+def _find_only_hand(name: str, labels: LabelSet, hints: ImportHints, collector: ImportCollector) -> str:
+    """The hand of a table that knows no individuals."""
+    if hints.hand:
+        return hints.hand
+    if len(labels.sequence.hands) != 1:
+        raise AnnotationError(
+            f"{name}: has no row 'individuals', and both hands are seen in the recording. Say which hand it is "
+            "with the option hand (right or left)."
+        )
+    only = labels.sequence.hands[0]
+    collector.warnings.add(f"The table knows one individual, which was taken as the {only} hand")
+    return only
+
+
+def _find_column(who: str, part: str, coord: str) -> Column | None:
+    side = next((hand for hand in HANDS if hand in who), None)
+    joint = find_joint(part)
+    if side is None or joint is None or coord not in ("x", "y"):
+        return None
+    return side, joint, "xy".index(coord)
 
 
 def _read_row(

@@ -48,42 +48,17 @@ def write_interhand(sets: list[LabelSet]) -> ExportedLabels:
     (only,) = sets
     losses = Notes()
     note_flat_visibility(losses, only.annotations.items, "InterHand2.6M")
-    frames: dict[int, dict[str, Hand3D]] = {}
-    for hand in find_hands_3d(only, losses):
-        if np.isfinite(hand.points).all(axis=1).any():
-            frames.setdefault(hand.frame, {})[hand.hand] = hand
-    if not frames:
-        raise AnnotationError(
-            "InterHand2.6M holds 3D joints only, and none of these labels is known in 3D: mark joints in two "
-            f"calibrated cameras, where there is depth, or give a track. {' '.join(losses.sentences())}"
-        )
+    frames = _find_frames(only, losses)
     kept = tuple(item for item in only.annotations.items if item.hand in frames.get(item.frame, {}))
     images, ids = list_images([dataclasses.replace(only, annotations=type(only.annotations)(kept))])
     for image in images:
         image |= {"capture": int(CAPTURE), "subject": 0, "seq_name": only.sequence.name, "frame_idx": image["frame"]}
-    annotations, world = [], {}
+    annotations = []
     for frame, hands in frames.items():
-        points, valid = _join(hands)
-        kind = _hand_type(hands)
-        world[str(frame)] = {
-            "world_coord": (np.where(valid[:, None], points, 0.0) * MM_PER_M).tolist(),
-            "joint_valid": valid.astype(int)[:, None].tolist(),
-            "hand_type": kind,
-            "hand_type_valid": 1,
-        }
         for camera in sorted({name for hand in hands.values() for name in hand.labels}):
-            seen = {side: hand for side, hand in hands.items() if camera in hand.labels}
-            marks = np.concatenate([hand.labels[camera].points for hand in seen.values()])
-            annotations.append(
-                {
-                    "id": len(annotations) + 1,
-                    "image_id": ids[only.key, (camera, frame)],
-                    "bbox": describe_box(marks)["bbox"],
-                    "joint_valid": _join(seen)[1].astype(int)[:, None].tolist(),
-                    "hand_type": _hand_type(seen),
-                    "hand_type_valid": True,
-                }
-            )
+            image_id = ids[only.key, (camera, frame)]
+            annotations.append({"id": len(annotations) + 1, "image_id": image_id} | _write_view(camera, hands))
+    world = {str(frame): _write_world(hands) for frame, hands in frames.items()}
     for camera in only.sequence.cameras:
         losses.add("{n} [camera has|cameras have] lens distortion, which InterHand2.6M does not hold", camera.id,
                    count=int(bool(camera.distortion.any())))  # fmt: skip
@@ -96,6 +71,42 @@ def write_interhand(sets: list[LabelSet]) -> ExportedLabels:
     joints = sum(int(np.sum(item["joint_valid"])) for item in annotations)
     count = sum(len(hand.labels) for hands in frames.values() for hand in hands.values())
     return ExportedLabels(files, count, joints, losses.sentences())
+
+
+def _find_frames(labels: LabelSet, losses: Notes) -> dict[int, dict[str, Hand3D]]:
+    """Hands by side in each frame where a joint of them is known in 3D."""
+    frames: dict[int, dict[str, Hand3D]] = {}
+    for hand in find_hands_3d(labels, losses):
+        if np.isfinite(hand.points).all(axis=1).any():
+            frames.setdefault(hand.frame, {})[hand.hand] = hand
+    if not frames:
+        raise AnnotationError(
+            "InterHand2.6M holds 3D joints only, and none of these labels is known in 3D: mark joints in two "
+            f"calibrated cameras, where there is depth, or give a track. {' '.join(losses.sentences())}"
+        )
+    return frames
+
+
+def _write_world(hands: dict[str, Hand3D]) -> dict[str, Any]:
+    points, valid = _join(hands)
+    return {
+        "world_coord": (np.where(valid[:, None], points, 0.0) * MM_PER_M).tolist(),
+        "joint_valid": valid.astype(int)[:, None].tolist(),
+        "hand_type": _hand_type(hands),
+        "hand_type_valid": 1,
+    }
+
+
+def _write_view(camera: str, hands: dict[str, Hand3D]) -> dict[str, Any]:
+    """Hands of a frame that have labels in this camera."""
+    seen = {side: hand for side, hand in hands.items() if camera in hand.labels}
+    marks = np.concatenate([hand.labels[camera].points for hand in seen.values()])
+    return {
+        "bbox": describe_box(marks)["bbox"],
+        "joint_valid": _join(seen)[1].astype(int)[:, None].tolist(),
+        "hand_type": _hand_type(seen),
+        "hand_type_valid": True,
+    }
 
 
 def _join(hands: dict[str, Hand3D]) -> tuple[Array, npt.NDArray[np.bool_]]:

@@ -50,6 +50,17 @@ class Gltf:
     def accessor(self, index: Any, form: str) -> npt.NDArray:
         """Values (N, width) of an accessor of the type `form`; normalised integers become -1 or 0 to 1."""
         accessor = self.item("accessors", index)
+        self._check_accessor(accessor, index, form)
+        dtype, width = np.dtype(COMPONENTS[accessor["componentType"]]), WIDTHS[form]
+        rows = self._rows(accessor, index, dtype.itemsize * width)
+        values = np.ascontiguousarray(rows).view(dtype).reshape(len(rows), width)
+        if accessor.get("normalized") is True and dtype.kind in "ui":
+            return np.maximum(values.astype(np.float64) / np.iinfo(dtype).max, -1.0)
+        if dtype.kind == "f" and not np.all(np.isfinite(values)):
+            raise self.fail(f"accessors[{index}] with numbers that are not finite", "finite numbers")
+        return values
+
+    def _check_accessor(self, accessor: dict[str, Any], index: Any, form: str) -> None:
         component, count = accessor.get("componentType"), accessor.get("count")
         if accessor.get("type") != form or type(component) is not int or type(count) is not int:
             raise self.fail(f"accessors[{index}] of type {str(accessor.get('type'))[:20]}", f"a {form} of numbers")
@@ -57,28 +68,23 @@ class Gltf:
             raise self.fail(f"accessors[{index}] of numbers of the kind {component}", "a kind of number of glTF 2.0")
         if "sparse" in accessor or "bufferView" not in accessor:
             raise self.fail(f"a sparse or empty accessors[{index}]", "plain accessors; export without sparse data")
-        view = self.item("bufferViews", accessor["bufferView"])
-        dtype, width = np.dtype(COMPONENTS[component]), WIDTHS[form]
-        stride = self._whole(view, "byteStride", dtype.itemsize * width)
+
+    def _rows(self, accessor: dict[str, Any], index: Any, size: int) -> npt.NDArray[np.uint8]:
+        """The `size` bytes of each entry of an accessor, (N, size), as they stand in its buffer."""
+        view, count = self.item("bufferViews", accessor["bufferView"]), accessor["count"]
+        stride = self._whole(view, "byteStride", size)
         offset = self._whole(accessor, "byteOffset", 0)
         start, length = self._whole(view, "byteOffset", 0), self._whole(view, "byteLength", -1)
         number = view.get("buffer")
         if type(number) is not int or not 0 <= number < len(self.buffers):
             raise self.fail(f"bufferViews with the buffer {str(number)[:20]}", f"one of {len(self.buffers)} buffers")
         data = self.buffers[number]
-        size = dtype.itemsize * width
         fits = count >= 1 and stride >= size and length >= 0 and start + length <= len(data)
         if not fits or offset + stride * (count - 1) + size > length or count * size > MAX_BYTES:
             raise self.fail(f"accessors[{index}] that runs past the end of its buffer", "a whole file")
-        rows = np.lib.stride_tricks.as_strided(
+        return np.lib.stride_tricks.as_strided(
             np.frombuffer(data, dtype=np.uint8)[start + offset :], shape=(count, size), strides=(stride, 1)
         )
-        values = np.ascontiguousarray(rows).view(dtype).reshape(count, width)
-        if accessor.get("normalized") is True and dtype.kind in "ui":
-            return np.maximum(values.astype(np.float64) / np.iinfo(dtype).max, -1.0)
-        if dtype.kind == "f" and not np.all(np.isfinite(values)):
-            raise self.fail(f"accessors[{index}] with numbers that are not finite", "finite numbers")
-        return values
 
     def primitives(self, mesh: Any) -> list[dict[str, Any]]:
         """Those of a mesh."""

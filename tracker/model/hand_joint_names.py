@@ -73,17 +73,25 @@ def _read_name(name: str) -> tuple[str, str] | None:
     finger = _finger(words)
     if finger is None:
         return ("wrist", "") if "wrist" in words else None
+    segments = _segments(words, finger)
+    if segments:
+        return finger, segments[-1] if "tip" in segments else segments[0]
+    segment = _numbered_segment(words, THUMB_NUMBERS if finger == "thumb" else FINGER_NUMBERS)
+    return None if segment is None else (finger, segment)
+
+
+def _segments(words: list[str], finger: str) -> list[str]:
+    """Segments that a name's words mean; the first "middle" of a middle finger's name may be the finger."""
     rest = [word for word in words if word in SEGMENT_WORDS or word == "middle"]
     if finger == "middle":
         rest = rest[1:] if rest and rest[0] == "middle" else [word for word in rest if word != "middle"]
-    segments = [SEGMENT_WORDS.get(word, "middle") for word in rest]
-    if segments:
-        return finger, segments[-1] if "tip" in segments else segments[0]
-    digits = [int(word) for word in words if word.isdigit() and int(word) < len(FINGER_NUMBERS)]
-    if not digits:
-        return None
-    segment = (THUMB_NUMBERS if finger == "thumb" else FINGER_NUMBERS)[digits[-1]]
-    return None if segment is None else (finger, segment)
+    return [SEGMENT_WORDS.get(word, "middle") for word in rest]
+
+
+def _numbered_segment(words: list[str], numbers: tuple[str | None, ...]) -> str | None:
+    """The segment that the name's last number of a segment means."""
+    digits = [int(word) for word in words if word.isdigit() and int(word) < len(numbers)]
+    return numbers[digits[-1]] if digits else None
 
 
 def _finger(words: list[str]) -> str | None:

@@ -150,17 +150,13 @@ class _Builder:
 
     def _tips(self, side, convention, template, weights, joints) -> npt.NDArray[np.int64]:
         own: Any = self.parts.get("tips")
-        count = 10 if side == "body" else 5
-        is_own = isinstance(own, np.ndarray) and own.shape == (count,) and own.dtype.kind in "iu"
-        if is_own and own.min() >= 0 and own.max() < len(template):
+        if _are_vertices(own, 10 if side == "body" else 5, len(template)):
             return own.astype(np.int64)
         if side == "body" and len(template) == 6890:
             return np.array([SMPLH_TIP_VERTICES[s] for s in ("right", "left")]).ravel()
         if side != "body" and len(template) == 778:
             return np.array(TIP_VERTICES[convention.tips][side])
-        ends = [BLEND_JOINTS.index(f"{finger}3") for finger in FINGERS]
-        if side == "body":
-            ends = [SMPLH_JOINTS.index(f"{s}_{BLEND_JOINTS[end]}") for s in ("right", "left") for end in ends]
+        ends = _last_joints(side)
         chains = [np.stack([joints[end], 2.0 * joints[end] - joints[end - 1]]) for end in ends]
         return np.array([find_tip(template, weights[:, end], chain) for end, chain in zip(ends, chains, strict=True)])
 
@@ -168,3 +164,17 @@ class _Builder:
         start = "provenance_"
         told = {key[len(start) :]: str(value) for key, value in self.parts.items() if key.startswith(start)}
         return told or {"source": f"{self.path.name}, a file of MANO's or SMPL-H's kind", "licence": "see its source"}
+
+
+def _are_vertices(value: Any, count: int, vertices: int) -> bool:
+    if not isinstance(value, np.ndarray) or value.shape != (count,) or value.dtype.kind not in "iu":
+        return False
+    return bool(value.min() >= 0 and value.max() < vertices)
+
+
+def _last_joints(side: str) -> list[int]:
+    """The last joint of each finger; of the body's fingers, first those of the right hand."""
+    last = [f"{finger}3" for finger in FINGERS]
+    if side != "body":
+        return [BLEND_JOINTS.index(joint) for joint in last]
+    return [SMPLH_JOINTS.index(f"{hand}_{joint}") for hand in ("right", "left") for joint in last]

@@ -197,11 +197,9 @@ def _resolve(value: Any, links: int = 0) -> Any:
 def _array(shape: Any, dtype: Any, is_fortran: bool, raw: Any) -> npt.NDArray | None:
     if not isinstance(dtype, Record) or not isinstance(shape, tuple):
         raise ValueError("an array without shape or type")
-    code = dtype.arguments[0]
-    if not isinstance(code, str) or len(code) not in (2, 3) or code[0] not in KINDS:
+    kind = _number_type(dtype)
+    if kind is None:
         return None
-    order = dtype.state[1] if isinstance(dtype.state, tuple) and len(dtype.state) > 1 else "|"
-    kind = np.dtype(f"{order if order in ('<', '>') else '='}{code[0]}{int(code[1:])}")
     if isinstance(raw, str):
         raw = raw.encode("latin1")
     if not all(isinstance(length, int) and length >= 0 for length in shape):
@@ -212,29 +210,47 @@ def _array(shape: Any, dtype: Any, is_fortran: bool, raw: Any) -> npt.NDArray | 
     return flat.reshape(shape, order="F" if is_fortran else "C")
 
 
+def _number_type(dtype: Record) -> np.dtype | None:
+    """The type of numbers that a pickled dtype stands for; None for what is no number."""
+    code = dtype.arguments[0]
+    if not isinstance(code, str) or len(code) not in (2, 3) or code[0] not in KINDS:
+        return None
+    order = dtype.state[1] if isinstance(dtype.state, tuple) and len(dtype.state) > 1 else "|"
+    return np.dtype(f"{order if order in ('<', '>') else '='}{code[0]}{int(code[1:])}")
+
+
 def _sparse(kind: str, state: Any) -> sparse.csr_array:
     parts = {str(key): value for key, value in state.items()}
     rows, columns = (int(length) for length in parts["_shape" if "_shape" in parts else "shape"])
     data = np.asarray(_resolve(parts["data"]), dtype=np.float64)
     if kind.startswith("coo"):
-        if "row" in parts:
-            i, j = _resolve(parts["row"]), _resolve(parts["col"])
-        else:
-            i, j = _resolve(parts["coords"][0]), _resolve(parts["coords"][1])
+        i, j = _coordinates(parts)
+    elif kind.startswith("csr"):
+        i, j = _compressed_places(parts, rows)
     else:
-        inner = np.asarray(_resolve(parts["indices"]), dtype=np.int64)
-        starts = np.asarray(_resolve(parts["indptr"]), dtype=np.int64)
-        major = rows if kind.startswith("csr") else columns
-        if starts.shape != (major + 1,) or starts[0] != 0 or np.any(np.diff(starts) < 0) or starts[-1] != len(inner):
-            raise ValueError("a sparse matrix whose rows do not add up")
-        outer = np.repeat(np.arange(major), np.diff(starts))
-        i, j = (outer, inner) if kind.startswith("csr") else (inner, outer)
+        j, i = _compressed_places(parts, columns)
     i, j = np.asarray(i, dtype=np.int64), np.asarray(j, dtype=np.int64)
     if not (i.shape == j.shape == data.shape and data.ndim == 1):
         raise ValueError("a sparse matrix of unequal parts")
     if len(i) and (min(i.min(), j.min()) < 0 or i.max() >= rows or j.max() >= columns):
         raise ValueError("a sparse matrix with places outside it")
     return sparse.csr_array((data, (i, j)), shape=(rows, columns))
+
+
+def _coordinates(parts: dict[str, Any]) -> tuple[Any, Any]:
+    """Rows and columns of a COO matrix, which older and newer SciPy keep under other names."""
+    if "row" in parts:
+        return _resolve(parts["row"]), _resolve(parts["col"])
+    return _resolve(parts["coords"][0]), _resolve(parts["coords"][1])
+
+
+def _compressed_places(parts: dict[str, Any], major: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """The major and the minor place of every value: row and column of CSR, column and row of CSC."""
+    minor = np.asarray(_resolve(parts["indices"]), dtype=np.int64)
+    starts = np.asarray(_resolve(parts["indptr"]), dtype=np.int64)
+    if starts.shape != (major + 1,) or starts[0] != 0 or np.any(np.diff(starts) < 0) or starts[-1] != len(minor):
+        raise ValueError("a sparse matrix whose rows do not add up")
+    return np.repeat(np.arange(major), np.diff(starts)), minor
 
 
 def _chumpy(state: dict, links: int) -> npt.NDArray | None:

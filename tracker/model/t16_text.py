@@ -47,36 +47,41 @@ def read_text(path: Path) -> list[str]:
 @reads(ModelFileError, "a valid OFF file of a T16 model")
 def read_off(path: Path) -> tuple[Array, npt.NDArray[np.int64]]:
     """Vertices (V, 3), mm, and triangles (F, 3) of an ASCII OFF mesh; larger polygons are fanned."""
-    lines = [line.split("#")[0].strip() for line in read_text(path)]
-    lines = [line for line in lines if line]
-    if not lines or not lines[0].upper().startswith("OFF"):
-        raise ModelFileError(path, f"the first line {_quote(lines)}", "'OFF', the start of an ASCII OFF mesh")
-    if lines[0][3:].strip():
-        lines[0] = lines[0][3:].strip()
-    else:
-        lines = lines[1:]
-    counts = _integers(path, lines[0] if lines else "", "the counts of vertices, faces and edges")
+    head, lines = _split_off(path)
+    counts = _integers(path, head, "the counts of vertices, faces and edges")
     if len(counts) < 2 or not (3 <= counts[0] <= MAX_VERTICES and 1 <= counts[1] <= 4 * MAX_VERTICES):
         raise ModelFileError(path, f"counts {counts}", f"3 to {MAX_VERTICES} vertices and at least one face")
-    num_vertices, num_faces = int(counts[0]), int(counts[1])
-    if len(lines) < 1 + num_vertices + num_faces:
+    num_vertices, num_faces = counts[:2]
+    if len(lines) < num_vertices + num_faces:
         raise ModelFileError(
-            path, f"{len(lines) - 1} lines", f"{num_vertices} vertices and {num_faces} faces, as its head says"
+            path, f"{len(lines)} lines", f"{num_vertices} vertices and {num_faces} faces, as its head says"
         )
-    vertices = _numbers(path, lines[1 : 1 + num_vertices], 3, "a vertex")
-    faces = []
-    for line in lines[1 + num_vertices : 1 + num_vertices + num_faces]:
-        values = _integers(path, line, "a face")
-        size = int(values[0]) if len(values) else 0
-        if size < 3 or len(values) < 1 + size:
-            raise ModelFileError(
-                path, f"the face {line[:60]!r}", "its number of corners, at least 3, and their vertices"
-            )
-        faces.extend((values[1], values[k], values[k + 1]) for k in range(2, size))
-    triangles = np.array(faces, dtype=np.int64)
+    vertices = _numbers(path, lines[:num_vertices], 3, "a vertex")
+    fans = [_read_fan(path, line) for line in lines[num_vertices : num_vertices + num_faces]]
+    triangles = np.array([triangle for fan in fans for triangle in fan], dtype=np.int64)
     if triangles.min() < 0 or triangles.max() >= num_vertices:
         raise ModelFileError(path, f"a face with vertex {triangles.max()}", f"vertices 0 to {num_vertices - 1}")
     return vertices, triangles
+
+
+def _split_off(path: Path) -> tuple[str, list[str]]:
+    """The line of counts, which may stand behind the word OFF, and the lines after it."""
+    lines = [line for line in (line.split("#")[0].strip() for line in read_text(path)) if line]
+    if not lines or not lines[0].upper().startswith("OFF"):
+        raise ModelFileError(path, f"the first line {_quote(lines)}", "'OFF', the start of an ASCII OFF mesh")
+    beside = lines[0][3:].strip()
+    if beside:
+        return beside, lines[1:]
+    return (lines[1], lines[2:]) if len(lines) > 1 else ("", [])
+
+
+def _read_fan(path: Path, line: str) -> list[tuple[int, int, int]]:
+    """Triangles of a face's line: its number of corners, then their vertices."""
+    values = _integers(path, line, "a face")
+    size = values[0] if values else 0
+    if size < 3 or len(values) < 1 + size:
+        raise ModelFileError(path, f"the face {line[:60]!r}", "its number of corners, at least 3, and their vertices")
+    return [(values[1], values[k], values[k + 1]) for k in range(2, size)]
 
 
 @reads(ModelFileError, "a valid SKEL file of a T16 model")

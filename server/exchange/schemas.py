@@ -11,8 +11,6 @@ from pydantic import BaseModel, ConfigDict, Field
 from server.annotations.schemas import Hand
 from server.database.texts import Name
 
-Policy = Literal["keep", "replace"]
-
 
 class LabelFormatOut(BaseModel):
     """A format that labels can be exported to and imported from."""

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from server.quality.bones import limit_bones
 from server.quality.doubt import Doubt
@@ -18,7 +17,6 @@ from server.quality.views import Marks, Views, measure_size, triangulate_views
 if TYPE_CHECKING:
     from tracker import Camera
 
-Array = npt.NDArray[np.float64]
 
 LEAST_M, LEAST_SHARE = 0.006, 0.05
 """A bone between triangulated joints that is off by less than this, m, and this share is as long as usual: marks that

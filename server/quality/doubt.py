@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal
 
 from server.quality.finding import Finding
 from server.quality.labels import Label
 
 DoubtKind = Literal["lost", "unseen", "depth", "fit", "label", "left_out", "bones", "flag"]
-DOUBT_KINDS: tuple[DoubtKind, ...] = get_args(DoubtKind)
 
 
 @dataclass(frozen=True)

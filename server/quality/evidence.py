@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from server.quality.finding import Finding, Kind, Looked
 from server.quality.hand import joint_name
@@ -17,8 +16,6 @@ from server.quality.views import Marks, triangulate_views
 
 if TYPE_CHECKING:
     from tracker import Camera
-
-Array = npt.NDArray[np.float64]
 
 
 def check_reprojection(labels: Sequence[Label], cameras: dict[str, Camera], looked: Looked) -> Iterator[Finding]:

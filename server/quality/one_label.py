@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from server.quality.finding import Finding, Looked
 from server.quality.hand import EDGES, FINGERS, KNUCKLES, find_bone_lengths, joint_name
 from server.quality.labels import Label, find_median
-
-Array = npt.NDArray[np.float64]
 
 
 def check_outside(labels: Sequence[Label], sizes: dict[str, tuple[int, int]], looked: Looked) -> Iterator[Finding]:

@@ -41,20 +41,6 @@ def pack_arrays(arrays: dict[str, np.ndarray], members: dict[str, Any]) -> bytes
     return b"".join([MAGIC, struct.pack("<I", len(header)), header, *parts])
 
 
-def unpack_arrays(data: bytes) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """What `pack_arrays` has packed."""
-    assert data[:4] == MAGIC
-    (length,) = struct.unpack("<I", data[4:8])
-    members = json.loads(data[8 : 8 + length])
-    arrays = {}
-    for item in members.pop("arrays"):
-        kind, shape = np.dtype(item["type"]).newbyteorder("<"), tuple(item["shape"])
-        start = 8 + length + item["offset"]
-        count = int(np.prod(shape))
-        arrays[item["name"]] = np.frombuffer(data, kind, count, start).reshape(shape)
-    return arrays, members
-
-
 def quantise(points: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
     """(N, 3) m as uint16 over their box; position = origin_m + step_m * number. 3 micrometres for a hand."""
     low = points.min(axis=0) if len(points) else np.zeros(3)

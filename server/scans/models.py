@@ -11,8 +11,6 @@ from sqlalchemy.orm import Mapped, mapped_column
 
 from server.database import Base, utc_now
 
-STATES = ("new", "registered", "failed")
-
 
 class ScanRow(Base):
     """A 3D scan of a hand. Its file lies in `scans/<id>/` as it was uploaded and never changes."""

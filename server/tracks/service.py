@@ -20,9 +20,6 @@ from server.tracks.models import TrackRow
 
 AREA = "tracks"
 
-FILES = ("track.npz", "summary.json")
-"""Those that can be downloaded."""
-
 
 class TrackNotFoundError(NotFoundError):
     """There is no track of this id, or it was deleted."""

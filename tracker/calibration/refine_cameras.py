@@ -25,7 +25,6 @@ from tracker.capture.triangulation import OUTLIER_PX, triangulate
 from tracker.errors import CalibrationError, say_count
 
 Array = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 LEFT_OUT_EVERY = 5
 """One labelled frame in this many is left out, as the board's calibration leaves out a fifth of the time."""

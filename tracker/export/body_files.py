@@ -22,7 +22,6 @@ from tracker.model.pose_blend import PoseBlend
 
 Array = npt.NDArray[np.float64]
 
-FORMATS = ("obj", "ply", "glb")
 COLOR = (0.51, 0.36, 0.28, 1.0)
 """Linear RGBA of the body in glTF."""
 GLTF_WEIGHTS = 4

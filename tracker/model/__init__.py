@@ -14,12 +14,12 @@ from tracker.lazy_names import offer
 if TYPE_CHECKING:
     from tracker.model.articulated import ArticulatedModel, HandParts, ShapeBasis
     from tracker.model.blend_files import load_blend_model, save_blend_model
-    from tracker.model.blend_mirroring import mirror_blend, mirror_blend_pose
+    from tracker.model.blend_mirroring import mirror_blend
     from tracker.model.blend_model import BlendModel, PosedBlend
     from tracker.model.decimation import decimate
     from tracker.model.files import load_model, measure_model, save_model
     from tracker.model.joints import FINGERS, HAND_EDGES, HAND_JOINTS
-    from tracker.model.mirroring import mirror, mirror_pose
+    from tracker.model.mirroring import mirror
     from tracker.model.scene import PosedScene, Scene
     from tracker.model.shape import with_shape
     from tracker.model.skeleton import Skeleton

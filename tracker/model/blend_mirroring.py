@@ -1,4 +1,4 @@
-"""The other hand of a blend model, and the poses that go with it."""
+"""The other hand of a blend model."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tracker.model.skeleton import Array
 def mirror_blend(model: BlendModel, reflection: Array = MIRROR) -> BlendModel:
     """The model reflected in a plane of its frame; mirroring twice gives the model back.
 
-    Vertices, joints and shape coefficients keep their meaning: at the pose `mirror_blend_pose` of a pose and the same
-    shape, the mirrored model is the mirror image of the model.
+    Vertices, joints and shape coefficients keep their meaning: at the rotation vectors -`reflection` times those of a
+    pose, the same shape and the reflected place, the mirrored model is the mirror image of the model.
 
     Args:
         model: A hand.
@@ -34,8 +34,3 @@ def mirror_blend(model: BlendModel, reflection: Array = MIRROR) -> BlendModel:
         pose_components=model.pose_components * axial,
         provenance=mirror_provenance(model.provenance),
     )
-
-
-def mirror_blend_pose(pose: Array, reflection: Array = MIRROR) -> Array:
-    """Rotation vectors (..., 3) of the mirrored hand that show the mirror image; translations are mirrored by M."""
-    return -pose * reflection

@@ -24,7 +24,6 @@ SEGMENT_WORDS = {
     "tip": "tip",
     "end": "tip",
 }
-WRIST_WORDS = ("wrist", "hand")
 SIDE_WORDS = {"right": "right", "r": "right", "left": "left", "l": "left"}
 FINGER_NUMBERS = ("metacarpal", "proximal", "middle", "distal", "tip")
 THUMB_NUMBERS = (None, "metacarpal", "proximal", "distal", "tip")

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracker.geometry import se3
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.skeleton import Array
 
@@ -20,7 +19,7 @@ def mirror(model: ArticulatedModel) -> ArticulatedModel:
     """The model reflected in the plane y = 0 of its frame; mirroring twice gives the model back.
 
     Faces are turned to look outwards again. Axes of rotation are axial vectors, so a joint's angle and limits stay:
-    at the pose `mirror_pose` of a pose, the mirrored model is the mirror image of the model.
+    with the root's motion reflected too, the mirrored model is the mirror image of the model.
     """
     skeleton = model.skeleton
     Ts = skeleton.Ts_model_bone * np.outer([*MIRROR, 1.0], [*MIRROR, 1.0])
@@ -57,10 +56,3 @@ def mirror_name(name: str) -> str:
 def mirror_provenance(provenance: dict[str, str]) -> dict[str, str]:
     """The provenance of the other hand."""
     return {**provenance, "mirrored": "no" if provenance.get("mirrored") == "yes" else "yes"}
-
-
-def mirror_pose(pose: Array) -> Array:
-    """The pose (D,) of the mirrored model that shows the mirror image, in the plane y = 0 of the world."""
-    T = se3.exp(np.ascontiguousarray(pose[:6]))
-    reflection = np.array([*MIRROR, 1.0])
-    return np.concatenate([se3.log(T * np.outer(reflection, reflection)), pose[6:]])

@@ -8,7 +8,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from tracker.capture.camera import Camera
 from tracker.errors import SequenceError, reading
@@ -17,8 +16,6 @@ from tracker.model.t16_files import load_t16_model, load_t16_motion
 from tracker.synthesis.actor import Actor
 from tracker.synthesis.performance import Performance
 from tracker.synthesis.shading import OBJECT_COLORS, SKIN
-
-Array = npt.NDArray[np.float64]
 
 IMAGE_SIZE = (640, 480)
 """Width and height, px, of the Carmine 1.09 [T16] §4.1; `Cameras.txt` does not name it."""

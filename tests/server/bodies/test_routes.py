@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 
 from server.bodies.service import read_motion
 from server.errors import InvalidError
-from server.scans.geometry import unpack_arrays
+from tests.server.packed_arrays import unpack_arrays
 from tracker.errors import TrackerError
 from tracker.model.body_hands import body_pose
 from tracker.model.body_model import body_model

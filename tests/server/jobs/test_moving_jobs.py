@@ -31,10 +31,10 @@ from server.moving_scans.person_models import make_person_model, name_person_mod
 from server.moving_scans.schemas import MovingScanOptions
 from server.moving_scans.service import find_scan_file, get_moving_scan
 from server.moving_scans.storing import AREA, TEMPLATE, TEMPLATES
-from server.scans.geometry import unpack_arrays
 from server.settings import Settings
 from tests.server.jobs.scan_bench import ScanBench, bench
 from tests.server.moving_scans.moving import MovingPerson, moving_person
+from tests.server.packed_arrays import unpack_arrays
 from tracker.bodies import CHAIN, BodyRegistration, body_model, load_body_registration
 from tracker.bodies.body_sequence import Sequence, SequenceOptions, register_sequence
 

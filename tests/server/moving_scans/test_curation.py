@@ -15,9 +15,9 @@ from sqlalchemy import select
 
 from server.access.models import AuditRow
 from server.moving_scans.storing import AREA, TEMPLATES, name_frame
-from server.scans.geometry import unpack_arrays
 from tests.server.moving_scans.curated import Curated, curated
 from tests.server.moving_scans.moving import API, MovingPerson, moving_person
+from tests.server.packed_arrays import unpack_arrays
 from tests.server.teams.conftest import Join, join
 from tracker.cli.__main__ import main
 from tracker.model.body_motion import load_body_motion

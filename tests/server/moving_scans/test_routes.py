@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from server.moving_scans.adding import order_naturally
-from server.scans.geometry import choose_points, unpack_arrays
+from server.scans.geometry import choose_points
 from server.storage.digest import compute_digest
 from tests.server.conftest import Studio
 from tests.server.moving_scans.moving import API, MovingPerson, add, moving_person, pack, send
+from tests.server.packed_arrays import unpack_arrays
 from tests.server.teams.conftest import Join, join
 from tracker import read_scan
 

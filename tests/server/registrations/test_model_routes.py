@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 
 from server.hand_models.storing import UNTRAINED_ID, resolve_model
 from server.registrations.model_files import write_mano
-from server.scans.geometry import unpack_arrays
+from tests.server.packed_arrays import unpack_arrays
 from tracker import load_blend_model, load_mano, mirror_blend, untrained_hand
 
 UNTRAINED = f"/api/v1/hand-models/{UNTRAINED_ID}"

@@ -6,8 +6,8 @@ import uuid
 
 import numpy as np
 
-from server.scans.geometry import unpack_arrays
 from tests.server.curation import API, Curation, curation, join
+from tests.server.packed_arrays import unpack_arrays
 
 __all__ = ["curation", "join"]
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from server.scans.geometry import ALIGNMENT, choose_points, pack_arrays, pack_scan, quantise, unpack_arrays
+from server.scans.geometry import ALIGNMENT, choose_points, pack_arrays, pack_scan, quantise
+from tests.server.packed_arrays import unpack_arrays
 
 DIGEST = "0123456789abcdef" * 4
 

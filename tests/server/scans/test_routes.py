@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from server.scans.cropping import find_inside
-from server.scans.geometry import CROPPED, LEFT_OUT, pack_arrays, unpack_arrays
+from server.scans.geometry import CROPPED, LEFT_OUT, pack_arrays
 from tests.server.conftest import Studio
 from tests.server.curation import API, make_ball, send_scans
+from tests.server.packed_arrays import unpack_arrays
 from tests.server.teams.conftest import Join, join
 from tracker.capture.scan import save_scan
 

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from tests.tracker.model.mirrored_poses import mirror_pose
 from tests.tracker.model.test_npz_files import assert_same
 from tests.tracker.random_blend import random_blend
 from tracker.errors import ModelFileError
 from tracker.geometry.triangles import is_watertight
-from tracker.model import Scene, decimate, load_model, mirror, mirror_pose, save_model, with_shape
+from tracker.model import Scene, decimate, load_model, mirror, save_model, with_shape
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.blend_articulated import articulated_of, close_wrist
 from tracker.model.blend_files import save_blend_model

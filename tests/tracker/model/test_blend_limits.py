@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.tracker.model.mirrored_poses import mirror_blend_pose
 from tests.tracker.random_blend import random_blend, random_pose
 from tracker.model.blend_limits import CHAINS, MOTIONS, blend_chains, blend_limits, turn_jacobian
-from tracker.model.blend_mirroring import mirror_blend, mirror_blend_pose
+from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.joints import FINGERS
 from tracker.model.untrained_hand import untrained_hand
 

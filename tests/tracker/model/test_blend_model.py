@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from tests.tracker.model.mirrored_poses import mirror_blend_pose
 from tests.tracker.random_blend import random_blend, random_pose
-from tracker.model.blend_mirroring import mirror_blend, mirror_blend_pose
+from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.blend_model import BlendModel
 from tracker.model.mirroring import MIRROR
 from tracker.model.untrained_hand import untrained_hand

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.tracker.model.mirrored_poses import mirror_pose
 from tracker.geometry import se3
 from tracker.geometry.triangles import is_watertight
-from tracker.model import MAX_WEIGHTS, ArticulatedModel, Scene, mirror, mirror_pose, with_shape
+from tracker.model import MAX_WEIGHTS, ArticulatedModel, Scene, mirror, with_shape
 from tracker.model.decimation import compute_volume
 from tracker.model.default_hand import DATA, default_hand
 from tracker.model.joints import FINGERS

@@ -13,10 +13,11 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.smplx_agreement import BAR, compare
 from tests.tracker.chumpy_objects import Ch, Select, chumpy_installed
+from tests.tracker.model.mirrored_poses import mirror_blend_pose
 from tests.tracker.random_blend import random_blend, random_pose
 from tracker.errors import ModelFileError
 from tracker.export.mano_parameters import MANO_JOINTS
-from tracker.model.blend_mirroring import mirror_blend, mirror_blend_pose
+from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.blend_model import BLEND_JOINTS, BLEND_PARENTS
 from tracker.model.joints import HAND_JOINTS
 from tracker.model.mano_conventions import (

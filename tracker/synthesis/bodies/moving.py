@@ -18,8 +18,6 @@ from tracker.synthesis.scans.scanner import Scanner
 
 Array = npt.NDArray[np.float64]
 
-FPS = 60.0
-
 
 @dataclass(frozen=True)
 class MovingOptions:
@@ -74,7 +72,7 @@ def make_motion(number: int, frames: int, seed: int = 0, options: MovingOptions 
 
     Args:
         number: Of the person.
-        frames: T, at FPS.
+        frames: T, meant for 60 a second.
         seed: Of another motion.
         options: See `MovingOptions`.
     """

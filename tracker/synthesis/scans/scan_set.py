@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tracker.capture.atomic_file import write_atomically
 from tracker.capture.scan import save_scan
@@ -19,8 +18,6 @@ from tracker.errors import TrackerError, reading
 from tracker.synthesis.scans.generate import ScanOptions, generate_scan, scan_name
 from tracker.synthesis.scans.generated_scan import GeneratedScan
 from tracker.synthesis.scans.motions import load_motion_angles
-
-Array = npt.NDArray[np.float64]
 
 LIST = "scans.json"
 VERSION = 1

@@ -52,13 +52,11 @@ class ScannedPoints:
         points: (N, 3) m, with noise.
         normals: (N, 3) unit, with noise.
         faces: (N,) the face that each lies on.
-        seen_share: Share of the surface that the heads see.
     """
 
     points: Array
     normals: Array
     faces: Ints
-    seen_share: float
 
 
 def scan_surface(
@@ -74,7 +72,7 @@ def scan_surface(
     images = [_look(vertices, faces, head) for head in heads]
     holes = _make_holes(vertices, faces, areas, scanner, rng)
     kept: list[tuple[Array, Array, Ints]] = []
-    count, drawn, seen = 0, 0, 0
+    count, drawn = 0, 0
     while count < wanted:
         draws = int(1.9 * (wanted - count)) + 2000 if count == 0 else int(1.1 * (wanted - count) * drawn / count) + 500
         face, points, shares = _draw(vertices, faces, areas, draws, rng)
@@ -88,14 +86,14 @@ def scan_surface(
             in_hole |= np.sum((points - center) ** 2, axis=1) < radius**2
         good = is_seen & ~in_hole
         kept.append((points[good], normal[good], face[good]))
-        count, drawn, seen = count + int(good.sum()), drawn + draws, seen + int(is_seen.sum())
+        count, drawn = count + int(good.sum()), drawn + draws
         if drawn > 40 * wanted:
             break
     points, normal, face = (np.concatenate(parts)[:wanted] for parts in zip(*kept, strict=True))
     noisy = points + scanner.noise * rng.standard_normal(len(points))[:, None] * normal
     tilted = normal + np.tan(np.radians(scanner.normal_noise_deg)) * rng.standard_normal(normal.shape)
     tilted /= np.linalg.norm(tilted, axis=1, keepdims=True)
-    return ScannedPoints(noisy, tilted, face, seen / drawn)
+    return ScannedPoints(noisy, tilted, face)
 
 
 @dataclass(frozen=True)

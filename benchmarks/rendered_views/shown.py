@@ -14,7 +14,8 @@ from tracker.model.ball import make_ball
 from tracker.model.default_hand import default_hand
 from tracker.model.npz_files import save_npz_model
 from tracker.model.scene import Scene
-from tracker.synthesis.interplay import BALL_RADIUS, INTERPLAYS, find_poses, play
+from tracker.synthesis.ball import RADIUS
+from tracker.synthesis.interplay import INTERPLAYS, find_poses, play
 from tracker.synthesis.recording import RecordingOptions, write_recording
 from tracker.synthesis.texture import Texture
 
@@ -53,7 +54,7 @@ class Shown:
 def show(name: str, work: Path, moments: int = MOMENTS, size: tuple[int, int] = SIZE) -> Shown:
     """Render once, then read."""
     models = {side: default_hand(side) for side in ("right", "left")}
-    balls = (make_ball(BALL_RADIUS),) if INTERPLAYS[name][1] else ()
+    balls = (make_ball(RADIUS),) if INTERPLAYS[name][1] else ()
     scene = Scene((*models.values(), *balls))
     first = (WHOLE - STEP * moments) // 2
     middle = range(first, first + STEP * moments, STEP)

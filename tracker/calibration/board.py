@@ -19,6 +19,7 @@ MAX_SQUARES = 40
 
 APRILTAG = "DICT_APRILTAG_36h11"
 MIN_SQUARE_M, MAX_SQUARE_M = 0.001, 1.0
+"""Sides of squares that a board may have, m: from what a printer still draws to what a wall holds."""
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ from typing import Any
 
 from tracker.calibration.board import APRILTAG, Board
 from tracker.capture.document import read_regular_file
+from tracker.capture.scan_size import UNITS
 from tracker.errors import CalibrationError, reading
 
 MAX_BOARD_BYTES = 64 * 1024
 """Ours has 200 bytes."""
 
-UNIT_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 DICTIONARY = "DICT_5X5_100"
 """Of a ChArUco board whose description names none: OpenCV's samples draw with it, and 5x5 bits are seldom mistaken."""
 
@@ -80,9 +80,9 @@ def _from_caliscope(values: dict[str, Any], file: str) -> dict[str, Any]:
     if override is not None:
         square_mm = 10.0 * _number(values, "square_size_override_cm", file)
     else:
-        unit = UNIT_M.get(str(values.get("units", "cm")))
+        unit = UNITS.get(str(values.get("units", "cm")))
         if unit is None:
-            raise CalibrationError(f"{file}: units is {str(values['units'])[:40]!r}; needed {', '.join(UNIT_M)}.")
+            raise CalibrationError(f"{file}: units is {str(values['units'])[:40]!r}; needed {', '.join(UNITS)}.")
         width, height = _number(values, "board_width", file), _number(values, "board_height", file)
         square_mm = 1000.0 * unit * min(width / max(columns, 1), height / max(rows, 1))
     return {

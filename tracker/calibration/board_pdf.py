@@ -9,6 +9,7 @@ from tracker.calibration.board import Board
 from tracker.calibration.board_pattern import find_dark_rectangles
 
 POINTS_PER_M = 72.0 / 0.0254
+"""PDF: 72 points an inch."""
 MARGIN_M = 0.015
 """White around the board, which the detectors need, and what most printers leave blank."""
 

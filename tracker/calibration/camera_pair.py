@@ -24,6 +24,7 @@ MOST_SHARED = 40
 """Boards of a pair that are compared; the motion between two cameras has six unknowns."""
 
 MIN_SHARED = 3
+"""Moments at which both cameras see the board."""
 TELLING = 1.5
 """Times the best offset's disagreement, that the usual offset must have: else the board hardly moved, and every
 offset is as good."""

@@ -22,6 +22,7 @@ MAX_CAMERAS = 16
 """What issue and tests reach for; the pairs of cameras, and the time they take, grow with the square."""
 
 MAX_IMAGE_BYTES = 64 * 1024 * 1024
+"""Of a still of a camera; a bound of ours."""
 USUAL_FPS = 30.0
 """Where neither a video nor anybody says it; times are then only as true as this."""
 

@@ -11,6 +11,7 @@ from tracker.calibration.camera_calibration import CameraCalibration
 Image = npt.NDArray[np.uint8]
 
 PICTURE_WIDTH = 960
+"""px."""
 CELLS = 8
 """Along the longer side: what is empty is seen at a glance."""
 

@@ -10,9 +10,6 @@ from tracker.capture.numbered_files import sort_naturally
 from tracker.capture.video_file import VIDEO_SUFFIXES
 from tracker.errors import say_count
 
-LENSES = "lenses"
-"""Name of the folder beside the cameras that holds a calibration whose lenses are known."""
-
 
 @dataclass(frozen=True)
 class FilmFolder:
@@ -40,7 +37,7 @@ def list_films(folder: Path) -> FilmFolder:
     lenses = None
     faults, left_out = [], []
     for entry in entries:
-        if entry.is_dir() and entry.name.casefold() == LENSES:
+        if entry.is_dir() and entry.name.casefold() == "lenses":
             lenses = entry
             continue
         if not entry.is_dir() and not entry.name.lower().endswith(VIDEO_SUFFIXES):

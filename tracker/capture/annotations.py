@@ -15,15 +15,20 @@ from tracker.capture.document import Node, load_json
 from tracker.capture.joint_source import JointSources, parse_source
 from tracker.errors import AnnotationError
 
-_FINGERS = ("index", "middle", "ring", "little")
 JOINT_NAMES: tuple[str, ...] = (
     *("wrist", "thumb_cmc", "thumb_mcp", "thumb_ip", "thumb_tip"),
-    *(f"{finger}_{joint}" for finger in _FINGERS for joint in ("mcp", "pip", "dip", "tip")),
+    *("index_mcp", "index_pip", "index_dip", "index_tip", "middle_mcp", "middle_pip", "middle_dip", "middle_tip"),
+    *("ring_mcp", "ring_pip", "ring_dip", "ring_tip", "little_mcp", "little_pip", "little_dip", "little_tip"),
 )
 """The file's own list of the 21 joints; a test holds it equal to the models' `HAND_JOINTS` (rooms that don't meet)."""
 
+ABSENT, OCCLUDED, VISIBLE = 0, 1, 2
+"""What the third number of a joint says, as COCO's keypoints do."""
+
 MAX_ITEMS = 4_000_000
+"""Labelled hands in one file; a bound of ours."""
 MAX_BYTES = 512 * 1024 * 1024
+"""Of one file; a bound of ours."""
 
 
 @dataclass(frozen=True, eq=False)

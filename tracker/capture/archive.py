@@ -16,9 +16,8 @@ from tracker.capture.relative_path import find_path_fault
 from tracker.capture.workplace import make_workplace
 from tracker.errors import ImportRefusedError, reading
 
-_CHUNK = 1024 * 1024
 _GIB = 1024**3
-_METHODS = {zipfile.ZIP_STORED: "stored", zipfile.ZIP_DEFLATED: "deflated"}
+"""Bytes."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +126,7 @@ def _find_entry_fault(entry: zipfile.ZipInfo, limits: ArchiveLimits) -> str:
         return "is a link or a device; pack the file itself"
     if entry.flag_bits & 0x1:
         return "is encrypted; pack it without a password"
-    if entry.compress_type not in _METHODS:
+    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         return "is packed with an unusual method; pack it as a usual zip (deflate)"
     if entry.is_dir() and entry.file_size:
         return "is a folder with content of its own"
@@ -185,5 +184,5 @@ def _extract(file: zipfile.ZipFile, entry: zipfile.ZipInfo, workplace: Path) -> 
 
 def _read(file: zipfile.ZipFile, entry: zipfile.ZipInfo) -> Iterator[bytes]:
     with file.open(entry) as stream:
-        while chunk := cast(BinaryIO, stream).read(_CHUNK):
+        while chunk := cast(BinaryIO, stream).read(1024 * 1024):
             yield chunk

@@ -10,9 +10,13 @@ from tracker.errors import CalibrationError
 Array = npt.NDArray[np.float64]
 
 DISTORTION_SIZES = (0, 4, 5, 8, 12, 14)
+"""Coefficients in OpenCV's order, which knows models of so many."""
 MAX_SIDE = 16384
+"""px of an image."""
 MAX_PIXELS = 64_000_000
+"""Of an image; a bound of ours against images that only claim to be so large."""
 ORTHONORMAL_TOLERANCE = 1e-3
+"""Of each entry of RᵀR: calibrations are written with few digits."""
 
 
 def check_image_size(what: str, width: int, height: int) -> None:

@@ -19,6 +19,7 @@ NEAREST_M, FARTHEST_M = 0.05, 5.0
 """When the median of the nearest tenth of the depth is outside, the unit is wrong; no hand is captured there."""
 
 USUAL_M = (0.1, 4.0)
+"""Median depth of a scene with hands, m; outside of this the unit may be wrong."""
 
 
 def report_camera(camera: PlannedCamera, probes: dict[str, StreamProbe], times: Array, found: Findings) -> CameraReport:

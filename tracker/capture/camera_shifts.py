@@ -14,10 +14,8 @@ from itertools import islice
 
 from tracker.capture.annotations import Annotations
 from tracker.capture.import_plan import ImageStream, ImportPlan, PlannedCamera, SourceImage, StreamProbe
+from tracker.capture.sequence import TRUTH_FILE
 from tracker.errors import ImportRefusedError, say_count
-
-TRUTH_FILE = "truth.npz"
-"""Of the moments as they were before; what is exactly known of one frame is not of another."""
 
 
 @dataclass(frozen=True)

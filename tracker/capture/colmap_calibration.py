@@ -16,7 +16,9 @@ from tracker.errors import CalibrationError, reading
 Array = npt.NDArray[np.float64]
 
 HALF_PIXEL = 0.5
+"""COLMAP puts the corner of the top-left pixel at (0, 0), we its centre; px."""
 MAX_COLMAP_CAMERAS = 64
+"""Of one reconstruction; a bound of ours."""
 
 _MODELS = {
     "SIMPLE_PINHOLE": ("f", "cx", "cy"),
@@ -26,7 +28,6 @@ _MODELS = {
     "OPENCV": ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"),
     "FULL_OPENCV": ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"),
 }
-_DISTORTION = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
 
 
 def parse_colmap(cameras: bytes, images: bytes, file: str) -> list[VideoCamera]:
@@ -96,7 +97,7 @@ def _make(name: str, what: str, words: list[str], pose: list[float]) -> VideoCam
         raise CalibrationError(f"{what}: {model} has {len(_MODELS[model])} parameters; found {len(numbers)}.")
     values = dict(zip(_MODELS[model], numbers, strict=True))
     fx, fy = values.get("fx", values.get("f")), values.get("fy", values.get("f"))
-    distortion = [values.get(key, 0.0) for key in _DISTORTION]
+    distortion = [values.get(key, 0.0) for key in ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")]
     count = next((size for size in (8, 5, 4) if any(distortion[{8: 5, 5: 4, 4: 0}[size] :])), 0)
     K = [[fx, 0, values["cx"] - HALF_PIXEL], [0, fy, values["cy"] - HALF_PIXEL], [0, 0, 1]]
     if not np.isfinite(pose).all() or not 0.5 < np.linalg.norm(pose[:4]) < 2.0:

@@ -21,6 +21,7 @@ SAMPLED_ROWS = 16
 """One row of a frame in this many is summed up, to recognise the frame later."""
 
 UNKNOWN = -1
+"""Checksum of a frame that was not decoded yet."""
 
 
 class Film:

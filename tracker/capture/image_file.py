@@ -17,13 +17,12 @@ from tracker.capture.calibration import MAX_PIXELS, MAX_SIDE
 from tracker.errors import FrameError, reading
 
 MAX_IMAGE_BYTES = 256 * 1024 * 1024
+"""Of one file; a bound of ours."""
 COLOR_SUFFIXES = (".png", ".jpg", ".jpeg")
 DEPTH_SUFFIXES = (".png",)
 
-_PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
-_PNG_CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
-_PNG_BITS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: (8, 16)}
-_JPEG_FRAME_MARKERS = {0xC0, 0xC1, 0xC2}
+_PNG_KINDS = {0: (1, (1, 2, 4, 8, 16)), 2: (3, (8, 16)), 3: (1, (1, 2, 4, 8)), 4: (2, (8, 16)), 6: (4, (8, 16))}
+"""Channels and bits that each of PNG's colour types may have: grey, RGB, palette, grey with alpha, RGB with alpha."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ def _reads_image(reader: Callable[..., Read]) -> Callable[..., Read]:
 @_reads_image
 def read_header(data: bytes, what: str) -> ImageHeader:
     """Header of an image from its first bytes."""
-    if data.startswith(_PNG_SIGNATURE):
+    if data.startswith(b"\x89PNG\r\n\x1a\n"):
         header = _read_png_header(data, what)
     elif data.startswith(b"\xff\xd8\xff"):
         header = _read_jpeg_header(data, what)[0]
@@ -142,9 +141,9 @@ def _read_png_header(data: bytes, what: str) -> ImageHeader:
     width, height, bits, kind = struct.unpack(">IIBB", data[16:26])
     if zlib.crc32(data[12:29]) != int.from_bytes(data[29:33], "big"):
         raise FrameError(f"{what}: its PNG header is damaged (checksum).")
-    if kind not in _PNG_CHANNELS or bits not in _PNG_BITS[kind]:
+    if kind not in _PNG_KINDS or bits not in _PNG_KINDS[kind][1]:
         raise FrameError(f"{what}: its PNG header names no known image type ({bits} bits, type {kind}).")
-    return ImageHeader("png", width, height, bits, _PNG_CHANNELS[kind])
+    return ImageHeader("png", width, height, bits, _PNG_KINDS[kind][0])
 
 
 def _walk_png_chunks(data: bytes, what: str) -> list[bytes]:
@@ -177,7 +176,7 @@ def _read_jpeg_header(data: bytes, what: str) -> tuple[ImageHeader, int]:
             at += 1
             continue
         length = int.from_bytes(data[at + 2 : at + 4], "big")
-        if marker in _JPEG_FRAME_MARKERS and at + 10 <= len(data):
+        if marker in (0xC0, 0xC1, 0xC2) and at + 10 <= len(data):
             bits, height, width, channels = struct.unpack(">BHHB", data[at + 4 : at + 10])
             if channels not in (1, 3, 4) or bits != 8:
                 raise FrameError(

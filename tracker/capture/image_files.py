@@ -25,8 +25,10 @@ from tracker.capture.relative_path import is_inside
 from tracker.errors import FrameError, TrackerError
 
 _HEAD_BYTES = 256 * 1024
+"""Of a file are read for its header: EXIF and colour profiles stand before the size of a JPEG."""
 _PNG_END = b"\x00\x00\x00\x00IEND\xaeB`\x82"
 _MOST_NAMED = 5
+"""Files that a message names."""
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,10 @@ from tracker.capture.numbered_files import NumberedFiles, group_by_number, match
 from tracker.errors import FrameError, ImportRefusedError, say_count
 
 _MOST_SERIES = 200
+"""That are looked at in a folder; a bound of ours."""
 _MOST_CHOICES = 24
+"""That a question offers."""
 _ASK_COLOR = "Which colour images belong to the depth images?"
-_NO_COLOR = ImportChoice("none", "No colour: import depth alone")
 
 
 def look_at(files: ListedFiles, series: NumberedFiles) -> ImageHeader | None:
@@ -61,7 +62,10 @@ def choose_color(
 ) -> NumberedFiles | None:
     """The colour images with the depth images' numbers: those that were told or the only ones; else a question."""
     colors = _list_colors(files, depth)
-    choices = (*(_make_choice(files, series) for series in colors[:_MOST_CHOICES]), _NO_COLOR)
+    choices = (
+        *(_make_choice(files, series) for series in colors[:_MOST_CHOICES]),
+        ImportChoice("none", "No colour: import depth alone"),
+    )
     if options.color_pattern == "none":
         if colors:
             found.ask("color_pattern", _ASK_COLOR, choices=choices)

@@ -38,7 +38,9 @@ _HANDS = (
 )
 
 SAMPLES = 12
+"""Frames of each stream that are decoded before an import is offered."""
 DEFAULT_FPS = 30.0
+"""Proposed where nothing says it: most depth cameras record so."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,9 +10,6 @@ from tracker.capture.frame_shifts import parse_shifts
 from tracker.capture.recorded_object import UNIT_LIMITS
 from tracker.errors import ImportRefusedError
 
-COLOR_FORMATS = ("jpeg", "png")
-TUM_CAMERAS = ("freiburg1", "freiburg2", "freiburg3", "ros_default")
-
 
 def _help(text: str) -> Any:
     return field(default=None, metadata={"help": text})
@@ -77,9 +74,9 @@ def _parse(key: str, node: Node) -> Any:
     if key == "preset":
         return node.text(64)
     if key == "intrinsics":
-        return node.choice(*TUM_CAMERAS)
+        return node.choice("freiburg1", "freiburg2", "freiburg3", "ros_default")
     if key == "color_format":
-        return node.choice(*COLOR_FORMATS)
+        return node.choice("jpeg", "png")
     if key == "hands":
         hands = tuple(item.choice("right", "left") for item in node.items(2))
         if len(set(hands)) != len(hands):

@@ -27,8 +27,8 @@ from tracker.errors import ImportRefusedError, TrackerError, say_count
 
 ANNOTATIONS_FILE = "annotations.json"
 SOURCES_FILE = "sources.json"
-REPORT_FILE = "import_report.json"
 MAX_OTHER_FILE = 1024 * 1024 * 1024
+"""Bytes of a file that is no image; a bound of ours."""
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def _fill(folder: Path, checked: CheckedImport, progress: Progress) -> None:
         "cameras": {c: {k: [asdict(s) for s in stored] for k, stored in own.items()} for c, own in sources.items()},
     }
     _write_json(folder / SOURCES_FILE, document)
-    _write_json(folder / REPORT_FILE, report.to_json())
+    _write_json(folder / "import_report.json", report.to_json())
 
 
 def _read_whole(stream: ImageStream, what: str, size: tuple[int, int], count: int) -> Iterator[SourceImage]:

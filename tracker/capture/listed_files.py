@@ -10,8 +10,9 @@ from tracker.capture.relative_path import find_path_fault, is_inside
 from tracker.errors import ImportRefusedError
 
 MAX_FILES = 4_000_000
+"""In a folder; a bound of ours."""
 MAX_DEPTH = 12
-_CLUTTER = {"__MACOSX", "Thumbs.db", "desktop.ini"}
+"""Folders in folders; a bound of ours."""
 
 
 @dataclass(frozen=True)
@@ -84,4 +85,4 @@ def find_root(source: Path) -> Path:
 
 
 def _is_clutter(name: str) -> bool:
-    return name.startswith(".") or name in _CLUTTER
+    return name.startswith(".") or name in {"__MACOSX", "Thumbs.db", "desktop.ini"}

@@ -7,7 +7,9 @@ import unicodedata
 from pathlib import Path
 
 MAX_PATH = 1024
+"""Characters of a path."""
 MAX_PART = 255
+"""Characters of a name, as on ext4, NTFS and APFS."""
 _DEVICES = re.compile(r"(?i)^(con|prn|aux|nul|conin\$|conout\$|com[0-9¹²³]|lpt[0-9¹²³])\s*(\..*)?$")
 
 

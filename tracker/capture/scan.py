@@ -37,6 +37,7 @@ MAX_POINTS = 200_000
 """So many points are kept of a larger scan, drawn at random with the same draw every time."""
 
 MIN_POINTS = 50
+"""Fewer are no scan of a hand."""
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from tracker.errors import ScanError
 NEEDED = "a PLY whose element 'vertex' has x, y, z, and perhaps faces as lists of points"
 
 MAX_HEADER = 65536
+"""Bytes; a bound of ours."""
 
 TYPES = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",

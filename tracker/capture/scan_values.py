@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 MAX_FILE_BYTES = 1 << 30
+"""A bound of ours, as the two below."""
 MAX_FILE_POINTS = 20_000_000
 MAX_FILE_FACES = 40_000_000
 

@@ -78,7 +78,6 @@ class SensorPreset:
 
 
 _PRINT_OUT = "the camera's own calibration, printed by the RealSense SDK for one unit"
-_K4A = "the factory calibration of one unit, printed by the Azure Kinect SDK"
 _OPENNI = "the defaults of the OpenNI driver, which the ROS packages openni_launch and openni2_launch use"
 
 SENSOR_PRESETS: tuple[SensorPreset, ...] = (
@@ -104,7 +103,7 @@ SENSOR_PRESETS: tuple[SensorPreset, ...] = (
         (SensorMode(640, 576, 503.93, 503.98, 332.06, 325.88),),
         (0.001,),
         (0.25, 5.46),
-        _K4A,
+        "the factory calibration of one unit, printed by the Azure Kinect SDK",
     ),
     SensorPreset(
         "azure_kinect_wide",

@@ -19,12 +19,14 @@ from tracker.capture.recorded_camera import RecordedCamera, parse_camera
 from tracker.capture.recorded_object import RecordedObject, parse_object
 from tracker.capture.relative_path import find_path_fault, is_inside
 from tracker.capture.static_plane import MAX_PLANES, StaticPlane, parse_direction, parse_plane
-from tracker.capture.video_file import VideoFile
+from tracker.capture.video_file import MAX_FRAMES, VideoFile
 from tracker.errors import FrameError, SequenceError
 
 SEQUENCE_FILE = "sequence.json"
-MAX_FRAMES = 1_000_000
+TRUTH_FILE = "truth.npz"
+"""In the folder of a rendered recording: the poses it was made from."""
 MAX_DOCUMENT_BYTES = 8 * 1024 * 1024
+"""Of sequence.json; a bound of ours."""
 
 
 @dataclass(frozen=True, eq=False)

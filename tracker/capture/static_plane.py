@@ -9,6 +9,7 @@ import numpy as np
 from tracker.capture.document import Node
 
 MAX_PLANES = 20
+"""Of a recording; a bound of ours."""
 
 
 @dataclass(frozen=True)

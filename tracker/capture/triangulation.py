@@ -25,6 +25,7 @@ OUTLIER_PX = 5.0
 """A mark is called into question when the views disagree by more; annotators differ by 1.5 px [T16] §4.2."""
 
 GAUSS_NEWTON_STEPS = 2
+"""That follow the linear solution."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,6 +18,7 @@ from tracker.errors import CalibrationError, reads
 
 Array = npt.NDArray[np.float64]
 MAX_CALIBRATION_BYTES = 4 * 1024 * 1024
+"""Of a file; a bound of ours."""
 
 
 @dataclass(frozen=True, eq=False)

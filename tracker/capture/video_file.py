@@ -17,8 +17,10 @@ from tracker.capture.import_plan import SourceImage, StreamProbe
 from tracker.errors import FrameError, reading, say_count
 
 VIDEO_SUFFIXES = (".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm")
-MAX_VIDEO_FRAMES = 1_000_000
+MAX_FRAMES = 1_000_000
+"""Of a recording: nine hours at 30 frames a second."""
 JPEG_QUALITY = 95
+"""Of the pictures of a video's frames, of 100."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ class VideoFile:
         """Decode the whole video: the count in its header may be wrong. Pixels are looked at about `samples` times."""
         with self.open() as capture:
             fps = float(capture.get(cv2.CAP_PROP_FPS))
-            promised = int(min(max(capture.get(cv2.CAP_PROP_FRAME_COUNT), 0), MAX_VIDEO_FRAMES))
+            promised = int(min(max(capture.get(cv2.CAP_PROP_FRAME_COUNT), 0), MAX_FRAMES))
             every = max(1, promised // max(1, samples))
             times: list[float] = []
             sizes: Counter[tuple[int, int]] = Counter()
@@ -55,8 +57,8 @@ class VideoFile:
                     image = self.retrieve(capture, len(times))
                     sizes[(image.shape[1], image.shape[0])] += 1
                 times.append(float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000)
-                if len(times) > MAX_VIDEO_FRAMES:
-                    raise FrameError(f"{self.name}: has more than {MAX_VIDEO_FRAMES} frames.")
+                if len(times) > MAX_FRAMES:
+                    raise FrameError(f"{self.name}: has more than {MAX_FRAMES} frames.")
         problems = []
         if not times:
             problems.append(
@@ -100,7 +102,7 @@ class VideoFile:
         """(T,) s, of the frames that the file holds, without decoding any: it may promise some that were left out."""
         times: list[float] = []
         with self.open([cv2.CAP_PROP_FORMAT, -1]) as capture:
-            while len(times) <= MAX_VIDEO_FRAMES and capture.grab():
+            while len(times) <= MAX_FRAMES and capture.grab():
                 times.append(float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000)
         return np.sort(times)  # frames that refer to later ones are stored behind those
 
@@ -146,7 +148,7 @@ class VideoFile:
         with self.open() as capture:
             fps, count = (float(capture.get(what)) for what in (cv2.CAP_PROP_FPS, cv2.CAP_PROP_FRAME_COUNT))
         is_told = np.isfinite(fps) and 0.001 <= fps <= 100_000
-        return fps if is_told else 0.0, int(min(max(count, 0), MAX_VIDEO_FRAMES))
+        return fps if is_told else 0.0, int(min(max(count, 0), MAX_FRAMES))
 
     def read_frame(self, index: int) -> npt.NDArray[np.uint8]:
         """One frame (H, W, 3) RGB, near enough for people to look at: seeking is exact in most videos, not in all."""

@@ -12,6 +12,7 @@ from tracker.cli.progress import ProgressLine
 from tracker.errors import TrackerError, say_count
 
 MAX_GLB_FRAMES = 20_000
+"""Of an animation; a bound of ours."""
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:

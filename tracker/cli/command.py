@@ -13,6 +13,7 @@ from tracker.errors import TrackerError
 from tracker.model.built_in_hands import BUILT_IN_HANDS
 
 BAD_INPUT, FAILED = 2, 1
+"""Exit codes."""
 
 
 def run_guarded(work: Callable[[argparse.Namespace], Any], show: Callable[[Any], str]):

@@ -19,6 +19,7 @@ from tracker.terms.residual import FrameContext
 from tracker.tracking.track import Track
 
 REPEATS = 7
+"""Of a kernel; the quickest counts."""
 
 T = TypeVar("T")
 

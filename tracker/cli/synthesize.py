@@ -14,6 +14,7 @@ from tracker.errors import TrackerError, say_count
 from tracker.model.built_in_hands import BUILT_IN_HANDS
 
 MOTION_FRAMES = 90
+"""Where --frames is not given: three seconds."""
 
 
 def add_command(subparsers: argparse._SubParsersAction) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tracker.capture.annotations import JOINT_NAMES, Annotation, Annotations
+from tracker.capture.annotations import ABSENT, JOINT_NAMES, VISIBLE, Annotation, Annotations
 from tracker.capture.exposure import brighten_frame
 from tracker.capture.frame import Frame
 from tracker.capture.recorded_camera import RecordedCamera
@@ -19,7 +19,6 @@ from tracker.observation import Preprocessing, Region, observe
 Array = npt.NDArray[np.float64]
 
 TIPS = tuple(index for index, name in enumerate(JOINT_NAMES) if name.endswith("_tip"))
-ABSENT, VISIBLE = 0, 2
 
 SIDE_MARGIN = 0.060
 """Room around the marked joints in the image, m."""

@@ -7,6 +7,7 @@ import numpy.typing as npt
 from numba import njit
 
 BINS = 9
+"""Of the directions of gradients, as in histograms of oriented gradients."""
 CHANNELS = 2 + BINS
 CELL = 5
 """Window of minimum, maximum and sums of gradients, px, [T16] §3.2.5."""

@@ -17,6 +17,7 @@ from tracker.model.npz_arrays import NpzFields, read_npz_arrays
 
 FORMAT = "handloom fingertip detector 1"
 MAX_TREES = 1000
+"""A bound of ours."""
 MAX_FILE_BYTES = 32 * 2**20
 """Ten times what the paper's options make."""
 

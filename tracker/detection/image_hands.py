@@ -9,14 +9,12 @@ from itertools import permutations
 import numpy as np
 import numpy.typing as npt
 
-from tracker.capture.annotations import Annotation
+from tracker.capture.annotations import OCCLUDED, VISIBLE, Annotation
 from tracker.capture.frame import Frame
 from tracker.capture.joint_source import JointSource
 from tracker.detection.hidden_joints import find_hidden_joints
 from tracker.landmarks import DetectedHand, HandDetector
-
-SIDES = ("right", "left")
-OCCLUDED, VISIBLE = 1, 2
+from tracker.model.joints import SIDES
 
 DETECTOR_LABEL = "Hand detector"
 SOURCE = JointSource("detector", DETECTOR_LABEL)

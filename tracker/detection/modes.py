@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 ROUNDS = 10
+"""Of k-means."""
 
 
 def find_modes(offsets: npt.NDArray[np.float32], count: int) -> npt.NDArray[np.float32]:

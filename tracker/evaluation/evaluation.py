@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from tracker.capture.annotations import Annotation, Annotations
+from tracker.capture.annotations import OCCLUDED, VISIBLE, Annotation, Annotations
 from tracker.capture.joint_source import JointSources
 from tracker.capture.source_choice import ALL, JUDGING, count_origins, describe_origin, find_counted, find_origin
 from tracker.evaluation.statistics import Statistics, compute_statistics
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from tracker.tracking.track import Track
 
 Array = npt.NDArray[np.float64]
-
-OCCLUDED, VISIBLE = 1, 2
 
 
 @dataclass(frozen=True)

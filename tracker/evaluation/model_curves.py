@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from tracker.evaluation.model_report_html import MOST_COMPONENTS
 from tracker.evaluation.report_drawing import Line, draw_curves
-
-MOST_COMPONENTS = 30
 
 
 def draw_study(study: dict[str, Any]) -> dict[str, str]:

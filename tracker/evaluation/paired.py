@@ -14,7 +14,9 @@ from tracker.evaluation.evaluation import Evaluation
 Array = npt.NDArray[np.float64]
 
 RESAMPLES = 2000
+"""Of the bootstrap."""
 CONFIDENCE = 0.95
+"""Of the interval around a difference."""
 SEED = 20160508
 """The same joints give the same interval every time."""
 

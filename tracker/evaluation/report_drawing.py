@@ -11,6 +11,7 @@ from typing import Any
 COLORS = ("#1c9c8f", "#d9822b", "#7d6bd8", "#3d86d8", "#c2547e", "#7c8a2e", "#8a8f98", "#b0553a")
 DASHES = ("", "7 4", "2 3", "9 3 2 3", "4 2", "12 4", "1 4", "6 2 1 2")
 WIDTH, HEIGHT = 960, 240
+"""px of a drawing; below, the room around its axes."""
 LEFT, RIGHT, TOP, BOTTOM = 48, 12, 10, 34
 
 

@@ -20,6 +20,7 @@ SMALLEST = 64
 FULL_PX = 20.0
 """Error at which the colour scale ends, px."""
 MARKED, GREY = (255, 255, 255), (120, 126, 134)
+"""RGB of labels, and of joints that were left out."""
 
 Image = npt.NDArray[np.uint8]
 

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-GLB_MAGIC = 0x46546C67
-CHUNK_JSON = 0x4E4F534A
-CHUNK_BIN = 0x004E4942
+from tracker.model.gltf_container import CHUNK_BIN, CHUNK_JSON, GLB_MAGIC
+
 KINDS = {"uint8": 5121, "uint16": 5123, "uint32": 5125, "float32": 5126}
+"""glTF's numbers of its kinds of number."""
 FORMS = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 ARRAY_BUFFER, ELEMENT_BUFFER = 34962, 34963
+"""glTF's targets of a view: attributes of vertices, indices."""
 
 
 class GlbWriter:

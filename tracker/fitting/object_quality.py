@@ -8,14 +8,9 @@ import cv2
 import numpy as np
 from numba import njit
 
+from tracker.fitting.measure_quality import ALIKE, CUT
 from tracker.observation.observation import OTHER, Observation
 from tracker.rendering import View
-
-ALIKE = 0.015
-"""Drawn and seen depth within this agree, m."""
-
-CUT = 0.020
-"""Depth differences count no more than this in the score, m."""
 
 TOUCHING = 0.010
 """Skin at most this far behind the drawn object still hides it: hands touch what they hold, m."""

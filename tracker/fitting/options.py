@@ -25,9 +25,9 @@ TERMS = tuple(TERM_LABELS)
 METHODS = ("handloom", "t16")
 """Our tracker, or Algorithm 1 of [T16] with no term and no step beyond it (docs/objective.md)."""
 
-STATIC_SCENES = ("find", "recording", "none")
 
 LAST_FRAME = 10_000_000
+"""A bound of forms, beyond every recording."""
 
 
 def _option(default: Any, help_text: str, **metadata: Any) -> Any:
@@ -99,7 +99,7 @@ class TrackOptions:
         "find",
         "Tables and walls for physics: the recording's own, else the largest plane behind the hands in the depth.",
         label="Static scene",
-        choices=STATIC_SCENES,
+        choices=("find", "recording", "none"),
         choice_labels=("Recording's, else found in depth", "Recording's only", "None"),
         is_advanced=True,
         about="recording",

@@ -7,10 +7,10 @@ from typing import Any
 from tracker.capture.document import Node
 from tracker.label_formats.image_names import Place
 from tracker.label_formats.label_set import ImportCollector, ImportHints, LabelSet
+from tracker.label_formats.values import MAX_ENTRIES
 
-MAX_IMAGES = 1_000_000
-MAX_ANNOTATIONS = 1_000_000
 MAX_ID = 2**53
+"""The largest whole number that JSON readers keep exact."""
 
 
 def list_images(sets: list[LabelSet]) -> tuple[list[dict[str, Any]], dict[tuple[str, Place], int]]:
@@ -42,7 +42,7 @@ def list_images(sets: list[LabelSet]) -> tuple[list[dict[str, Any]], dict[tuple[
 def read_images(node: Node, collector: ImportCollector, hints: ImportHints) -> dict[int, tuple[str, Place]]:
     """Recording, camera and frame of each image id. Images that cannot be found are noted and left out."""
     found: dict[int, tuple[str, Place]] = {}
-    for image in node.items(MAX_IMAGES):
+    for image in node.items(MAX_ENTRIES):
         id_ = image.get("id").integer(0, MAX_ID)
         if id_ in found:
             image.get("id").fail("an id that no other image has")

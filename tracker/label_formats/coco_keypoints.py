@@ -14,7 +14,7 @@ import numpy.typing as npt
 from tracker.capture.annotations import Annotation, parse_sources
 from tracker.capture.document import Node
 from tracker.errors import AnnotationError
-from tracker.label_formats.coco_images import MAX_ANNOTATIONS, MAX_ID, list_images, read_images
+from tracker.label_formats.coco_images import MAX_ENTRIES, MAX_ID, list_images, read_images
 from tracker.label_formats.label_set import (
     ExportedLabels,
     ImportCollector,
@@ -107,7 +107,7 @@ def read_coco_keypoints(files: dict[str, bytes], sets: list[LabelSet], hints: Im
     categories = _read_categories(node.get("categories"), hints)
     images = read_images(node.get("images"), collector, hints)
     known = {item.get("id").value for item in node.get("images").items(10**6)}
-    for item in node.get("annotations").items(MAX_ANNOTATIONS):
+    for item in node.get("annotations").items(MAX_ENTRIES):
         category = item.get("category_id").integer(0, MAX_ID)
         image = item.get("image_id").integer(0, MAX_ID)
         if category not in categories:

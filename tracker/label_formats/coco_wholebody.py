@@ -12,7 +12,7 @@ import numpy as np
 
 from tracker.capture.annotations import Annotation, parse_sources
 from tracker.capture.document import Node
-from tracker.label_formats.coco_images import MAX_ANNOTATIONS, MAX_ID, list_images, read_images
+from tracker.label_formats.coco_images import MAX_ENTRIES, MAX_ID, list_images, read_images
 from tracker.label_formats.coco_keypoints import describe_box, read_points, write_points
 from tracker.label_formats.label_set import (
     ExportedLabels,
@@ -33,7 +33,6 @@ BODY = (
     "right_ankle",
 )
 OTHERS = {"face_kpts": 68, "foot_kpts": 6}
-EMPTY_BOX = [0.0, 0.0, 0.0, 0.0]
 
 
 def write_coco_wholebody(sets: list[LabelSet]) -> ExportedLabels:
@@ -70,7 +69,7 @@ def _write_person(id_: int, image_id: int, hands: list[Annotation]) -> dict[str,
         "keypoints": [0] * (3 * len(BODY)),
         "num_keypoints": 0,
         **describe_box(np.concatenate([hand.points for hand in hands])),
-        "face_box": EMPTY_BOX,
+        "face_box": [0.0, 0.0, 0.0, 0.0],
         "face_valid": False,
         "foot_valid": False,
         **{name: [0] * (3 * count) for name, count in OTHERS.items()},
@@ -90,7 +89,7 @@ def read_coco_wholebody(files: dict[str, bytes], sets: list[LabelSet], hints: Im
     node = find_json(files, ".json")
     collector = ImportCollector(sets)
     images = read_images(node.get("images"), collector, hints)
-    for item in node.get("annotations").items(MAX_ANNOTATIONS):
+    for item in node.get("annotations").items(MAX_ENTRIES):
         image = item.get("image_id").integer(0, MAX_ID)
         if image not in images:
             continue

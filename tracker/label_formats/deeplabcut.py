@@ -28,16 +28,14 @@ from tracker.label_formats.label_set import (
     note_flat_visibility,
 )
 from tracker.label_formats.orders import find_joint
-from tracker.label_formats.values import MAX_PIXEL
-from tracker.model.joints import HAND_JOINTS
+from tracker.label_formats.values import MAX_ENTRIES, MAX_PIXEL
+from tracker.model.joints import HAND_JOINTS, SIDES
 
 PIXEL_CENTRE = 0.0
 """Coordinate of the centre of the top-left pixel."""
 SCORER = "handloom"
-HANDS = ("right", "left")
 MAX_COLUMNS = 1000
-MAX_ROWS = 1_000_000
-NOT_A_NUMBER = ("", "nan", "NaN", "NA", "None")
+"""Of a table; a bound of ours."""
 Column = tuple[str, int, int]
 """Hand, joint, 0 for x and 1 for y."""
 
@@ -48,7 +46,7 @@ def write_deeplabcut(sets: list[LabelSet]) -> ExportedLabels:
     losses = Notes()
     note_flat_visibility(losses, only.annotations.items, "DeepLabCut")
     files = {}
-    columns = [(hand, name, axis) for hand in HANDS for name in HAND_JOINTS for axis in "xy"]
+    columns = [(hand, name, axis) for hand in SIDES for name in HAND_JOINTS for axis in "xy"]
     for camera in only.sequence.cameras:
         own = [item for item in only.annotations.items if item.camera == camera.id]
         if not own:
@@ -63,7 +61,7 @@ def write_deeplabcut(sets: list[LabelSet]) -> ExportedLabels:
             writer.writerow([label, "", "", *values])
         file_names = _name_images(only, camera.id, sorted(rows))
         for frame, hands in sorted(rows.items()):
-            cells = [_write_hand(hands.get(hand)) for hand in HANDS]
+            cells = [_write_hand(hands.get(hand)) for hand in SIDES]
             writer.writerow(["labeled-data", camera.id, file_names[frame], *cells[0], *cells[1]])
         files[f"labeled-data/{camera.id}/CollectedData_{SCORER}.csv"] = text.getvalue().encode()
     if not files:
@@ -116,8 +114,8 @@ def _read_table(name: str, data: bytes, labels: LabelSet, hints: ImportHints, co
             header.append(next(rows))
         columns, start = _read_header(name, header, labels, hints, collector)
         for number, row in enumerate(rows, len(header) + 1):
-            if number > MAX_ROWS:
-                raise AnnotationError(f"{name}: has more than {MAX_ROWS} rows.")
+            if number > MAX_ENTRIES:
+                raise AnnotationError(f"{name}: has more than {MAX_ENTRIES} rows.")
             if row:
                 _read_row(f"{name}, line {number}", row, start, columns, labels, hints, collector)
 
@@ -190,7 +188,7 @@ def _find_only_hand(name: str, labels: LabelSet, hints: ImportHints, collector: 
 
 
 def _find_column(who: str, part: str, coord: str) -> Column | None:
-    side = next((hand for hand in HANDS if hand in who), None)
+    side = next((hand for hand in SIDES if hand in who), None)
     joint = find_joint(part)
     if side is None or joint is None or coord not in ("x", "y"):
         return None
@@ -212,7 +210,7 @@ def _read_row(
     if place is None:
         return
     shift = PIXEL_CENTRE if hints.pixel_centre is None else hints.pixel_centre
-    marks = {hand: np.full((len(HAND_JOINTS), 2), np.nan) for hand in HANDS}
+    marks = {hand: np.full((len(HAND_JOINTS), 2), np.nan) for hand in SIDES}
     for i, (hand, joint, axis) in columns.items():
         marks[hand][joint, axis] = _read_cell(where, row[i]) - shift
     for hand, pixels in marks.items():
@@ -245,7 +243,7 @@ def _find_image(
 
 def _read_cell(where: str, text: str) -> float:
     text = text.strip()
-    if text in NOT_A_NUMBER:
+    if text in ("", "nan", "NaN", "NA", "None"):
         return math.nan
     try:
         value = float(text) if len(text) < 50 else math.inf

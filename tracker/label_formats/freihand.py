@@ -26,9 +26,8 @@ from tracker.label_formats.label_set import (
     note_flat_visibility,
 )
 from tracker.label_formats.orders import from_order, to_order
-from tracker.label_formats.values import MAX_LENGTH_M, find_json, read_numbers, write_json
+from tracker.label_formats.values import MAX_ENTRIES, MAX_LENGTH_M, find_json, read_numbers, write_json
 
-MAX_SAMPLES = 1_000_000
 SAMPLES_FILE = "handloom_samples.json"
 K_TOLERANCE = 0.5
 """px that a file's intrinsics may differ from the recording's without a warning."""
@@ -80,8 +79,8 @@ def read_freihand(files: dict[str, bytes], sets: list[LabelSet], hints: ImportHi
     """Joints of the samples, seen by the camera of each; which image a sample is must be known."""
     (only,) = sets
     collector = ImportCollector(sets)
-    xyz = list(find_json(files, "_xyz.json").items(MAX_SAMPLES))
-    Ks = list(find_json(files, "_K.json").items(MAX_SAMPLES))
+    xyz = list(find_json(files, "_xyz.json").items(MAX_ENTRIES))
+    Ks = list(find_json(files, "_K.json").items(MAX_ENTRIES))
     if len(xyz) != len(Ks):
         raise AnnotationError(f"..._xyz.json has {len(xyz)} samples and ..._K.json {len(Ks)}; needed as many.")
     places = _read_places(files, only, len(xyz), hints, collector)
@@ -123,7 +122,7 @@ def _read_places(
                 ),
             )
         return [(camera, frame) for frame in range(count)]
-    samples = list(parse_json(files[name], name, AnnotationError).items(MAX_SAMPLES))
+    samples = list(parse_json(files[name], name, AnnotationError).items(MAX_ENTRIES))
     if len(samples) != count:
         raise AnnotationError(f"{name} names {len(samples)} samples where there are {count}.")
     return [_find_sample(sample, labels, cameras, collector) for sample in samples]

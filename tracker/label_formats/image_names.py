@@ -14,6 +14,7 @@ from tracker.capture.sequence import Sequence
 from tracker.errors import SequenceError, TrackerError
 
 MAX_SOURCES_BYTES = 512 * 1024 * 1024
+"""Of sources.json; a bound of ours."""
 Place = tuple[str, int]
 """Camera and frame."""
 

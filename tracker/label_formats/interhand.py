@@ -19,7 +19,7 @@ from tracker.capture.camera import Camera
 from tracker.capture.document import Node
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.errors import AnnotationError
-from tracker.label_formats.coco_images import MAX_ANNOTATIONS, MAX_ID, list_images, read_images
+from tracker.label_formats.coco_images import MAX_ENTRIES, MAX_ID, list_images, read_images
 from tracker.label_formats.coco_keypoints import describe_box
 from tracker.label_formats.joints_3d import Hand3D, find_hands_3d, project_hand
 from tracker.label_formats.label_set import (
@@ -33,14 +33,15 @@ from tracker.label_formats.label_set import (
 )
 from tracker.label_formats.orders import from_order, to_order
 from tracker.label_formats.values import MAX_LENGTH_M, find_json, read_numbers, write_json
-from tracker.model.joints import FINGERS
+from tracker.model.joints import FINGERS, SIDES
 
 Array = npt.NDArray[np.float64]
 MM_PER_M = 1000.0
-HANDS = ("right", "left")
+"""Its world is in millimetres."""
 CAPTURE = "0"
 PREFIX = "InterHand2.6M_train"
 TOLERANCE_PX, TOLERANCE_M = 0.5, 0.001
+"""Calibrations that differ by less are the recording's own, px and m."""
 
 
 def write_interhand(sets: list[LabelSet]) -> ExportedLabels:
@@ -112,7 +113,7 @@ def _write_view(camera: str, hands: dict[str, Hand3D]) -> dict[str, Any]:
 def _join(hands: dict[str, Hand3D]) -> tuple[Array, npt.NDArray[np.bool_]]:
     """(42, 3) world, m, and (42,) whether known, in InterHand2.6M's order."""
     nothing = np.full((21, 3), np.nan)
-    both = np.concatenate([to_order(hands[side].points if side in hands else nothing, "interhand") for side in HANDS])
+    both = np.concatenate([to_order(hands[side].points if side in hands else nothing, "interhand") for side in SIDES])
     return both, np.asarray(np.isfinite(both).all(axis=1))
 
 
@@ -151,7 +152,7 @@ def read_interhand(files: dict[str, bytes], sets: list[LabelSet], hints: ImportH
     images = read_images(data.get("images"), collector, hints)
     by_id = {item.get("id").value: item for item in data.get("images").items(10**6)}
     eyes: dict[tuple[str, str], Camera] = {}
-    for item in data.get("annotations").items(MAX_ANNOTATIONS):
+    for item in data.get("annotations").items(MAX_ENTRIES):
         image_id = item.get("image_id").integer(0, MAX_ID)
         if image_id not in images:
             continue
@@ -163,7 +164,7 @@ def read_interhand(files: dict[str, bytes], sets: list[LabelSet], hints: ImportH
         points = read_numbers(entry.get("world_coord"), (42, 3), MAX_LENGTH_M * MM_PER_M) / MM_PER_M
         valid = read_numbers(item.get("joint_valid"), (42,), 1.0) > 0
         kind = item.get("hand_type").choice("right", "left", "interacting")
-        for number, side in enumerate(HANDS):
+        for number, side in enumerate(SIDES):
             part = slice(21 * number, 21 * number + 21)
             if kind in (side, "interacting") and valid[part].any():
                 own, known = (

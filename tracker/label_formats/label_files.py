@@ -13,7 +13,9 @@ from tracker.capture.document import read_regular_file
 from tracker.errors import AnnotationError
 
 MAX_BYTES = 256 * 1024 * 1024
+"""Of one file."""
 MAX_FILES = 100_000
+"""Of one import."""
 LIMITS = ArchiveLimits(files=MAX_FILES, total_bytes=MAX_BYTES, file_bytes=MAX_BYTES, directory_bytes=64 * 1024 * 1024)
 SUFFIXES = (".json", ".csv", ".txt")
 REFUSED = {
@@ -22,6 +24,7 @@ REFUSED = {
     ".h5": "HDF5 is not read; DeepLabCut writes the same labels as .csv beside it",
 }
 MOMENT = (1980, 1, 1, 0, 0, 0)
+"""Of all members of a zip, so that the same labels make the same bytes; the first that zip knows."""
 
 
 def read_label_files(path: Path) -> dict[str, bytes]:

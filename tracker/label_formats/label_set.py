@@ -87,6 +87,7 @@ class ImportedLabels:
 
 
 MAX_NOTES = 20
+"""That are named; more are counted."""
 
 
 class Notes:

@@ -39,7 +39,6 @@ JOINT_ORDERS: dict[str, tuple[str, ...]] = {
 append them. InterHand2.6M: tip to base, the wrist last; the right hand stands before the left one."""
 
 _WORDS = {"forefinger": "index", "pinky": "little", "pinkie": "little", "small": "little"}
-_THUMB_NAMES = {"tm": "cmc", "dip": "ip", "pip": "ip"}
 
 
 def to_order(values: Array, order: str) -> Array:
@@ -70,7 +69,7 @@ def find_joint(name: str) -> int | None:
     if part in ("1", "2", "3", "4"):
         part = _PARTS[finger][int(part) - 1]
     if finger == "thumb":
-        part = _THUMB_NAMES.get(part, part)
+        part = {"tm": "cmc", "dip": "ip", "pip": "ip"}.get(part, part)
     full = f"{finger}_{part}"
     return HAND_JOINTS.index(full) if full in HAND_JOINTS else None
 

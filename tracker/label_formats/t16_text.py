@@ -24,14 +24,14 @@ from tracker.label_formats.label_set import (
     note_flat_visibility,
 )
 from tracker.label_formats.orders import JOINT_ORDERS, find_joint
-from tracker.model.joints import HAND_JOINTS
+from tracker.model.joints import HAND_JOINTS, SIDES
 
-PIXEL_CENTRE = 0
 FOLDER = "joints_2D_GT"
 NAMES_FILE = "joints.txt"
-HANDS = ("right", "left")
 MAX_LINES = 1000
+"""Of a file; a bound of ours."""
 MAX_NUMBER = 10**6
+"""px; a bound of ours."""
 _LINE = re.compile(r"\s*(-?\d{1,7})\s+(-?\d{1,7})\s+(-?\d{1,7})\s*")
 _PATH = re.compile(rf"(?:(?:.*/)?([^/]+)/)?{FOLDER}/(\d{{1,9}})\.txt")
 Slots = dict[int, tuple[str, int]]
@@ -62,7 +62,7 @@ def write_t16(sets: list[LabelSet]) -> ExportedLabels:
 
 
 def _list_slots() -> list[tuple[str, str]]:
-    return [(hand, joint) for hand in HANDS for joint in HAND_JOINTS]
+    return [(hand, joint) for hand in SIDES for joint in HAND_JOINTS]
 
 
 def _write_frame(hands: dict[str, Annotation], losses: Notes) -> tuple[str, int]:
@@ -72,7 +72,7 @@ def _write_frame(hands: dict[str, Annotation], losses: Notes) -> tuple[str, int]
         if hand in hands:
             px, py, v = hands[hand].points[HAND_JOINTS.index(joint)]
             if v > 0:
-                x, y = round(px) + PIXEL_CENTRE, round(py) + PIXEL_CENTRE
+                x, y = round(px), round(py)
                 losses.add("{n} [position was|positions were] rounded to whole px", count=int((x, y) != (px, py)))
                 if x <= 0 or y <= 0:
                     losses.add(
@@ -133,7 +133,7 @@ def _read_slots(files: dict[str, bytes], folder: str, hints: ImportHints) -> Slo
             raise AnnotationError(
                 f"There is no joint order {hints.joint_order!r}; there are {', '.join(JOINT_ORDERS)}."
             )
-        hands = (hints.hand,) if hints.hand else HANDS
+        hands = (hints.hand,) if hints.hand else SIDES
         order = [(hand, HAND_JOINTS.index(joint)) for hand in hands for joint in JOINT_ORDERS[hints.joint_order]]
         return dict(enumerate(order))
     name = f"{folder}{NAMES_FILE}"
@@ -149,7 +149,7 @@ def _read_slots(files: dict[str, bytes], folder: str, hints: ImportHints) -> Slo
         joint = find_joint(joint_name)
         if not words:
             continue
-        if joint is None or side not in HANDS or not words[0].isdecimal() or int(words[0][:9]) in slots:
+        if joint is None or side not in SIDES or not words[0].isdecimal() or int(words[0][:9]) in slots:
             raise AnnotationError(f"{name}: {line[:80]!r}; needed lines such as '0 right/wrist', each number once.")
         slots[int(words[0][:9])] = (side, joint)
     if len(set(slots.values())) != len(slots):
@@ -177,7 +177,7 @@ def _read_frame(name: str, data: bytes, slots: Slots) -> dict[str, np.ndarray]:
         seen.add(number)
         if x > 0 and y > 0:
             hand, joint = slots[number]
-            hands.setdefault(hand, np.zeros((len(HAND_JOINTS), 3)))[joint] = x - PIXEL_CENTRE, y - PIXEL_CENTRE, 2
+            hands.setdefault(hand, np.zeros((len(HAND_JOINTS), 3)))[joint] = x, y, 2
     return hands
 
 

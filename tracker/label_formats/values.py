@@ -12,8 +12,12 @@ from tracker.capture.document import Node, parse_json
 from tracker.errors import AnnotationError
 
 Array = npt.NDArray[np.float64]
+MAX_ENTRIES = 1_000_000
+"""Images, annotations or rows of one file of labels; a bound of ours, far above any data set that is known to us."""
 MAX_PIXEL = 1e6
+"""px; a bound of ours."""
 MAX_LENGTH_M = 1e4
+"""m; a bound of ours."""
 
 
 def read_numbers(node: Node, shape: tuple[int, ...], bound: float) -> Array:

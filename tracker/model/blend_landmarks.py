@@ -17,6 +17,7 @@ from tracker.model.skeleton import Array
 FINGER_DEPTH = 1.0 / 3.0
 """Of the second and third joint of a finger and the thumb's last, share of the way from the back to the other side."""
 THUMB_BASE_DEPTH = 0.6
+"""The same of the thumb's base."""
 
 
 def find_landmark_offsets(vertices: Array, faces: npt.NDArray[np.int64], chains: HandChains) -> Array:

@@ -26,11 +26,11 @@ STIFF_DEG = 8.0
 ARCH_DEG = 12.0
 """So much further do the first joints of ring and little finger bend: MANO has no metacarpals to arch the palm with."""
 
-FLEXION_SD_DEG, FLEXION_MEAN_DEG = 28.0, 15.0
-ABDUCTION_SD_DEG = {1: 8.0, 2: 3.0, 3: 3.0}
-TWIST_SD_DEG = {1: 4.0, 2: 3.0, 3: 3.0}
+FLEXION_MEAN_DEG = 15.0
+"""Of the prior of every joint of a finger, from the rest pose; the thumb's mean is the rest pose."""
+FINGER_SD_DEG = {1: (28.0, 8.0, 4.0), 2: (28.0, 3.0, 3.0), 3: (28.0, 3.0, 3.0)}
 THUMB_SD_DEG = {1: (15.0, 12.0, 10.0), 2: (15.0, 6.0, 5.0), 3: (22.0, 3.0, 3.0)}
-"""Prior of the first, second and third joint from the rest pose; the thumb's by motion, its mean is the rest pose."""
+"""Standard deviations of that prior by motion, of the first, second and third joint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +84,7 @@ def blend_limits(model: BlendModel) -> BlendLimits:
             if finger == "thumb":
                 deviation[row] = np.radians(THUMB_SD_DEG[number + 1])
             else:
-                spread = (FLEXION_SD_DEG, ABDUCTION_SD_DEG[number + 1], TWIST_SD_DEG[number + 1])
-                deviation[row] = np.radians(spread)
+                deviation[row] = np.radians(FINGER_SD_DEG[number + 1])
                 mean[row, 0] = np.radians(FLEXION_MEAN_DEG)
     for joint in derive_hand_joints(chains):
         row = CHAINS[joint.finger] - 1 + chains.segments(joint.finger).index(joint.segment)

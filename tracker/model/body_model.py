@@ -14,8 +14,6 @@ from tracker.model.blend_model import Array, BlendModel
 from tracker.model.npz_arrays import NpzFields, read_npz_arrays
 from tracker.model.npz_files import MAX_COORDINATE, write_npz_arrays
 
-DATA = Path(__file__).parent / "data" / "body.npz"
-
 SEXES = ("male", "female")
 POPULATIONS = ("neutral", *SEXES)
 """Whose statistics a model's shape coefficients can have; "neutral": both sexes alike often."""
@@ -115,7 +113,7 @@ def load_body_model(path: Path) -> BodyModel:
 @cache
 def default_body() -> BodyModel:
     """The body that comes with Handloom. CC0, as all that it is made from. y up, arms along x, the face towards z."""
-    return load_body_model(DATA)
+    return load_body_model(Path(__file__).parent / "data" / "body.npz")
 
 
 @cache

@@ -17,13 +17,17 @@ NUM_JOINTS = NUM_BODY_JOINTS + 2 * NUM_FINGER_JOINTS
 NUMBERS = 3 * NUM_JOINTS
 """Of a frame: rotation vectors of the root, 21 joints of the body, 15 of the left hand, 15 of the right."""
 MAX_FRAMES = 200_000
+"""Of a motion; a bound of ours."""
 MAX_ANGLE = 20.0
 """Largest component of a rotation vector, rad: some turns more than a whole one are on record."""
 MAX_PLACE = 1000.0
 """Of a translation, m."""
 MAX_SHAPE = 30.0
+"""Standard deviations; a bound of ours."""
 MAX_SHAPES = 400
+"""Coefficients; SMPL+H has 16, SMPL-X up to 400."""
 MAX_FPS = 1000.0
+"""A bound of ours."""
 
 NEEDED = f"an AMASS-like motion: 'poses', frames x {NUMBERS}, rad; 'trans', frames x 3, m; 'betas'; 'mocap_framerate'"
 

@@ -14,13 +14,15 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.errors import ModelFileError, reading, reads
+from tracker.model.file_limits import MAX_BYTES
 
-MAX_BYTES = 256 * 2**20
 GLB_MAGIC = 0x46546C67
+""""glTF", as the two below from the specification of glTF 2.0."""
 CHUNK_JSON = 0x4E4F534A
 CHUNK_BIN = 0x004E4942
 
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+"""NumPy's names of glTF's kinds of number."""
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 
 IGNORABLE = ("KHR_materials", "KHR_texture", "EXT_texture", "KHR_lights")

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from tracker.errors import ModelFileError, reads
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.decimation import decimate_file, limit_weights
+from tracker.model.file_limits import MAX_VERTICES
 from tracker.model.gltf_container import Gltf, read_gltf
 from tracker.model.hand_axes import HandChains, derive_hand_joints
 from tracker.model.hand_joint_names import find_side, map_joint_names, missing_joints
@@ -19,9 +20,10 @@ from tracker.model.hand_skeleton import build_hand_skeleton, hand_bone_names
 from tracker.model.joints import FINGERS
 from tracker.model.skeleton import Array
 
-MAX_VERTICES = 500_000
 MAX_JOINTS = 512
+"""Of a skin; a bound of ours."""
 MAX_NODES = 4096
+"""Of a file; a bound of ours."""
 HAND_LENGTH = (0.08, 0.40)
 """Wrist to tip of the middle finger, m; outside of it the file is surely not in metres."""
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 FINGERS: tuple[str, ...] = ("thumb", "index", "middle", "ring", "little")
 
+SIDES = ("right", "left")
+
 HAND_JOINTS: tuple[str, ...] = (
     "wrist",
     *("thumb_cmc", "thumb_mcp", "thumb_ip", "thumb_tip"),

@@ -30,6 +30,7 @@ DENT = 0.002
 DENT_WIDTH = 0.016
 """How far a dent reaches, m."""
 DENTS = 28
+"""Places on the palm."""
 FOREARM = 0.3
 """Of the stump's length, relative."""
 PALM_REACH = 0.020

@@ -11,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.errors import FileError, ModelFileError, reading
+from tracker.model.file_limits import MAX_BYTES
 
-MAX_BYTES = 256 * 2**20
 MAX_MEMBERS = 64
+"""Of an archive; a bound of ours."""
 NEEDED = "an .npz archive of arrays"
 
 KINDS = {"float": np.dtype("<f8"), "integer": np.dtype("<i8")}

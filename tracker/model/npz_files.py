@@ -22,7 +22,9 @@ from tracker.model.skinning import MAX_WEIGHTS
 FORMAT = "handloom-model"
 VERSION = "1"
 MAX_COORDINATE = 100.0
+"""m; a bound of ours."""
 MAX_ANGLE = 8.0
+"""rad; a bound of ours, more than a whole turn."""
 
 
 def save_npz_model(model: ArticulatedModel, path: Path) -> None:

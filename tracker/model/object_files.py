@@ -15,6 +15,7 @@ import trimesh
 from tracker.errors import ModelFileError, reads
 from tracker.model.articulated import ArticulatedModel
 from tracker.model.decimation import decimate_file
+from tracker.model.file_limits import MAX_BYTES, MAX_VERTICES
 from tracker.model.gltf_container import Gltf, read_gltf
 from tracker.model.gltf_files import MAX_NODES, node_to_world
 from tracker.model.object_mesh import clean_mesh
@@ -30,10 +31,10 @@ OBJECT_SUFFIXES: tuple[str, ...] = (".obj", ".ply", ".stl", ".off", ".glb", ".gl
 
 NEEDED = "triangles of one object (a hand comes as .npz, skinned .glb or .gltf, or a T16 .OFF with its other files)"
 
-MAX_BYTES = 256 * 2**20
-MAX_VERTICES = 500_000
 MAX_FILE_FACES = 1_000_000
+"""Of a mesh; a bound of ours."""
 MAX_OBJECT_FACES = 1500
+"""To which a larger mesh is reduced, unless asked otherwise."""
 
 UNITS: tuple[tuple[str, float], ...] = (("metres", 1.0), ("millimetres", 1e-3), ("centimetres", 1e-2))
 """Tried in this order when the unit is not given: 10 to 1500 units across are read as mm, as most files are."""

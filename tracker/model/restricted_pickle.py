@@ -23,6 +23,7 @@ from scipy import sparse
 from tracker.errors import ModelFileError, reading
 
 MAX_FILE_BYTES = 512 * 2**20
+"""A bound of ours."""
 NEEDED = "a pickled dictionary of NumPy arrays, SciPy sparse matrices and chumpy objects, as MANO's and SMPL-H's files"
 KINDS = "fiub"
 """Numbers an array may hold."""

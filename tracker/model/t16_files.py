@@ -16,6 +16,7 @@ from tracker.model.t16_hand import find_hand
 from tracker.model.t16_text import BoneLimits, read_limits, read_motion, read_off, read_skel, read_skin, read_voi
 
 METRES_PER_UNIT = 1e-3
+"""T16's files are in millimetres."""
 
 AXIS_ORDER: tuple[int, ...] = (2, 0, 1)
 """Order in which a bone's axes 1, 2, 3 are multiplied, counted from 0 and from the parent outwards.

@@ -10,11 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.errors import ModelFileError, reading, reads
+from tracker.model.file_limits import MAX_BYTES, MAX_VERTICES
 from tracker.model.skeleton import Array
 
-MAX_TEXT_BYTES = 256 * 2**20
-MAX_VERTICES = 500_000
 MAX_BONES = 256
+"""A bound of ours."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ def read_text(path: Path) -> list[str]:
     """Lines of a text file, gzipped or not, stripped of blanks around them."""
     begin = gzip.open if path.suffix == ".gz" else open
     with reading(ModelFileError, path, "a readable text, gzipped if its name ends so"), begin(path, "rb") as file:
-        data = file.read(MAX_TEXT_BYTES + 1)
-    if len(data) > MAX_TEXT_BYTES:
-        raise ModelFileError(path, f"more than {MAX_TEXT_BYTES} bytes of text", "a smaller file")
+        data = file.read(MAX_BYTES + 1)
+    if len(data) > MAX_BYTES:
+        raise ModelFileError(path, f"more than {MAX_BYTES} bytes of text", "a smaller file")
     return [line.strip() for line in data.decode("utf-8", errors="replace").splitlines()]
 
 

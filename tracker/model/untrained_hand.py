@@ -9,8 +9,6 @@ from tracker.model.blend_files import load_blend_model
 from tracker.model.blend_mirroring import mirror_blend
 from tracker.model.blend_model import BlendModel
 
-DATA = Path(__file__).parent / "data" / "untrained_hand.npz"
-
 
 @cache
 def untrained_hand(side: str = "right") -> BlendModel:
@@ -23,5 +21,5 @@ def untrained_hand(side: str = "right") -> BlendModel:
         side: "right" or "left".
     """
     assert side in ("right", "left"), f"side is {side!r}, not 'right' or 'left'"
-    right = load_blend_model(DATA)
+    right = load_blend_model(Path(__file__).parent / "data" / "untrained_hand.npz")
     return right if side == "right" else mirror_blend(right)

@@ -16,6 +16,7 @@ TRIALS = 300
 """Of three points each: a plane of a third of the cloud is missed in one of 80,000 searches."""
 
 MIN_POINTS = 100
+"""Fewer show no plane."""
 
 
 def find_plane(points: Array, eye: Array, min_points: int = MIN_POINTS) -> StaticPlane | None:

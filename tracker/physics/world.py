@@ -22,6 +22,7 @@ from tracker.physics.protocol import GRAVITY, Protocol
 Array = npt.NDArray[np.float64]
 
 MAX_PLANE_CONTACTS = 12
+"""Corners of the object that touch a plane; more of them say nothing new and cost time."""
 
 BLOCK = 1.0
 """m; half the side of the block that stands for a plane. Nothing falls through it in one step."""

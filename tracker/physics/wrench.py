@@ -11,6 +11,7 @@ from tracker.physics.protocol import PATCH_RADIUS
 Array = npt.NDArray[np.float64]
 
 CONE_EDGES = 8
+"""Of the pyramid that stands for a cone of friction; it encloses the cone, so no grip is refused wrongly."""
 
 
 def build_wrenches(points: Array, inward: Array, friction: float, centroid: Array, radius: float) -> Array:

@@ -18,6 +18,7 @@ from tracker.model.ball import make_ball
 from tracker.model.joints import FINGERS, HAND_JOINTS
 from tracker.model.scene import Scene
 from tracker.synthesis.actor import Actor
+from tracker.synthesis.ball import RADIUS
 from tracker.synthesis.camera_ring import surround
 from tracker.synthesis.motion import stand_hand
 from tracker.synthesis.performance import Performance
@@ -32,7 +33,6 @@ FPS = 50.0
 CENTER = np.array([0.0, 0.0, 0.7])
 """What all cameras look at, world, m; the first stands at the origin."""
 
-BALL_RADIUS = 0.032
 FLESH = 0.025
 """From the ball to the middle of the palm's bones, m."""
 
@@ -67,7 +67,7 @@ def play(
         num_cameras: 1 to 8.
         size: Width and height of the images, px; the view stays as wide as the Carmine's.
     """
-    balls = (make_ball(BALL_RADIUS),) if INTERPLAYS[name][1] else ()
+    balls = (make_ball(RADIUS),) if INTERPLAYS[name][1] else ()
     scene = Scene((models["right"], models["left"], *balls))
     poses = find_poses(scene, name, num_moments)
     Ms = np.array([scene.pose_at(pose).Ms for pose in poses])
@@ -119,7 +119,7 @@ def _pass(scene: Scene, share: float) -> Array:
         roll = 0.5 * side  # about x, so that fingers of both hands find room on the ball
         towards = np.array([0.0, -np.cos(roll), np.sin(roll)])
         faced = np.array([-side, 0.0, 0.0])
-        palm = ball + np.array([side * (BALL_RADIUS + FLESH + 0.11 * away), 0.0, 0.0])
+        palm = ball + np.array([side * (RADIUS + FLESH + 0.11 * away), 0.0, 0.0])
         own = pose[where]
         own[6:] = curl_fingers(model, 0.34 - 0.26 * away)
         own[:6] = se3.log(stand_hand(model, turn @ towards, turn @ faced, CENTER + turn @ (palm + 0.03 * towards)))

@@ -20,7 +20,7 @@ from tracker.capture.camera import Camera
 from tracker.capture.frame_pattern import FramePattern
 from tracker.capture.recorded_camera import RecordedCamera
 from tracker.capture.recorded_object import RecordedObject
-from tracker.capture.sequence import Sequence, load_sequence, save_sequence_json
+from tracker.capture.sequence import TRUTH_FILE, Sequence, load_sequence, save_sequence_json
 from tracker.capture.truth import Truth
 from tracker.errors import SequenceError
 from tracker.model.articulated import ArticulatedModel
@@ -36,7 +36,6 @@ log = logging.getLogger(__name__)
 
 SaveModel = Callable[[ArticulatedModel, Path], None]
 
-TRUTH_FILE = "truth.npz"
 
 DISCS = 3
 """Stream of chance of the discs."""

@@ -21,6 +21,7 @@ CELLS = 32
 """Cells after which the volume of noise repeats."""
 
 OCTAVES = 4
+"""Each twice as coarse as the one before."""
 
 TOWARDS_LIGHT = np.array([0.3, -0.8, -0.52])
 """World; a lamp above and before the first camera's subject."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from tracker.capture.annotations import ABSENT, OCCLUDED, VISIBLE
 from tracker.geometry import se3
 from tracker.rendering.zbuffer import render_depth
 from tracker.synthesis.performance import Moment, Performance
-
-ABSENT, OCCLUDED, VISIBLE = 0, 1, 2
 
 TOLERANCE = 0.003
 """A joint so little behind a surface's far side still counts as inside, m: tips lie on the surface itself."""

@@ -21,6 +21,7 @@ FARTHEST = 100.0
 
 TEXTS = ("scan", "verdict", "side", "subject", "pose_name")
 MAX_BYTES, MAX_VERTICES = 256 * 2**20, 100_000
+"""Of one registration; bounds of ours."""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from tracker.training.train import train_model
 from tracker.training.training_set import TrainingSet
 
 SUBJECTS, POSES = 4, 6
+"""Of a set that is only there to compile the kernels: so small, and yet every stage runs."""
 
 
 def warm_up_training() -> None:

@@ -165,6 +165,6 @@ def test_a_gzipped_text_is_read_and_one_that_swells_is_refused(write, monkeypatc
     for data in (b"no gzip", gzip.compress(b"a" * 99)[:-9]):
         with pytest.raises(ModelFileError, match="gzipped"):
             read_text(write(data, "a.txt.gz"))
-    monkeypatch.setattr(t16_text, "MAX_TEXT_BYTES", 999)
+    monkeypatch.setattr(t16_text, "MAX_BYTES", 999)
     with pytest.raises(ModelFileError, match="more than 999 bytes"):
         read_text(write(gzip.compress(b"a" * 1000), "a.txt.gz"))

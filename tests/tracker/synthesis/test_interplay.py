@@ -8,7 +8,8 @@ import pytest
 from tracker.model.ball import make_ball
 from tracker.model.default_hand import default_hand
 from tracker.model.scene import Scene
-from tracker.synthesis.interplay import BALL_RADIUS, CENTER, find_poses, find_spreading, play
+from tracker.synthesis.ball import RADIUS
+from tracker.synthesis.interplay import CENTER, find_poses, find_spreading, play
 from tracker.terms.penetration import measure_penetration
 
 HANDS = {side: default_hand(side) for side in ("right", "left")}
@@ -17,7 +18,7 @@ MOMENTS = 7
 
 @pytest.fixture(scope="module", params=["crossing", "passing"])
 def posed(request):
-    balls = (make_ball(BALL_RADIUS),) if request.param == "passing" else ()
+    balls = (make_ball(RADIUS),) if request.param == "passing" else ()
     scene = Scene((*HANDS.values(), *balls))
     return [scene.pose_at(pose) for pose in find_poses(scene, request.param, MOMENTS)]
 

@@ -11,14 +11,9 @@ from tracker.capture.import_findings import Findings
 from tracker.capture.import_options import ImportOptions
 from tracker.capture.import_plan import ImportPlan, PlannedCamera
 from tracker.capture.listed_files import ListedFiles
-from tracker.capture.sequence import SEQUENCE_FILE, Sequence, load_sequence
+from tracker.capture.sequence import SEQUENCE_FILE, TRUTH_FILE, Sequence, load_sequence
 from tracker.capture.video_file import VideoFile
 from tracker.errors import TrackerError
-
-TRUTH_FILE = "truth.npz"
-"""What is exactly known of a synthetic recording."""
-
-_WRITTEN_BY_IMPORTS = ("sources.json", "import_report.json")
 
 
 class RecordingFolder:
@@ -32,7 +27,7 @@ class RecordingFolder:
 
     def plan(self, files: ListedFiles, options: ImportOptions) -> ImportPlan:
         sequence = load_sequence(files.root)
-        used: set[str] = {SEQUENCE_FILE, *_WRITTEN_BY_IMPORTS}
+        used: set[str] = {SEQUENCE_FILE, "sources.json", "import_report.json"}
         found = Findings()
         models = [name for item in sequence.objects for name in find_model_files(files, item.model)]
         copies = {name: name for name in (TRUTH_FILE, *models) if name in files.names}

@@ -28,7 +28,6 @@ from tracker.capture.video_file import VIDEO_SUFFIXES, VideoFile
 from tracker.errors import CalibrationError, ImportRefusedError
 
 _DAT = re.compile(r"c([0-9]{1,3})\.dat")
-_TABLES = (".yaml", ".yml", ".json", ".npz")
 TAKES = ("fps", "hands", "allow_gaps", "color_format")
 
 
@@ -182,7 +181,11 @@ def _read_dats(files: ListedFiles) -> tuple[list[VideoCamera], list[str]]:
 
 def _read_tables(files: ListedFiles) -> tuple[list[VideoCamera], list[str]]:
     """OpenCV's files: each with cameras of its own, or all together as in intrinsics.yml and extrinsics.yml."""
-    tables = {n: parse_opencv(_read(files, n), n) for n in files.names if n.lower().endswith(_TABLES)}
+    tables = {
+        n: parse_opencv(_read(files, n), n)
+        for n in files.names
+        if n.lower().endswith((".yaml", ".yml", ".json", ".npz"))
+    }
     found = {name: find_cameras(values, name, PurePosixPath(name).stem) for name, values in tables.items()}
     merged: dict[str, Any] = {}
     for values in tables.values():

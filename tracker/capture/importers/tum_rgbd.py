@@ -24,8 +24,11 @@ from tracker.errors import ImportRefusedError
 
 TAKES = ("intrinsics", "fx", "fy", "cx", "cy", "depth_scale", "fps", "hands", "allow_gaps", "distortion")
 MAX_DIFFERENCE_S = 0.020
+"""Between the times of a colour and a depth image of one frame, s: the default of TUM's `associate.py`."""
 DEPTH_SCALE = 1 / 5000
+"""m per unit of TUM's depth images."""
 MAX_LIST_BYTES = 64 * 1024 * 1024
+"""Of rgb.txt or depth.txt; a bound of ours."""
 
 # fx, fy, cx, cy px and distortion, as the benchmark publishes them for its three cameras and for ROS's default.
 CAMERAS: dict[str, tuple[tuple[float, float, float, float], tuple[float, ...]]] = {

@@ -18,6 +18,7 @@ Array = npt.NDArray[np.float64]
 A_POSE_DEG = 50.0
 """How far the arms hang from the horizontal in the A-pose."""
 MAX_DRAWS = 60
+"""The last is taken even where limbs are in each other."""
 MAX_INSIDE, DEPTH = 6, 4e-3
 """So many vertices of an arm may lie so far (m) inside the rest of the body."""
 

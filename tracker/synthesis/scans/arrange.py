@@ -6,14 +6,13 @@ import numpy as np
 import numpy.typing as npt
 
 from tracker.errors import TrackerError
+from tracker.model.joints import SIDES
 from tracker.synthesis.scans.angles import clip_to_limits, pose_angles, vary
 from tracker.synthesis.scans.pose_list import POSE_NAMES, POSES
 from tracker.synthesis.scans.settle import settle
 from tracker.synthesis.scans.subject import Subject, load_subject
 
 Array = npt.NDArray[np.float64]
-
-SIDES = ("right", "left")
 
 
 def arrange(

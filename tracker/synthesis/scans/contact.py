@@ -25,7 +25,9 @@ ASIDE = 2.0e-3
 """Skin is in front of a vertex that is at most so far beside its normal, m."""
 
 ROUNDS = 6
+"""At most."""
 SMOOTHING = 3
+"""Rounds that spread a push over the skin around it."""
 
 
 def give_way(vertices: Array, rest: Array) -> Array:

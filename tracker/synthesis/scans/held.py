@@ -23,8 +23,11 @@ FARTHEST, GRID = 0.018, 3e-3
 """How far from where it starts places are tried, and their distance, m."""
 
 LEAST_RADIUS = 3e-3
+"""Of what is held, m; where there is less room, nothing is."""
 ROD_HALF_LENGTH = 0.06
+"""m."""
 SEGMENTS = 48
+"""Of a circle."""
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from tracker.model.joints import FINGERS
 Finger = tuple[float, float, float]
 
 TOGETHER = (1.0, 0.0, 1.0, 3.0)
+"""How far index, middle, ring and little finger are spread, degrees, positive towards the thumb."""
 CLOSED = (3.0, 0.0, -3.0, -6.0)
 """Of bent fingers side by side, which come together towards the thumb's base."""
 

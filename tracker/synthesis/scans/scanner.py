@@ -17,6 +17,7 @@ LEAST_COSINE = 0.22
 """Surfaces seen at a flatter angle give no points."""
 
 ELEVATIONS_DEG = (18.0, -12.0, 22.0, -8.0, 14.0)
+"""Of the heads above the middle, in turn."""
 
 
 @dataclass(frozen=True)

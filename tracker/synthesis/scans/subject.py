@@ -19,7 +19,6 @@ from tracker.synthesis.scans.subdivision import subdivide
 Array = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
-DATA = Path(__file__).parent / "data" / "subjects.npz"
 
 TRAIN_SUBJECTS = tuple(range(1, 32))
 TEST_SUBJECTS = tuple(range(32, 38))
@@ -27,6 +26,7 @@ MEAN_SUBJECT = 0
 """The mean adult, who is not scanned: the untrained hand's vertices are tied to its surface."""
 
 MAX_INFLUENCES = 8
+"""Bones that a vertex follows."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ PARENTS: Ints = np.array([-1, 0, 1, 2, *(p for k in range(4) for p in (0, 4 + 4 
 
 @cache
 def _arrays() -> dict[str, npt.NDArray]:
-    with np.load(DATA) as data:
+    with np.load(Path(__file__).parent / "data" / "subjects.npz") as data:
         return {name: data[name] for name in data.files}
 
 

@@ -43,6 +43,7 @@ class Tissue:
 
 
 FULL_BEND = np.radians(95.0)
+"""Flexion that counts as 1, rad."""
 
 
 def bending(angles: Array, drivers: Ints) -> Array:

@@ -26,16 +26,18 @@ def read_regular_file(path: Path, max_bytes: int, error: type[TrackerError]) -> 
         raise error(f"{path}: there is no such file.") from None
     except (OSError, ValueError) as cause:
         raise error(f"{path}: cannot be opened ({getattr(cause, 'strerror', None) or cause}).") from None
-    with os.fdopen(descriptor, "rb") as file:
+    try:
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
             raise error(f"{path}: is not a plain file.")
         if status.st_size > max_bytes:
             raise error(f"{path}: has {status.st_size} bytes; at most {max_bytes} are read.")
-        try:
+        with os.fdopen(descriptor, "rb", closefd=False) as file:  # which refuses a folder by itself
             return file.read(max_bytes)
-        except OSError as cause:
-            raise error(f"{path}: cannot be read ({cause.strerror}).") from None
+    except OSError as cause:
+        raise error(f"{path}: cannot be read ({cause.strerror}).") from None
+    finally:
+        os.close(descriptor)
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ HANDS = st.one_of(st.none(), st.tuples(*[SOURCES] * 21))
 def label(sources: tuple[JointSource | None, ...] | None, placed: int = 21) -> Annotation:
     points = np.zeros((21, 3))
     points[:placed] = [5.0, 6.0, 2.0]
-    return Annotation("cam0", 3, "right", points, sources=sources)
+    return Annotation(3, "cam0", "right", points, sources=sources)
 
 
 @pytest.mark.parametrize("kind", MADE)

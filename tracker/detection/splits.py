@@ -13,9 +13,7 @@ THRESHOLDS = 10
 
 
 @njit(cache=True, nogil=True)
-def find_best_split(
-    channels, corners, widths, is_fingertip, offsets, members, pairs, cuts, by_offset, negative_weight, min_leaf, best
-):
+def find_best_split(patches, members, pairs, cuts, by_offset, negative_weight, min_leaf, best):
     """Try every pair with every threshold on the members; write channel, first, second, threshold into best (4,).
 
     By class the information gain counts, fingertips and others weighted so that both sorts are equally many in the
@@ -23,7 +21,7 @@ def find_best_split(
     whether a test leaves at least `min_leaf` members, as a share of those tried, on both sides.
 
     Args:
-        channels, corners, widths, is_fingertip, offsets: As in `Patches`.
+        patches: channels, corners, widths, is_fingertip and offsets of `Patches`.
         members: (M,) patches of the node.
         pairs: (P, 3) channel, first, second: places in a patch.
         cuts: (P, THRESHOLDS) 0..1, where thresholds lie between the smallest and the largest difference.
@@ -32,6 +30,7 @@ def find_best_split(
         min_leaf: Smallest number of members on each side.
         best: int16 (4,).
     """
+    channels, corners, widths, is_fingertip, offsets = patches
     count = len(members)
     values = np.empty(count, dtype=np.int16)
     bins = np.empty(512, dtype=np.int16)

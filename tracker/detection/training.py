@@ -158,11 +158,7 @@ def _find_test(
     pairs = np.stack([rng.integers(0, limit, count) for limit in (CHANNELS, PATCH * PATCH, PATCH * PATCH)], axis=1)
     best = np.zeros(4, dtype=np.int16)
     found = find_best_split(
-        patches.channels,
-        patches.corners,
-        patches.widths,
-        patches.is_fingertip,
-        patches.offsets,
+        (patches.channels, patches.corners, patches.widths, patches.is_fingertip, patches.offsets),
         np.sort(tried),
         pairs,
         rng.random((count, THRESHOLDS)),

@@ -50,14 +50,10 @@ def vote_into(
     _vote_into(
         density,
         depth_sum,
-        find_leaves(forest, level),
-        level.centers,
-        level.depths,
+        (find_leaves(forest, level), level.centers, level.depths),
+        (forest.probability, forest.votes, forest.pixel_size),
         level.spacing,
         level.spacing * level.depth,
-        forest.probability,
-        forest.votes,
-        forest.pixel_size,
         cell,
         weight,
     )
@@ -82,9 +78,9 @@ def _find_leaves_into(leaves, channels, width, centers, nodes, node_starts, leaf
 
 
 @njit(cache=True, nogil=True)
-def _vote_into(
-    density, depth_sum, leaves, centers, depths, spacing, reach, probability, votes, pixel_size, cell, weight
-):
+def _vote_into(density, depth_sum, patches, forest, spacing, reach, cell, weight):
+    leaves, centers, depths = patches
+    probability, votes, pixel_size = forest
     height, width = density.shape
     for n in range(len(leaves)):
         row, column = (centers[n, 0] + 0.5) * spacing - 0.5, (centers[n, 1] + 0.5) * spacing - 0.5

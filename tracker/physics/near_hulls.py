@@ -48,37 +48,22 @@ class HullPairs:
         if np.isfinite(reach) and near.size:
             _find_into(
                 near,
-                self._still_radii,
-                self._moving_radii,
-                self._vertices,
-                self._vertex_starts,
-                self._planes,
-                self._plane_starts,
-                np.ascontiguousarray(still_Rs),
-                still_centers,
-                np.ascontiguousarray(moving_Rs),
-                moving_centers,
+                (self._still_radii, self._vertices, self._vertex_starts),
+                (self._moving_radii, self._planes, self._plane_starts),
+                (np.ascontiguousarray(still_Rs), still_centers),
+                (np.ascontiguousarray(moving_Rs), moving_centers),
                 reach,
             )
         return near
 
 
 @njit(cache=True, nogil=True)
-def _find_into(
-    near,
-    still_radii,
-    moving_radii,
-    vertices,
-    vertex_starts,
-    planes,
-    plane_starts,
-    Rs,
-    centers,
-    object_Rs,
-    places,
-    reach,
-):
+def _find_into(near, still, moving, still_poses, moving_poses, reach):
     """Two hulls are apart by at least what all vertices of one lie beyond a face of the other."""
+    still_radii, vertices, vertex_starts = still
+    moving_radii, planes, plane_starts = moving
+    Rs, centers = still_poses
+    object_Rs, places = moving_poses
     turned = np.zeros((len(vertices), 3))
     for s in range(len(still_radii)):
         first, last = vertex_starts[s], vertex_starts[s + 1]

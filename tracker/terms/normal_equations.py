@@ -104,8 +104,9 @@ def gather_bones(bones, sums, ids, barycentric, weight_bones, weights, bone_vert
 
 
 @njit(cache=True, nogil=True)
-def add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, nx, ny, nz, residual, weight):
+def add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, normal, residual, weight):
     """Add weight · (residual + n · dx)² for a point gathered by `gather_bones`; wrenches (MAX_BONES, 6) is scratch."""
+    nx, ny, nz = normal
     for place in range(count):
         kappa, x, y, z = sums[place, 0], sums[place, 1], sums[place, 2], sums[place, 3]
         w = wrenches[place]

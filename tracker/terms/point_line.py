@@ -54,10 +54,7 @@ class PointToLine(SurfaceRows):
             self.directions,
             self.moments,
             self.weights,
-            posed.vertices,
-            arrays.weight_bones,
-            arrays.weights,
-            posed.bone_vertices,
+            (posed.vertices, arrays.weight_bones, arrays.weights, posed.bone_vertices),
         )
         equations.count += self.count
 
@@ -84,20 +81,8 @@ def find_slack(points: Array, directions: Array, moments: Array, reach: float) -
 
 
 @njit(cache=True, nogil=True)
-def _add_rows(
-    blocks,
-    gradients,
-    pair_index,
-    ids,
-    barycentric,
-    directions,
-    moments,
-    weights,
-    vertices,
-    weight_bones,
-    skinning,
-    bone_vertices,
-):
+def _add_rows(blocks, gradients, pair_index, ids, barycentric, directions, moments, weights, skinned):
+    vertices, weight_bones, skinning, bone_vertices = skinned
     bones = np.zeros(MAX_BONES, dtype=np.int32)
     sums = np.zeros((MAX_BONES, 4))
     wrenches = np.zeros((MAX_BONES, 6))
@@ -130,6 +115,6 @@ def _add_rows(
         weight = weights[row] * MILLIMETRES * MILLIMETRES
         cost += weight * (first * first + second * second)
         count = gather_bones(bones, sums, ids[row], barycentric[row], weight_bones, skinning, bone_vertices)
-        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, nx, ny, nz, first, weight)
-        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, ox, oy, oz, second, weight)
+        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, (nx, ny, nz), first, weight)
+        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, (ox, oy, oz), second, weight)
     return cost

@@ -49,10 +49,7 @@ class PointToPlane(SurfaceRows):
             self.targets,
             self.normals,
             self.weights,
-            posed.vertices,
-            arrays.weight_bones,
-            arrays.weights,
-            posed.bone_vertices,
+            (posed.vertices, arrays.weight_bones, arrays.weights, posed.bone_vertices),
         )
         equations.count += self.count
 
@@ -61,20 +58,8 @@ class PointToPlane(SurfaceRows):
 
 
 @njit(cache=True, nogil=True)
-def _add_rows(
-    blocks,
-    gradients,
-    pair_index,
-    ids,
-    barycentric,
-    targets,
-    normals,
-    weights,
-    vertices,
-    weight_bones,
-    skinning,
-    bone_vertices,
-):
+def _add_rows(blocks, gradients, pair_index, ids, barycentric, targets, normals, weights, skinned):
+    vertices, weight_bones, skinning, bone_vertices = skinned
     bones = np.zeros(MAX_BONES, dtype=np.int32)
     sums = np.zeros((MAX_BONES, 4))
     wrenches = np.zeros((MAX_BONES, 6))
@@ -91,5 +76,5 @@ def _add_rows(
         weight = weights[row] * MILLIMETRES * MILLIMETRES
         cost += weight * residual * residual
         count = gather_bones(bones, sums, ids[row], barycentric[row], weight_bones, skinning, bone_vertices)
-        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, nx, ny, nz, residual, weight)
+        add_row(blocks, gradients, pair_index, bones, sums, count, wrenches, (nx, ny, nz), residual, weight)
     return cost

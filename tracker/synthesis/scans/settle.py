@@ -11,6 +11,7 @@ import numpy.typing as npt
 from numba import njit
 from scipy.spatial import KDTree
 
+from tracker.model.hand_parts import FINGER_SEGMENTS
 from tracker.model.joints import FINGERS
 from tracker.synthesis.scans.bones import pose_bones
 from tracker.synthesis.scans.deform import rolling
@@ -29,10 +30,12 @@ DEVIATIONS = {"flexion": np.radians(7.0), "abduction": np.radians(7.0), "twist":
 """How far joints give way, standard deviations."""
 
 THUMB_DEVIATION = np.radians(9.0)
+"""That of every joint of the thumb, rad."""
 THUMB = (1, 2, 3)
+"""Its bones, as in `BONES`."""
 ITERATIONS = 14
+"""At most."""
 
-SEGMENTS = ("metacarpal", "proximal", "middle", "distal")
 
 PAD_SHARE = 0.62
 """Where along a distal phalanx the middle of the fingertip's pad is."""
@@ -115,7 +118,9 @@ def _may_meet(first: int, second: int) -> bool:
 def _are_neighbours(bones: Ints) -> npt.NDArray[np.bool_]:
     """(P,) which pairs of bones (P, 2) are the same phalanx of fingers side by side, whose flanks are soft."""
     fingers = np.array([FINGERS.index(name.split("_")[0]) if name != "wrist" else -9 for name in BONES])
-    segments = np.array([len(BONES) if name == "wrist" else SEGMENTS.index(name.split("_")[1]) for name in BONES])
+    segments = np.array(
+        [len(BONES) if name == "wrist" else FINGER_SEGMENTS.index(name.split("_")[1]) for name in BONES]
+    )
     a, b = bones.T
     side_by_side = (np.abs(fingers[a] - fingers[b]) == 1) & (np.minimum(fingers[a], fingers[b]) > 0)
     return np.asarray(side_by_side & (segments[a] == segments[b]), dtype=np.bool_)
@@ -159,30 +164,22 @@ def _solve(
         rolling(subject.number),
     )
     inside = (balls.centers, balls.radii, balls.bones, balls.pairs[is_used], balls.slack[is_used])
-    return _settle(angles, deviations, lower, upper, *skeleton, *inside, touching, STIFFNESS, ITERATIONS)
+    prior = (angles, deviations, lower, upper)
+    return _settle(prior, skeleton, inside, touching, STIFFNESS, ITERATIONS)
 
 
 @njit(cache=True, nogil=True)
 def _settle(
-    wanted: Array,
-    deviations: Array,
-    lower: Array,
-    upper: Array,
-    dof_bones: Ints,
-    is_abduction: npt.NDArray[np.bool_],
-    axes: Array,
-    joints: Array,
-    parents: Ints,
-    rolls: Array,
-    centers: Array,
-    radii: Array,
-    bones: Ints,
-    pairs: Ints,
-    slack: Array,
+    prior: tuple[Array, Array, Array, Array],
+    skeleton: tuple[Ints, npt.NDArray[np.bool_], Array, Array, Ints, Array],
+    balls: tuple[Array, Array, Ints, Ints, Array],
     touching: Ints,
     stiffness: float,
     iterations: int,
 ) -> Array:
+    wanted, deviations, lower, upper = prior
+    dof_bones, is_abduction, axes, joints, parents, rolls = skeleton
+    centers, radii, bones, pairs, slack = balls
     count = len(wanted)
     Ts = np.empty((len(joints), 3, 4))
     placed = np.empty_like(centers)

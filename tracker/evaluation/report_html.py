@@ -110,21 +110,16 @@ def _difference_cells(paired: Document) -> list[str]:
     ]
 
 
-DIFFERENCE_HEAD = (
-    *("Mean", "Reference", "Difference", "95 % interval", "Nearer in", "Joints", "Frames"),
-    "Verdict",
-)
-
-
 def _paired(document: Document, names: Mapping[str, str]) -> str:
     found = [track for track in document["tracks"] if track["paired"] is not None]
     if not found:
         return ""
     rows = [write_row(names[track["key"]], _difference_cells(track["paired"])) for track in found]
     reference = names[document["reference"]]
+    head = ["Track", "Mean", "Reference", "Difference", "95 % interval", "Nearer in", "Joints", "Frames", "Verdict"]
     return (
         f"<h2>Against {escape(reference)}</h2><p class=quiet>Over the joints and frames that both have; below zero is "
-        "better. The interval is a bootstrap over frames.</p>" + write_table(["Track", *DIFFERENCE_HEAD], rows)
+        "better. The interval is a bootstrap over frames.</p>" + write_table(head, rows)
     )
 
 

@@ -32,8 +32,7 @@ COARSE = (
 )
 """What is fitted first; the rest says too little in depth while these are wrong."""
 
-MARK_ALONG = {"wrist": 0.012, "thumb_cmc": 0.006, "tip": 0.0015, "": 0.003}
-MARK_ACROSS = {"wrist": 0.004, "thumb_cmc": 0.005, "tip": 0.0015, "": 0.002}
+MARK_DEVIATIONS = {"wrist": (0.012, 0.004), "thumb_cmc": (0.006, 0.005), "tip": (0.0015, 0.0015), "": (0.003, 0.002)}
 """How far from the model's joint a lab may put its own, along the bone and square to it, standard deviation, m: where a
 finger ends there is no doubt, where a forearm does there is."""
 
@@ -173,14 +172,14 @@ def _directions(model: ArticulatedModel, is_marked: bool) -> HandDirections | No
         return None
     parts = [HandDirections.of_shape(model), local_directions(model)]
     if is_marked:
-        along, across = (_deviations(table) for table in (MARK_ALONG, MARK_ACROSS))
-        parts.append(mark_directions(model, along, across))
+        parts.append(mark_directions(model, *_mark_deviations()))
     return HandDirections.join(parts)
 
 
-def _deviations(table: dict[str, float]) -> Array:
-    """(21,) of a table with the joint's name, or "tip", or "" for any other."""
-    return np.array([table.get(joint, table["tip" if joint.endswith("tip") else ""]) for joint in HAND_JOINTS])
+def _mark_deviations() -> Array:
+    """(2, 21) along and across, of `MARK_DEVIATIONS` by the joint's name, or "tip", or "" for any other."""
+    usual = {joint: MARK_DEVIATIONS["tip" if joint.endswith("tip") else ""] for joint in HAND_JOINTS}
+    return np.array([MARK_DEVIATIONS.get(joint, usual[joint]) for joint in HAND_JOINTS]).T.copy()
 
 
 def _shaped(scene: Scene, own: tuple[HandDirections | None, ...], directions: SceneDirections, values: Array) -> Scene:

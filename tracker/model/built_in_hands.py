@@ -33,12 +33,12 @@ def _load_trained(side: str) -> BlendModel:
     return trained_hand(side)
 
 
-_TRAINED = BuiltInHand(
-    "trained",
-    "The hand learnt from scans of generated people",
-    "Trained right hand (generated people)",
-    _load_trained,
-)
-
-BUILT_IN_HANDS = {hand.name: hand for hand in (_TRAINED,)}
+BUILT_IN_HANDS = {
+    "trained": BuiltInHand(
+        "trained",
+        "The hand learnt from scans of generated people",
+        "Trained right hand (generated people)",
+        _load_trained,
+    )
+}
 """By name. Commands, forms, jobs and the list of models offer each of them."""

@@ -17,40 +17,46 @@ from tracker.model.skeleton import Array
 
 Limits = dict[str, tuple[float, float]]
 
-FLEXION_DEG: dict[str, dict[str, tuple[float, float]]] = {
-    "thumb": {"metacarpal": (-25.0, 40.0), "proximal": (-15.0, 60.0), "distal": (-25.0, 85.0)},
-    "index": {"proximal": (-30.0, 95.0), "middle": (-10.0, 112.0), "distal": (-15.0, 85.0)},
-    "middle": {"proximal": (-30.0, 95.0), "middle": (-10.0, 112.0), "distal": (-15.0, 85.0)},
-    "ring": {"metacarpal": (-5.0, 10.0), "proximal": (-30.0, 95.0), "middle": (-10.0, 112.0), "distal": (-15.0, 85.0)},
-    "little": {
-        "metacarpal": (-5.0, 15.0),
-        "proximal": (-35.0, 95.0),
-        "middle": (-12.0, 112.0),
-        "distal": (-15.0, 85.0),
+LIMITS_DEG: dict[str, dict[str, dict[str, tuple[float, float]]]] = {
+    "flexion": {
+        "thumb": {"metacarpal": (-25.0, 40.0), "proximal": (-15.0, 60.0), "distal": (-25.0, 85.0)},
+        "index": {"proximal": (-30.0, 95.0), "middle": (-10.0, 112.0), "distal": (-15.0, 85.0)},
+        "middle": {"proximal": (-30.0, 95.0), "middle": (-10.0, 112.0), "distal": (-15.0, 85.0)},
+        "ring": {
+            "metacarpal": (-5.0, 10.0),
+            "proximal": (-30.0, 95.0),
+            "middle": (-10.0, 112.0),
+            "distal": (-15.0, 85.0),
+        },
+        "little": {
+            "metacarpal": (-5.0, 15.0),
+            "proximal": (-35.0, 95.0),
+            "middle": (-12.0, 112.0),
+            "distal": (-15.0, 85.0),
+        },
+    },
+    "abduction": {
+        "thumb": {"metacarpal": (-40.0, 22.0), "proximal": (-15.0, 15.0)},
+        "index": {"proximal": (-14.0, 30.0)},
+        "middle": {"proximal": (-22.0, 18.0)},
+        "ring": {"metacarpal": (-2.0, 2.0), "proximal": (-32.0, 12.0)},
+        "little": {"metacarpal": (-4.0, 4.0), "proximal": (-50.0, 10.0)},
+    },
+    "twist": {
+        "thumb": {"metacarpal": (-25.0, 25.0)},
+        "index": {"proximal": (-6.0, 6.0)},
+        "middle": {"proximal": (-6.0, 6.0)},
+        "ring": {"proximal": (-6.0, 6.0)},
+        "little": {"metacarpal": (-5.0, 5.0), "proximal": (-6.0, 6.0)},
     },
 }
-"""Flexion from the straight finger; of the metacarpals, and of the thumb's two first bones, from the rest pose."""
+"""How far each bone turns. Flexion counts from the straight finger, abduction of the four fingers' first phalanges from
+the line wrist to middle knuckle; all of twist and of `FROM_REST`, and the other abductions, from the rest pose."""
 
 FROM_REST: frozenset[tuple[str, str]] = frozenset(
     {("thumb", "metacarpal"), ("thumb", "proximal"), ("ring", "metacarpal"), ("little", "metacarpal")}
 )
-
-ABDUCTION_DEG: dict[str, dict[str, tuple[float, float]]] = {
-    "thumb": {"metacarpal": (-40.0, 22.0), "proximal": (-15.0, 15.0)},
-    "index": {"proximal": (-14.0, 30.0)},
-    "middle": {"proximal": (-22.0, 18.0)},
-    "ring": {"metacarpal": (-2.0, 2.0), "proximal": (-32.0, 12.0)},
-    "little": {"metacarpal": (-4.0, 4.0), "proximal": (-50.0, 10.0)},
-}
-"""Of the four fingers' first phalanges from the line wrist to middle knuckle, of other bones from the rest pose."""
-
-TWIST_DEG: dict[str, dict[str, tuple[float, float]]] = {
-    "thumb": {"metacarpal": (-25.0, 25.0)},
-    "index": {"proximal": (-6.0, 6.0)},
-    "middle": {"proximal": (-6.0, 6.0)},
-    "ring": {"proximal": (-6.0, 6.0)},
-    "little": {"metacarpal": (-5.0, 5.0), "proximal": (-6.0, 6.0)},
-}
+"""Bones whose flexion counts from the rest pose."""
 
 MARGIN_DEG = 4.0
 """The rest pose is at least so far from a limit of flexion or abduction that is not counted from it."""
@@ -125,8 +131,7 @@ def derive_hand_joints(chains: HandChains) -> tuple[HandJoint, ...]:
     for finger in FINGERS:
         for number, segment in enumerate(chains.segments(finger)):
             axes = find_bone_axes(chains, finger, number)
-            tables = {"flexion": FLEXION_DEG, "abduction": ABDUCTION_DEG, "twist": TWIST_DEG}
-            for motion, table in tables.items():
+            for motion, table in LIMITS_DEG.items():
                 if segment in table.get(finger, {}):
                     lower, upper = table[finger][segment]
                     rest = _rest_angle(chains, finger, number, motion, axes[motion])

@@ -26,11 +26,9 @@ GIVE = 0.8e-3
 STIFFNESS = 0.25e-3
 """An overlap of this, m, costs as much as one joint one standard deviation from the pose that is wanted."""
 
-DEVIATIONS = {"flexion": np.radians(7.0), "abduction": np.radians(7.0), "twist": np.radians(2.0)}
-"""How far joints give way, standard deviations."""
+DEVIATIONS_DEG = {"flexion": 7.0, "abduction": 7.0, "twist": 2.0, "metacarpal": 1.5, "thumb": 9.0}
+"""How far joints give way, standard deviations: by motion, but of the fingers' metacarpals and the thumb's bones."""
 
-THUMB_DEVIATION = np.radians(9.0)
-"""That of every joint of the thumb, rad."""
 THUMB = (1, 2, 3)
 """Its bones, as in `BONES`."""
 ITERATIONS = 14
@@ -133,13 +131,12 @@ def settle(subject: Subject, angles: Array, touches: tuple[tuple[str, str], ...]
     four fingers first, then the thumb, to which only fingers that it should meet with their tips make way.
     """
     balls = load_balls(subject.number)
-    is_thumb = np.array([dof.finger == "thumb" for dof in subject.dofs])
     has_thumb = np.asarray(np.isin(balls.bones[balls.pairs], THUMB).any(axis=1))
     meeting = {bone.split("_")[0] for pair in touches for bone in pair if bone.endswith("_distal")}
     stiff = np.array([0.35 if dof.finger != "thumb" and dof.finger not in meeting else 1.0 for dof in subject.dofs])
-    deviations = np.array([DEVIATIONS[dof.motion] for dof in subject.dofs])
-    deviations[[dof.finger != "thumb" and dof.segment == "metacarpal" for dof in subject.dofs]] = np.radians(1.5)
-    deviations[is_thumb] = THUMB_DEVIATION
+    kinds = [dof.segment if dof.segment == "metacarpal" else dof.motion for dof in subject.dofs]
+    kinds = ["thumb" if dof.finger == "thumb" else kind for dof, kind in zip(subject.dofs, kinds, strict=True)]
+    deviations = np.array([np.radians(DEVIATIONS_DEG[kind]) for kind in kinds])
     touching = np.array([(balls.pads[a], balls.pads[b]) for a, b in touches], dtype=np.int64).reshape(-1, 2)
     fingers = _solve(subject, angles, deviations, balls, np.logical_not(has_thumb), touching[:0])
     return _solve(subject, fingers, deviations * stiff, balls, np.ones_like(has_thumb), touching)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from uuid import UUID
 
-from dbos import DBOS, SetWorkflowID, WorkflowHandle
-from dbos._error import DBOSAwaitedWorkflowCancelledError, DBOSAwaitedWorkflowMaxRecoveryAttemptsExceeded
+from dbos import DBOS, SetWorkflowID, WorkflowHandle, error
 
 from server.errors import StudioError
 from server.jobs.moving_run import MovingRun
@@ -56,9 +55,9 @@ def _wait(chunk: WorkflowHandle[str]) -> None:
     """Until a chunk is done; ends as its job does where it is not."""
     try:
         outcome = chunk.get_result(polling_interval_sec=0.25)
-    except DBOSAwaitedWorkflowCancelledError:
+    except error.DBOSAwaitedWorkflowCancelledError:
         raise JobStoppedError("The job was cancelled.") from None
-    except DBOSAwaitedWorkflowMaxRecoveryAttemptsExceeded:
+    except error.DBOSAwaitedWorkflowMaxRecoveryAttemptsExceeded:
         raise StudioError(
             f"Workers ended {MAX_RESTARTS + 1} times while they did the same chunk of frames, by a crash or for want "
             "of memory. The log of the worker says more; `resume` tries once again."

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from tracker.cli.command import add_json, run_guarded
 from tracker.cli.progress import ProgressLine
-from tracker.detection.forest import WHATS
 from tracker.errors import TrackerError
 
 if TYPE_CHECKING:
@@ -20,6 +19,8 @@ if TYPE_CHECKING:
     from tracker.detection.annotated_images import AnnotatedImage
     from tracker.detection.sampling import PatchOptions
 
+WHATS = ("fingertips", "nails")
+"""As `tracker.detection.forest` has them, which takes long to load."""
 
 NAIL_BOX = 0.016
 """m, side of the box around a nail, which is 13 mm long at most."""

@@ -64,33 +64,32 @@ def place_stiffly(
     Rs, ts = np.ascontiguousarray(Rs), np.ascontiguousarray(ts)
     sizes, costs = np.ones(len(Rs)), np.zeros(len(Rs))
     Rs, ts = Rs.copy(), ts.copy()
+    grid = hand.grid
     _place_into(
-        Rs,
-        ts,
-        sizes,
-        costs,
-        hand.grid.points,
-        hand.grid.normals,
-        hand.grid.nearest,
-        hand.grid.origin,
-        hand.is_rim,
-        hand.chosen,
-        scan.points,
-        scan.normals,
-        scan.nearest,
-        scan.origin,
-        few,
-        few_normals,
+        (Rs, ts, sizes, costs),
+        (grid.points, grid.normals, grid.nearest, grid.origin, hand.is_rim, hand.chosen),
+        (scan.points, scan.normals, scan.nearest, scan.origin),
+        (few, few_normals),
         np.array(SIGMAS),
     )
     return [Placing(R, t, float(size), float(cost)) for R, t, size, cost in zip(Rs, ts, sizes, costs, strict=True)]
 
 
 @njit(cache=True, nogil=True)
-def _place_into(
-    Rs, ts, sizes, costs, vertices, normals, nearest, origin, is_rim, chosen,
-    points, point_normals, scan_nearest, scan_origin, few, few_normals, sigmas,
-):  # fmt: skip
+def _place_into(placings, hand, scan, asking, sigmas):
+    """Improve placings in place.
+
+    Args:
+        placings: Rs (C, 3, 3), ts (C, 3) and sizes (C,) in and out, costs (C,) out.
+        hand: points, normals, nearest and origin of its grid, which vertices are on the rim, those that ask.
+        scan: points, normals, nearest and origin of its grid.
+        asking: points (N, 3) of the scan that look for the hand, and their normals.
+        sigmas: Scales of the steps, m.
+    """
+    Rs, ts, sizes, costs = placings
+    vertices, normals, nearest, origin, is_rim, chosen = hand
+    points, point_normals, scan_nearest, scan_origin = scan
+    few, few_normals = asking
     A, b, row = np.zeros((7, 7)), np.zeros(7), np.zeros(7)
     for c in range(len(Rs)):
         R, t, size = Rs[c], ts[c], sizes[c]

@@ -89,26 +89,13 @@ class SurfaceSearch:
         )
         face_normals = np.empty((len(self.faces), 3))
         find_face_normals(face_normals, vertices, self.faces)
+        tree = self._tree
         _match_into(
-            found.faces,
-            found.weights,
-            found.directions,
-            found.offsets,
-            found.heights,
-            found.on_rim,
-            points,
-            normals,
-            vertices,
-            self.faces,
-            face_normals,
-            find_bulges(vertices, self.faces),
-            fitted.node_boxes,
-            self._tree.order,
-            self._tree.starts,
-            self._tree.ends,
-            self._tree.skip,
-            self.is_rim_edge,
-            self.is_rim_vertex,
+            (found.faces, found.weights, found.directions, found.offsets, found.heights, found.on_rim),
+            (points, normals),
+            (vertices, self.faces, face_normals, find_bulges(vertices, self.faces)),
+            (fitted.node_boxes, tree.order, tree.starts, tree.ends, tree.skip),
+            (self.is_rim_edge, self.is_rim_vertex),
             reach,
         )
         return found
@@ -147,11 +134,22 @@ def _box_distance(boxes, n, x, y, z):
 
 
 @njit(cache=True, nogil=True)
-def _match_into(
-    found, weights, directions, offsets, heights, on_rim,
-    points, normals, vertices, faces, face_normals, bulges, boxes, order, starts, ends, skip, rim_edges, rim_vertices,
-    reach,
-):  # fmt: skip
+def _match_into(matches, asked, mesh, tree, rim, reach):
+    """Write the matches.
+
+    Args:
+        matches: Arrays of `Matches`, out; faces come with the triangles to begin with, or -1.
+        asked: points (N, 3) and normals (N, 3).
+        mesh: vertices (V, 3), faces (F, 3), face normals (F, 3) and bulges of `find_bulges`.
+        tree: boxes, order, starts, ends and skip of a fitted triangle tree.
+        rim: Edges (F, 3) and vertices (V,) on the rim.
+        reach: m.
+    """
+    found, weights, directions, offsets, heights, on_rim = matches
+    points, normals = asked
+    vertices, faces, face_normals, bulges = mesh
+    boxes, order, starts, ends, skip = tree
+    rim_edges, rim_vertices = rim
     stack = np.empty(128, dtype=np.int32)
     near = np.empty(128)
     for p in range(len(points)):

@@ -286,7 +286,8 @@ def update_running(session: Session, job_id: UUID, attempt: int, worker_id: UUID
 
 
 def append_log(session: Session, job_id: UUID, level: str, text: str) -> None:
-    """Add a line; its number is one more than the last."""
+    """Add a line; its number is one more than the last, whoever else adds one to the same job."""
+    session.execute(select(JobRow.id).where(JobRow.id == job_id).with_for_update(key_share=True))
     last = session.scalar(select(func.max(JobLogRow.number)).where(JobLogRow.job_id == job_id)) or 0
     session.add(JobLogRow(job_id=job_id, number=last + 1, level=level, text=text))
     session.flush()

@@ -105,3 +105,13 @@ def test_what_opens_over_a_page_has_no_serious_fault(looked_at, page, name, key,
     page.locator(sign).first.wait_for()
     page.wait_for_timeout(100)
     assert find_faults_dark_and_light(page) == []
+
+
+def test_who_asked_for_less_motion_sees_other_colours_at_once(looked_at, page):
+    page.goto(f"/recordings/{looked_at}/annotate")
+    page.locator("[data-testid=suggested-by] kbd").first.wait_for()
+    page.keyboard.press("F1")
+    page.locator("[role=dialog]").first.wait_for()
+    moving = f"""() => {{ ({SHOW_LIGHT})(); return new Promise((seen) => new MutationObserver(() => requestAnimationFrame(() =>
+      seen(document.getAnimations().filter((each) => each instanceof CSSTransition).map((each) => each.effect.target.outerHTML.slice(0, 200) + each.transitionProperty)))).observe(document.documentElement, {{ attributeFilter: ["data-mantine-color-scheme"] }})) }}"""
+    assert page.evaluate(moving) == []

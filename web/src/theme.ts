@@ -24,6 +24,7 @@ export const theme = createTheme({
   primaryColor: "teal",
   primaryShade: { light: 7, dark: 7 },
   focusRing: "auto",
+  respectReducedMotion: true,
   cursorType: "pointer",
   components: {
     Tooltip: { defaultProps: { withArrow: true, openDelay: 350, fz: "xs", zIndex: 400 } },

@@ -24,9 +24,9 @@ def claim(database: Database, job_id: uuid.UUID, attempt: int, worker: uuid.UUID
         return service.claim_job(session, job_id, attempt, worker) is not None
 
 
-def act(database: Database, function, job_id: uuid.UUID) -> JobRow:
+def act(database: Database, function, job_id: uuid.UUID, *arguments: str) -> JobRow:
     with database.writing() as session:
-        return function(session, job_id)
+        return function(session, job_id, *arguments)
 
 
 def publish(database: Database, job_id: uuid.UUID, attempt: int, worker: uuid.UUID) -> bool:
@@ -90,6 +90,16 @@ def test_of_many_who_resume_at_once_one_succeeds(database, sequence_id) -> None:
         assert sum(pool.map(resume, range(6))) == 1
     with database.reading() as session:
         assert service.get_job(session, job_id).attempt == 2
+
+
+def test_workers_who_log_about_one_job_at_once_number_its_lines_without_a_gap(database, sequence_id) -> None:
+    job_id = queue_job(database, sequence_id)
+    with ThreadPoolExecutor(6) as pool:
+        list(pool.map(lambda line: act(database, service.append_log, job_id, "info", f"line {line}"), range(60)))
+    with database.reading() as session:
+        lines = service.read_log(session, job_id, 0)
+    assert [line.number for line in lines] == list(range(1, 62))
+    assert {line.text for line in lines} == {"queued"} | {f"line {line}" for line in range(60)}
 
 
 def test_crashes_count_until_a_chunk_is_done(database, sequence_id) -> None:

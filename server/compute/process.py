@@ -113,10 +113,10 @@ class _Running:
             shutil.rmtree(folder, ignore_errors=True)
             raise
 
-    def end(self, *, is_hung: bool = False) -> None:
-        if is_hung:  # it would not hear that it is to end
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(self.pid, signal.SIGKILL)
+    def end(self) -> None:
+        """Also when it stands still, and would not hear that it is to end."""
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(self.pid, signal.SIGKILL)
         self.lifeline.close()
         self.manager.shutdown()
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -145,7 +145,7 @@ class ComputeProcess:
             running = None
             try:
                 running = self._get()
-                with _Limit(limit_seconds, partial(self._drop, running, is_hung=True)) as limit:
+                with _Limit(limit_seconds, partial(self._drop, running)) as limit:
                     answer = running.answerer.answer(work, arguments)
             except (EOFError, ConnectionError, FileNotFoundError) as error:  # of the connection: `work` raises below
                 if not self._is_closed:
@@ -182,12 +182,12 @@ class ComputeProcess:
                 self._running = _Running.start(self._settings)
             return self._running
 
-    def _drop(self, running: _Running | None, *, is_hung: bool = False) -> None:
+    def _drop(self, running: _Running | None) -> None:
         with self._lock:
             if running is None or self._running is not running:
                 return
             self._running = None
-            running.end(is_hung=is_hung)
+            running.end()
 
 
 class _Limit:

@@ -195,14 +195,27 @@ def test_a_question_that_takes_too_long_is_ended_with_the_time_that_it_had(sqlit
         assert process.ask(work.tell_process, ())[0] != first
 
 
+def stop(pid):
+    """Make a process stand still; back when it does."""
+    os.kill(pid, signal.SIGSTOP)
+    os.waitid(os.P_PID, pid, os.WSTOPPED)
+
+
 def test_a_process_that_stands_still_is_ended_too(sqlite_settings):
     with contextlib.closing(ComputeProcess(sqlite_settings)) as process:
         first, _ = process.ask(work.tell_process, ())
-        os.kill(first, signal.SIGSTOP)
+        stop(first)
         with pytest.raises(ComputeTooLongError):
             process.ask(work.tell_process, (), limit_seconds=1.0)
         wait_until(lambda: not is_alive(first))
         assert process.ask(work.tell_process, ())[0] != first
+
+
+def test_the_studio_stops_though_the_process_stands_still(sqlite_settings):
+    with contextlib.closing(ComputeProcess(sqlite_settings)) as process:
+        first, _ = process.ask(work.tell_process, ())
+        stop(first)
+    wait_until(lambda: not is_alive(first))
 
 
 def test_what_else_it_was_at_is_computed_in_the_next_one(sqlite_settings, tmp_path):

@@ -12,6 +12,7 @@ from tracker.model.untrained_hand import untrained_hand
 from tracker.registration.register import Registrar
 
 
+@pytest.mark.slow
 @pytest.mark.shared_data
 def test_a_flat_hand_of_the_other_side_is_told_if_turning_it_over_takes_many_steps(shared_data: Path):
     registrar = Registrar(untrained_hand())

@@ -34,11 +34,13 @@ def recording(tmp_path_factory) -> Path:
     return out
 
 
+@pytest.mark.slow
 def test_a_recording_is_tracked_and_its_track_read(recording, tmp_path):
     assert "8 frames in" in run("01_track_a_recording.py", recording, tmp_path / "track")
     assert "8 frames, 0 lost" in run("03_read_a_track.py", tmp_path / "track")
 
 
+@pytest.mark.slow
 def test_a_rendered_hand_is_tracked_and_compared_with_the_truth():
     assert "lost frames: 0" in run("02_render_a_twin.py")
 
@@ -71,6 +73,7 @@ def studio(recording, tmp_path_factory) -> Iterator[str]:
         process.wait(30)
 
 
+@pytest.mark.slow
 def test_a_studio_is_driven_by_scripts(studio, tmp_path):
     said = run("04_track_in_a_studio.py", studio, tmp_path)
     assert "8 frames in" in said

@@ -19,6 +19,7 @@ def files(*names: str) -> list[dict[str, object]]:
     return [{"name": name, "mimeType": "video/x-msvideo", "buffer": films[name]} for name in names]
 
 
+@pytest.mark.slow
 def test_a_board_is_chosen_films_are_sent_checked_and_calibrated_and_a_recording_takes_the_cameras(
     studio, open_page, screenshots
 ):

@@ -374,6 +374,7 @@ def test_each_picture_takes_gestures_by_itself_once_it_is_there(studio, recordin
     assert marked == [[160, 110]], "the click on the picture of frame 0 left nothing"
 
 
+@pytest.mark.slow
 def test_a_track_in_all_cameras_shows_every_picture_and_how_well_each_camera_agrees(
     studio, recording, open_page, screenshots
 ):

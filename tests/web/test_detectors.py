@@ -13,6 +13,7 @@ from tracker.detection.default_detector import DATA as DETECTOR
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(600)]
 
 
+@pytest.mark.slow
 def test_a_detector_is_added_chosen_for_a_job_and_told_by_its_track(
     studio, synthesized, open_page, screenshots, tmp_path
 ):

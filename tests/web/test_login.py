@@ -316,6 +316,7 @@ def test_a_page_of_the_person_before_cannot_write_as_the_next(
     assert [item["author"] for item in lab.annotations() if item["frame"] == 5] == ["Anna"]
 
 
+@pytest.mark.slow
 def test_saved_is_said_when_nothing_waits_and_not_before(
     lab: Lab, open_lab: OpenLab, synthesized: Synthesized, screenshots: Screenshots
 ) -> None:

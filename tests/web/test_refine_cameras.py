@@ -80,6 +80,7 @@ def test_a_proposal_is_left_and_the_cameras_stay(studio, knocked, open_page, scr
     assert find_places(studio, knocked) == before
 
 
+@pytest.mark.slow
 def test_labels_that_are_too_few_are_told_in_a_sentence(recording, studio, knocked, open_page):
     from playwright.sync_api import expect
 

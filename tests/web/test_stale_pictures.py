@@ -207,6 +207,7 @@ def test_marks_are_drawn_on_the_picture_they_belong_to_and_a_drag_ends_where_it_
     assert places(only)[:2] == [[420, 120, 2], [0, 0, 0]]
 
 
+@pytest.mark.slow
 def test_without_a_network_each_picture_is_asked_for_seldom_and_comes_by_itself_once_it_is_back(
     studio, recording, open_page, picture_of, screenshots
 ):

@@ -96,6 +96,7 @@ def project(join, recording):
     return lead, made
 
 
+@pytest.mark.slow
 def test_work_is_given_done_submitted_returned_and_accepted(
     join, open_as, recording, project, picture_of, screenshots
 ) -> None:

@@ -219,6 +219,7 @@ def test_a_track_from_before_iterations_were_kept_says_so(studio, track, open_pa
         path.write_bytes(whole)
 
 
+@pytest.mark.slow
 def test_a_track_can_be_had_in_all_four_forms(studio, track, open_page):
     from playwright.sync_api import expect
 

@@ -124,6 +124,7 @@ def take_into_import(client: TestClient, calibration: str, import_id: str) -> No
     assert late.status_code == 409
 
 
+@pytest.mark.slow
 def test_a_wrong_board_fails_in_words_and_the_right_one_is_found_in_the_same_films(
     bench: ScanBench, client: TestClient
 ) -> None:
@@ -144,6 +145,7 @@ def test_a_wrong_board_fails_in_words_and_the_right_one_is_found_in_the_same_fil
     assert client.get(place).json()["result"]["residual_px"]["left_out"]["rms"] < 0.6
 
 
+@pytest.mark.slow
 def test_a_cancelled_job_goes_on_with_the_corners_it_has(bench: ScanBench, client: TestClient) -> None:
     calibration = send(client, render_films())
     job_id = start(client, calibration)

@@ -14,6 +14,8 @@ import pytest
 from tests.server.cli.test_cli import ROOT
 from tracker import load_track
 
+pytestmark = pytest.mark.slow
+
 REASON = "The physics term (P) needs pybullet, which is not installed for this Python"
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sqlalchemy import select
@@ -159,6 +160,7 @@ def test_a_job_that_could_not_use_the_detector_is_not_queued(studio: Studio, add
     assert studio.client.post(f"{API}/jobs", json=body).json()["params"]["detector_id"] == depth
 
 
+@pytest.mark.slow
 def test_a_job_tracks_with_the_detector_that_was_chosen_and_its_track_tells_which(bench: Bench) -> None:
     from server.access.models import LOCAL_ACCOUNT_ID
     from server.detectors.service import add_detector

@@ -31,6 +31,7 @@ def read(bench: Bench, job_id: uuid.UUID) -> bytes:
     return bench.storage.document(AREA, job_id).read_bytes()
 
 
+@pytest.mark.slow
 def test_a_job_that_fails_at_a_damaged_image_goes_on_there_when_it_is_mended(bench: Bench, tmp_path: Path) -> None:
     undisturbed = queue(bench)
     bench.start_worker()

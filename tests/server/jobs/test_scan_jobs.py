@@ -68,6 +68,7 @@ def test_a_killed_worker_loses_one_scan_at_most_and_none_is_registered_twice(
     assert any("1 not read" in line for line in bench.log(job_id))
 
 
+@pytest.mark.slow
 def test_a_trained_model_knows_what_it_was_trained_from_and_registers_the_next_round(
     bench: ScanBench, generated_hand: GeneratedHand, tmp_path: Path
 ) -> None:

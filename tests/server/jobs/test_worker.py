@@ -165,6 +165,7 @@ def test_a_job_whose_worker_is_killed_again_and_again_ends_with_the_same_bits(be
     assert not bench.storage.folder("jobs", disturbed).exists(), "its working files are gone"
 
 
+@pytest.mark.slow
 def test_a_cancelled_job_stops_at_once_and_resumes_where_it_was_with_the_same_bits(bench: Bench) -> None:
     bench.start_worker()
     undisturbed, cancelled = bench.queue(last_frame=29), bench.queue(last_frame=29)
@@ -184,6 +185,7 @@ def test_a_cancelled_job_stops_at_once_and_resumes_where_it_was_with_the_same_bi
     assert_same(bench.arrays(undisturbed), bench.arrays(cancelled))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("database_kind", [pytest.param("sqlite", marks=pytest.mark.slow), "postgresql"])
 def test_two_workers_share_the_jobs_and_do_none_twice(bench_on_both: Bench) -> None:
     bench = bench_on_both
@@ -298,6 +300,7 @@ def test_progress_never_goes_back_and_a_fitted_shape_is_not_lost_with_a_cancelle
     assert track.error_px is not None and 0.0 < track.error_px < 10.0, "judged as soon as it is there"
 
 
+@pytest.mark.slow
 def test_a_damaged_working_file_fails_the_job_instead_of_its_result(bench: Bench) -> None:
     worker = bench.start_worker()
     job_id = bench.queue()

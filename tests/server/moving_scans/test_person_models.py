@@ -5,6 +5,7 @@ from __future__ import annotations
 import uuid
 
 import numpy as np
+import pytest
 from sqlalchemy import select
 
 from server.access.models import AuditRow
@@ -21,6 +22,7 @@ from tracker.bodies import body_model
 __all__ = ["curated", "join", "moving_person"]
 
 
+@pytest.mark.slow
 def test_the_model_is_the_person_at_rest_is_made_once_and_loads_elsewhere(
     curated: Curated, moving_person: MovingPerson, tmp_path
 ) -> None:

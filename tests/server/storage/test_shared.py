@@ -120,6 +120,7 @@ def test_a_request_that_fails_is_made_again(machine: OpenMachine, monkeypatch: p
     assert read(there, id_) == {"only": "this"}
 
 
+@pytest.mark.slow
 def test_a_store_that_is_away_says_so_and_what_is_safe(tmp_path: Path, s3: S3, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("server.storage.remote.PAUSES", (0.01,))
     settings = Settings(data_dir=tmp_path, store_url="s3://nobody/here", store_endpoint="http://127.0.0.1:9")

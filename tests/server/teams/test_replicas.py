@@ -185,6 +185,7 @@ def test_sets_that_make_no_sense_are_refused(project, ann, bob, lead) -> None:
 SIGMAS = (0.9, 1.3, 1.7, 2.3)
 
 
+@pytest.mark.slow
 def test_the_report_returns_the_noise_of_each_annotator(studio, join, lead, add_recording) -> None:
     sequence = add_recording("steady", frames=200, size=(640, 480), depth=False, color="jpg")["id"]
     project = lead.make("/projects", name="Agreement")

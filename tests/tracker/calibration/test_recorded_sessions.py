@@ -13,6 +13,7 @@ from tracker.calibration.camera_source import find_sources
 from tracker.calibration.sightings import find_sightings
 
 
+@pytest.mark.slow
 @pytest.mark.shared_data
 def test_a_session_whose_stored_cameras_disagree_by_two_pixels_is_out_of_step_and_then_agrees(
     shared_data: Path,

@@ -57,6 +57,7 @@ def test_every_frame_asked_in_any_order_is_the_one_decoded_in_order(
     check_any_order(video, np.r_[generator.permutation(90), np.arange(40, 60), generator.integers(90, size=30)])
 
 
+@pytest.mark.slow
 @pytest.mark.shared_data
 def test_frames_of_a_recorded_film_are_exact_in_any_order(shared_data: Path) -> None:
     video = VideoFile(shared_data / "two_camera_rgb", "cam0_test.mp4")

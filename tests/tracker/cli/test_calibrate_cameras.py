@@ -81,6 +81,7 @@ def test_a_board_is_printed(tmp_path: Path, capsys) -> None:
     assert main(["calibrate-cameras", "--board", WORD, "--print-board", str(tmp_path)]) == 2
 
 
+@pytest.mark.slow
 def test_a_mirrored_camera_a_wrong_board_and_an_unreadable_video_are_named(
     short_videos: Path, tmp_path: Path, capsys
 ) -> None:

@@ -94,6 +94,7 @@ def views(tmp_path_factory):
     return out
 
 
+@pytest.mark.slow
 def test_nails_are_learnt_from_annotated_views_and_renders_and_looked_for_in_views(views, tmp_path, capsys):
     nails, out = tmp_path / "nails.npz", tmp_path / "track"
     words = [str(views), "--rendered", "20", "--test", str(views), "--json", "--out", str(nails)]

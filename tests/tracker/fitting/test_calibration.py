@@ -55,6 +55,7 @@ def test_the_right_hand_is_left_nearly_as_it_is(recorded):
     assert recorded.joint_errors(track.frame, track.joints_3d).max() < 2.5e-3  # m
 
 
+@pytest.mark.slow
 def test_another_persons_hand_is_found_from_depth_and_marks(tmp_path):
     hand = default_hand("right")
     directions = HandDirections.join([HandDirections.of_shape(hand), local_directions(hand)])

@@ -124,6 +124,7 @@ def make_pieces() -> Scan:
     return Scan(corners.reshape(-1, 3), np.repeat(normals, 3, axis=0), np.arange(3000).reshape(-1, 3), name="pieces")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "scan",
     [*(pytest.param(scan, marks=pytest.mark.slow) for scan in (make_sphere(0.06), make_plate())), make_pieces()],

@@ -30,6 +30,7 @@ def test_hands_meet_and_hardly_enter_each_other(posed):
         assert 1000.0 * measure_penetration(each) < 6.0
 
 
+@pytest.mark.slow
 def test_fingers_that_cross_at_the_moments_of_the_study_stay_out_of_each_other():
     scene = Scene(tuple(HANDS.values()))
     middle = find_poses(scene, "crossing", 144)[40:104:4]

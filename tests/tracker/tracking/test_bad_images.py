@@ -141,6 +141,7 @@ ELBOWS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("has_color", "name"),
     [

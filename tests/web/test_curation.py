@@ -97,6 +97,7 @@ def wait_until_saved(page: Any) -> None:
     expect(page.get_by_test_id("save-state")).to_have_text(re.compile("^saved$"))
 
 
+@pytest.mark.slow
 def test_a_phone_curates_by_taps_alone(studio, fresh, open_page, screenshots):
     from playwright.sync_api import expect
 

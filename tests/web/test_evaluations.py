@@ -52,6 +52,7 @@ def _track(studio, recording, params):
     return studio.get(f"/tracks/{job['track_id']}")
 
 
+@pytest.mark.slow
 def test_two_tracks_are_chosen_compared_and_the_address_holds_it_all(studio, judged, open_page, screenshots):
     from playwright.sync_api import expect
 

@@ -418,6 +418,7 @@ def test_logging_out_says_what_waits_and_when_it_did_not_succeed(
     page.get_by_role("button", name="Log in").wait_for()
 
 
+@pytest.mark.slow
 def test_two_people_see_each_other_and_what_the_other_does_as_it_is_stored(
     lab: Lab, open_lab: OpenLab, synthesized: Synthesized, screenshots: Screenshots
 ) -> None:

@@ -142,8 +142,9 @@ SMALL_TARGETS = """() => [...document.querySelectorAll("button, select, input, [
   .map((element) => element.outerHTML.slice(0, 160))"""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("width", "height", "is_phone"), [(390, 844, True), pytest.param(1040, 720, False, marks=pytest.mark.slow)]
+    ("width", "height", "is_phone"), [(390, 844, True), (1040, 720, False)]
 )
 def test_every_page_fits_a_phone_and_a_narrow_window(studio, track, open_page, screenshots, width, height, is_phone):
     from playwright.sync_api import expect

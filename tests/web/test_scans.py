@@ -108,6 +108,7 @@ def test_scans_dropped_on_the_page_are_added_and_each_that_cannot_be_used_says_w
     assert len(studio.get("/scans?collection=dropped")["items"]) == 2
 
 
+@pytest.mark.slow
 def test_a_unit_is_said_beside_a_hand_before_anything_is_stored_and_corrected_afterwards(
     studio, open_page, archive, tmp_path, screenshots
 ):

@@ -43,6 +43,7 @@ def start(client: TestClient, calibration: str) -> uuid.UUID:
     return uuid.UUID(answer.json()["id"])
 
 
+@pytest.mark.slow
 def test_films_become_cameras_with_a_report_and_files_and_an_import_takes_them(
     bench: ScanBench, client: TestClient
 ) -> None:

@@ -54,6 +54,7 @@ def test_the_model_is_the_person_at_rest_is_made_once_and_loads_elsewhere(
         assert len(list(session.scalars(select(AuditRow.act).where(AuditRow.act == "person_model.make")))) == 2
 
 
+@pytest.mark.slow
 def test_of_many_frames_some_that_are_spread_over_all_make_the_model_and_a_damaged_one_makes_none(
     curated: Curated, moving_person: MovingPerson, monkeypatch
 ) -> None:

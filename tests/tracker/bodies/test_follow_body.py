@@ -39,6 +39,7 @@ def test_a_hand_that_the_scan_does_not_show_is_held_as_it_was(follower) -> None:
     assert np.abs(found.state.hands[0, :size] - BEFORE.hands[0]).max() < 0.05, "rad"
 
 
+@pytest.mark.slow
 def test_a_hand_that_has_come_back_in_another_pose_is_searched(follower) -> None:
     now = stand(A_POSE, FIST)
     found = follower.follow(scan_of(now), registration_of(BEFORE, shown=(False, True)))

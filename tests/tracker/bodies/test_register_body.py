@@ -46,6 +46,7 @@ def test_a_person_is_found_without_a_start_to_five_millimetres_and_both_hands_to
     assert 1e3 * registered.scan_to_mesh.mean() < 1.0
 
 
+@pytest.mark.slow
 def test_a_hand_that_is_not_in_the_scan_is_said_to_be_guessed_and_stays_at_the_arm(registrar, made, registered) -> None:
     person = make_person(1)
     rng = np.random.default_rng(4)

@@ -68,6 +68,7 @@ def test_wrong_marks_move_cameras_little(rng: np.random.Generator) -> None:
     assert find_farthest_off_px(found.cameras, truth) < 4 and found.refusal == ""
 
 
+@pytest.mark.slow
 def test_a_wrong_focal_length_is_made_up_for_when_lenses_may_change_and_not_otherwise(rng: np.random.Generator) -> None:
     truth = stand_around(4)
     wrong = list(truth)

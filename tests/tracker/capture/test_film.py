@@ -65,6 +65,7 @@ def test_frames_of_a_recorded_film_are_exact_in_any_order(shared_data: Path) -> 
     check_any_order(video, np.r_[generator.permutation(378)[:40], generator.integers(150, 300, size=40)])
 
 
+@pytest.mark.slow
 def test_memory_stays_flat_over_1500_frames(tmp_path: Path) -> None:
     film = Film(write_film(tmp_path / "film.mp4", 1500, size=(640, 480)), 1500)
     held = []

@@ -22,6 +22,7 @@ def test_hands_are_detected_in_videos_as_they_are(shared_data: Path, tmp_path: P
     assert [item.frame for item in load_annotations(out).items if item.camera == "cam1"] == [100, 101, 102, 103]
 
 
+@pytest.mark.slow
 @pytest.mark.shared_data
 def test_videos_are_tracked_as_they_are(shared_data: Path, tmp_path: Path, capsys) -> None:
     before = sorted((shared_data / "two_camera_rgb").iterdir())

@@ -34,6 +34,7 @@ def test_boxes_of_another_place_count_as_wrong(images):
     assert judged.num_truths == int(item.is_visible.sum())
 
 
+@pytest.mark.slow
 @pytest.mark.shared_data
 def test_on_twins_of_real_motions_the_area_is_beyond_the_bar(shared_data, tmp_path):
     """The bar is 0.55; the detector has seen neither these motions nor these hands."""

@@ -158,6 +158,7 @@ def test_nonsense_is_bad_at_once_with_the_reason(scan, told, registrar):
     assert len(registration.scan_to_mesh) == len(scan.points)
 
 
+@pytest.mark.slow
 def test_a_second_look_finds_the_arrangement_whose_finger_was_astray_in_the_first(registrar):
     made = generate_scan(9, "middle_bent", "left", 5007, ScanOptions(has_forearm=False))
     registration = registrar.register(made.scan)

@@ -77,6 +77,7 @@ def noise(size: tuple[int, int], channels: int) -> Draw:
     return lambda frame: np.random.default_rng(frame).integers(low, high, shape)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(8, 8), (20, 15), (64, 8)])
 def test_in_images_too_small_for_a_hand_none_is_found(tmp_path, capsys, size):
     color: Draw = lambda frame: noise(size, 3)(frame).astype(np.uint8)  # noqa: E731

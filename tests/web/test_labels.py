@@ -26,6 +26,7 @@ def mark(
     studio.send("PUT", place, json=body, headers=headers).raise_for_status()
 
 
+@pytest.mark.slow
 def test_labels_are_kept_compared_restored_exported_and_imported(
     studio: Studio,
     recording: dict[str, Any],

@@ -49,6 +49,7 @@ def wait_for_frame(page: Any, frame: int) -> None:
     expect(view).to_have_attribute("aria-busy", "false")
 
 
+@pytest.mark.slow
 def test_a_moving_scan_is_imported_listed_and_played_with_the_keyboard(
     open_page: OpenPage, moving_person: MovingPerson, tmp_path: Path
 ) -> None:

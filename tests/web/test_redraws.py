@@ -91,6 +91,7 @@ STEP = """(steps) => new Promise((resolve) => {
 })"""
 
 
+@pytest.mark.slow
 def test_a_drag_draws_the_hand_and_nothing_around_it(recording, synthesized, open_page, picture_of, record_property):
     page = open_page()
     page.add_init_script(f"({HOOK})()")

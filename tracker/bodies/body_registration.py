@@ -17,13 +17,13 @@ from tracker.errors import RegistrationError, reads
 from tracker.model.npz_arrays import NpzFields, read_foreign_npz
 from tracker.model.npz_files import pack_npz
 from tracker.registration.registration import summarize_distances
+from tracker.registration.registration_files import MAX_COORDINATE, MAX_VERTICES
 
 Array = npt.NDArray[np.float64]
 
 BODY_FILE = "body.npz"
 PLY_FILE = "body.ply"
 NEEDED = "a body.npz that `handloom register-body` wrote"
-MAX_VERTICES, MAX_COORDINATE = 100_000, 100.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,7 @@ SCAN_POINTS, MODEL_POINTS = 400, 600
 YAWS = 8
 """Directions to face, for each way up."""
 ICP_ROUNDS = 6
+"""Of each stiff body on the scan. Chosen, not measured."""
 FAR = 0.25
 """Distances beyond this count as this, m."""
 FOLLOWED, FINISHED, SEARCHED = 8, 3, 2
@@ -45,6 +46,7 @@ CLOSER = (
 )
 """[R17] 4.3.1: priors are strong at first, then data."""
 COARSE_POINTS, CLOSER_POINTS = 500, 1200
+"""Of the scan, in these two stages. Chosen, not measured."""
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,7 @@ TURNS_DEG = (0.0, -75.0, 75.0, 150.0)
 ROUGH = FitSettings(25.0, 5, to_scan=0.5, pose_weight=3.0, shape_weight=0.0, tolerance=1e-2)
 FINE = FitSettings(10.0, 10, to_scan=0.4, pose_weight=2.0, shape_weight=0.0, tolerance=2e-3)
 ROUGH_POINTS, FINE_POINTS, FOLLOWED = 250, 900, 5
+"""Points of each stage, and how many candidates reach the second. Chosen, not measured."""
 
 
 @dataclass(frozen=True)

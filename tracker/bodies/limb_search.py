@@ -25,12 +25,14 @@ Ints = npt.NDArray[np.int64]
 AWAY = 0.035
 """Points nearer to the rest of the body are not the limb's, m."""
 FEW = 40
+"""With fewer points of its own a limb is not restarted. Chosen, not measured."""
 BETTER = 0.9
 """A new start must cost less than this share of what the limb costs as it is."""
 
 ROUGH = FitSettings(90.0, 6, to_scan=0.6, pose_weight=5.0, shape_weight=0.0, tolerance=1e-2)
 FINE = FitSettings(30.0, 10, to_scan=0.6, pose_weight=3.0, shape_weight=0.0, tolerance=2e-3)
 ROUGH_POINTS, FINE_POINTS, FOLLOWED = 150, 500, 4
+"""Points of each stage, and how many candidates reach the second. Chosen, not measured."""
 
 ARMS_DEG = [(lowered, ahead) for lowered in (-55.0, -10.0, 30.0, 65.0) for ahead in (-10.0, 35.0, 80.0)]
 BENT_DEG = (15.0, 70.0, 120.0)

@@ -17,6 +17,7 @@ Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 PALM = (0, 1, 2, 5, 9, 13, 17)
+"""Joints around the palm, of the 21."""
 FINGERS = tuple((joint, joint + 1) for base in (1, 5, 9, 13, 17) for joint in range(base, base + 3))
 
 INNER, NEAR, AROUND = 0.006, 0.020, 0.080

@@ -17,6 +17,7 @@ Array = npt.NDArray[np.float64]
 
 JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=3.0)
 JUDGE_POINTS = 4000
+"""How a fit is judged, and on how many points. Chosen, not measured."""
 
 SQUARE = 16.0
 """Of the scale of the Geman-McClure function, mm²."""

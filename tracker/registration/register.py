@@ -33,6 +33,7 @@ Array = npt.NDArray[np.float64]
 Progress = Callable[[str, float], None]
 
 MIN_POINTS = 50
+"""Fewer points are refused. Chosen, not measured."""
 
 NEARLY, MOST_AGAIN = 1.03, 3
 """When a registration is not good: how many further starts are fitted, and their highest cost relative to the best."""

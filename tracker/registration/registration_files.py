@@ -25,6 +25,7 @@ NEEDED = "a registration.npz that `handloom register` wrote"
 MAX_VERTICES = 100_000
 MAX_COORDINATE = 100.0
 MAX_SECONDS = 1e5
+"""Bounds of ours (vertices, m, s), far above any registration: a hostile file costs no memory."""
 
 TEXTS = ("side", "verdict", "scan", "scan_digest", "model_digest", "subject", "pose_name")
 

@@ -19,6 +19,7 @@ JUDGED = 0.006
 """That of the last look, m."""
 
 MIN_COSINE = 0.3
+"""A point whose normal is turned farther than this from a vertex's is not its match."""
 SIZE_DEVIATION = 0.08
 """Of the size of hands."""
 

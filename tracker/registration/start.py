@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.blend_limits import BlendLimits
 from tracker.registration.hand_state import HandState
+from tracker.registration.measures import JUDGE
 from tracker.registration.model_fit import Evaluation, FitSettings, ModelFit
 from tracker.registration.nearest_grid import NearestGrid, build_nearest_grid
 from tracker.registration.rigid_search import Placing, StiffHand, place_stiffly
@@ -25,6 +26,8 @@ FEW, SOME, MORE, MANY = 200, 500, 1000, 2500
 """Points that are fitted stiffly, coarsely, finely and at last."""
 
 ROUNDS, RIVALS = 2, 3
+"""How often single fingers are folded otherwise, and how many other starts are fitted beside the best. Both chosen, not
+measured."""
 
 ARRANGEMENTS, APART = 4, 0.015
 """So many are looked at thoroughly; in two of them some vertices lie farther apart than this, m."""
@@ -35,7 +38,6 @@ KEPT_STIFF, KEPT_COARSE = 10, 3
 COARSE = (FitSettings(20.0, 6, 0.7, tolerance=5e-3, back=250), FitSettings(8.0, 6, 0.7, tolerance=5e-3, back=250))
 FINE = (FitSettings(10.0, 6, 0.7, tolerance=3e-3, back=250), FitSettings(4.0, 8, 0.7, tolerance=2e-3, back=250))
 LAST = (FitSettings(6.0, 8, 0.5, tolerance=1e-3, back=400),)
-JUDGE = FitSettings(4.0, 0, to_scan=1.0, pose_weight=0.3, shape_weight=3.0)
 
 
 @dataclass(frozen=True)

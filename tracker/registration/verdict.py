@@ -31,6 +31,7 @@ BAD = 1.6
 """A registration is bad when a measure is this many times its limit."""
 
 LEAST_COVERED = 0.35
+"""Share of the points that must lie beside the hand. Chosen, not measured."""
 
 UNLIKE = 0.5
 """A palm at this share of its limit is unlike those that the model knows: its person is strange, or its side wrong."""

@@ -12,8 +12,6 @@ from tracker.registration.model_fit import MM, ModelFit
 
 Array = npt.NDArray[np.float64]
 
-ITERATIONS = 6
-
 
 def fit_to_vertices(fit: ModelFit, state: HandState, vertices: Array, weight: float = 0.05) -> HandState:
     """The state whose vertices lie nearest to `vertices` (V, 3), m; the same hand if they are of another topology.
@@ -28,7 +26,7 @@ def fit_to_vertices(fit: ModelFit, state: HandState, vertices: Array, weight: fl
     if vertices.shape != model.template.shape:
         return state
     state = _align(fit, state, vertices)
-    for _ in range(ITERATIONS):
+    for _ in range(6):
         posed = state.posed(model)
         J = posed.vertex_jacobian().reshape(-1, model.num_parameters) * (fit.scales * MM)
         residual = (posed.vertices - vertices).ravel() * MM

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from tracker.capture.annotations import JOINT_NAMES, Annotation, Annotations
+from tracker.capture.annotations import JOINT_NAMES, VISIBLE, Annotation, Annotations
 from tracker.capture.exposure import brighten
 from tracker.capture.frame import Frame
 from tracker.capture.sequence import Sequence
@@ -39,7 +39,6 @@ NEAR = 0.015
 """m; where the fitted fingertip is farther from the marked one than this, the image says nothing of its nail."""
 
 TIPS = np.array([index for index, name in enumerate(JOINT_NAMES) if name.endswith("_tip")])
-VISIBLE = 2
 
 
 def annotated_nail_images(sequence: Sequence, annotations: Annotations, step: int = 1) -> Iterator[AnnotatedImage]:

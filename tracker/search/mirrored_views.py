@@ -19,8 +19,6 @@ SURE = 0.8
 the other views together. Of the five views of the real recordings at hand none sees another hand so in any of eight
 frames."""
 
-NEARLY_ALL = 0.9
-
 
 def check_mirrored(sequence: Sequence, views: Many[str], hand: str, frames: range, detector: HandDetector) -> None:
     """Refuse views of which one is mirrored.
@@ -43,7 +41,7 @@ def check_mirrored(sequence: Sequence, views: Many[str], hand: str, frames: rang
     for view, own in sides.items():
         others = np.concatenate([found for other, found in sides.items() if other != view])
         is_other = own < 1.0 - SURE
-        if len(own) < ENOUGH or len(others) < ENOUGH or is_other.mean() < NEARLY_ALL or np.median(others) < SURE:
+        if len(own) < ENOUGH or len(others) < ENOUGH or is_other.mean() < 0.9 or np.median(others) < SURE:
             continue
         left = [other for other in views if other != view]
         seen = "left" if hand == "right" else "right"

@@ -26,8 +26,6 @@ log = logging.getLogger(__name__)
 
 Array = npt.NDArray[np.float64]
 
-ITERATIONS = 60
-
 CLEAR = 0.75
 """An object found with a lower score may be another thing of about its size, or badly seen: a warning says so, as
 it does where joints may have been bent to explain a part only."""
@@ -111,4 +109,4 @@ def place_object(model: ArticulatedModel, item: RecordedObject) -> Array:
     ids = scene.landmark_slices[0].start + np.array([model.skeleton.bone_names.index(bone) for bone in bones])
     meet = PointToPoint.of_vertices(ids, np.array([item.joints[bone] for bone in bones]))
     objective = Objective({"bones": meet}, AnatomicalLimits(1e-4), Regularization(1e-6))
-    return fit_frame(scene, None, pose, pose, objective, FitOptions(ITERATIONS, max_turn=0.3)).pose
+    return fit_frame(scene, None, pose, pose, objective, FitOptions(60, max_turn=0.3)).pose

@@ -21,6 +21,7 @@ IMAGE_SIZE = (640, 480)
 """Width and height, px, of the Carmine 1.09 [T16] §4.1; `Cameras.txt` does not name it."""
 
 FPS = 30.0
+"""Of the same camera."""
 
 
 def load_twin(folder: Path, sequence: str, max_faces: int | None) -> Performance:

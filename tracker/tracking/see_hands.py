@@ -17,8 +17,6 @@ from tracker.landmarks import DetectedHand, HandDetector, default_hand_detector
 from tracker.model.scene import PosedScene
 from tracker.search.place_in_views import place_in_views
 
-ALL_TURNS = (0, 1, 2, 3)
-
 MOST = 11
 """So many of the 21 joints are most of a hand."""
 
@@ -46,7 +44,7 @@ def see_hands(setup: TrackSetup, views: Sequence[CameraFrame], posed: PosedScene
     for number in turn:
         index = looked_at[number].frame.index
         if look.lacks_hands(number) and (look.is_scarce() or index % len(looked_at) == number):
-            look.search(number, ALL_TURNS if gone else (0, 1 + index % 3))
+            look.search(number, (0, 1, 2, 3) if gone else (0, 1 + index % 3))
     look.confirm(gone)
     return look.hands
 

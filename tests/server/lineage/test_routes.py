@@ -5,6 +5,8 @@ from __future__ import annotations
 import uuid
 from typing import Any
 
+import pytest
+
 from server.hand_models.models import HandModelRow
 from server.hand_models.storing import UNTRAINED_ID
 from server.moving_scans.models import MovingRegistrationRow
@@ -141,6 +143,7 @@ def groups(told: dict[str, Any], way: str) -> dict[str, set[str]]:
     return {group["kind"]: {item["id"] for item in group["items"]} for group in told[way]}
 
 
+@pytest.mark.slow
 def test_the_model_leads_back_to_the_decisions_and_on_to_the_registration_that_begins_with_it(
     curated: Curated, moving_person: MovingPerson, join: Join
 ) -> None:

@@ -309,6 +309,7 @@ def test_where_checks_would_take_too_long_the_last_one_is_given_and_says_that_it
     assert caught_up["items"][0]["frame"] == 3
 
 
+@pytest.mark.slow
 def test_beside_the_studio_the_same_flags_are_found(studio, client, labelled):
     """`handloom serve` has a process of its own for this; its answers, and its refusals, are the same."""
     spoil(client, labelled, "outside", 4)

@@ -62,6 +62,7 @@ def test_without_a_store_nothing_but_the_data_folder_is_used(tmp_path: Path) -> 
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
 
+@pytest.mark.slow
 def test_a_published_folder_is_found_on_another_machine_file_by_file(machine: OpenMachine) -> None:
     here, there, id_ = machine("a"), machine("b"), uuid.uuid4()
     fill(here, id_, **{"track.npz": "poses", "models__right.npz": "hand", "empty": "", "same": "poses"})

@@ -51,6 +51,7 @@ def test_unknown_lenses_places_and_offsets_come_back(filmed: Filmed, sightings: 
     assert any("cam1: is out of step: it shows a moment 41.3" in warning for warning in result.warnings)
 
 
+@pytest.mark.slow
 def test_the_scale_is_the_boards(sightings: list[Sightings]) -> None:
     double = Board("charuco", 7, 5, 0.08, 0.06, "DICT_5X5_100")
     one, two = (calibrate_cameras([cut(s, 0, 8) for s in sightings[:2]], board, NEAR) for board in (BOARD, double))

@@ -105,6 +105,7 @@ def test_bench_registration_prints_cold_and_warm_by_stage(capsys):
     assert re.search("needed 1 to 1000", capsys.readouterr().err)
 
 
+@pytest.mark.slow
 def test_a_unit_that_is_open_is_asked_for_and_scans_json_says_it(tmp_path, capsys):
     scan = scan_model(2, 4000).scan
     save_scan(scan.scaled(1 / 0.0285), tmp_path / "open.ply")

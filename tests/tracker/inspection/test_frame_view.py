@@ -119,6 +119,7 @@ def test_a_finger_in_a_ball_is_shown_where_and_how_deep_it_is():
     assert to_ball.max() < 0.030 + 0.015, "triangles are shown where the finger enters the ball"
 
 
+@pytest.mark.slow
 def test_fingers_near_a_ball_that_falls_are_candidates_and_those_that_would_hold_it_are_chosen():
     posed = gripped((*PINCH, [0, -1, 0]), (0.005, 0.005, 0.008))
     with PhysicsWorld(posed.scene) as world:

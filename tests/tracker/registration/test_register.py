@@ -21,6 +21,7 @@ def find_errors(registration, own) -> np.ndarray:
     return np.linalg.norm(registration.vertices - own.vertices, axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "folded", "side"),
     [

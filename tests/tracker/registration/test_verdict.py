@@ -26,6 +26,7 @@ def swollen(own: OwnScan, most: float) -> Scan:
     return Scan(own.scan.points + lumps[:, None] * own.scan.normals, own.scan.normals, name="swollen")
 
 
+@pytest.mark.slow
 def test_a_person_unlike_those_whom_the_model_knows_is_good_and_said_to_be_so(registrar):
     registration = registrar.register(swollen(scan_model(1, 6000), 0.003))
     assert (registration.side, registration.verdict) == ("right", "good")
@@ -52,6 +53,7 @@ def test_a_folded_finger_and_the_palm_hide_one_another(registrar):
     assert hidden[FOLDED][palm].mean() > 2.0 * hidden[STRAIGHT][palm].mean()
 
 
+@pytest.mark.slow
 def test_a_wrong_fingertip_shows_however_well_the_rest_of_the_hand_fits(own_scan, registrar):
     start = registrar.register(own_scan.scan).as_start()
     pose = curl_finger(blend_limits(registrar.model), start.pose, "ring", FOLDED)

@@ -47,6 +47,7 @@ def test_the_hand_is_found_in_the_first_frame_and_held_in_both_views(two_cameras
     assert load_track(tmp_path).setup.view_ids == ("cam0", "cam1")
 
 
+@pytest.mark.slow
 def test_one_camera_alone_gives_the_same_pose_in_its_image(two_cameras):
     both, alone = track(two_cameras), track(two_cameras, "cam1")
     assert np.mean(alone.status != "lost") > 0.9
@@ -54,6 +55,7 @@ def test_one_camera_alone_gives_the_same_pose_in_its_image(two_cameras):
     assert np.median(apart) < 8.0
 
 
+@pytest.mark.slow
 def test_what_people_look_at_of_such_a_track_are_rays_in_place_of_depth(two_cameras):
     found = track(two_cameras)
     shown = describe_frame(two_cameras, found.setup, found.pose[5], int(found.frame[5]))

@@ -19,6 +19,7 @@ CLOSED = (3.0, 0.0, -3.0, -6.0)
 
 NATURAL = (5.0, -1.0, -5.0, -10.0)
 SPREAD = (15.0, -3.0, -18.0, -32.0)
+"""At ease, and as far as fingers go."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,7 @@ def _touch(*fingers: str) -> tuple[tuple[str, str], ...]:
 
 CURLED: Finger = (80.0, 98.0, 55.0)
 TIGHT: Finger = (85.0, 104.0, 62.0)
+"""Fingers of a fist, degrees."""
 
 EXPLORATION = (
     HandPose("flat_together", (-12, -12, 0, -5, 0), (2, 4, 3), (2, 4, 3), (2, 4, 3), (2, 5, 3), TOGETHER, 0.0),

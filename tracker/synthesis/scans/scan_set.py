@@ -20,7 +20,6 @@ from tracker.synthesis.scans.generated_scan import GeneratedScan
 from tracker.synthesis.scans.motions import load_motion_angles
 
 LIST = "scans.json"
-VERSION = 1
 
 
 @dataclass(frozen=True)
@@ -129,7 +128,7 @@ def _row(subject: int, pose: str, side: str, seed: int, options: ScanOptions) ->
 
 
 def _write_list(path: Path, settings: dict[str, Any], rows: list[dict[str, Any]]) -> None:
-    text = json.dumps({"version": VERSION, "settings": settings, "scans": rows}, indent=1)
+    text = json.dumps({"version": 1, "settings": settings, "scans": rows}, indent=1)
     write_atomically(path, text.encode())
 
 

@@ -18,7 +18,7 @@ from tracker.model.npz_files import save_npz_model
 from tracker.model.scene import PosedScene
 from tracker.synthesis.motion import perform
 from tracker.synthesis.recording import RecordingOptions, write_recording
-from tracker.tracking.see_hands import ALL_TURNS, Look, see_hands
+from tracker.tracking.see_hands import Look, see_hands
 from tracker.tracking.start import start_tracking
 
 Drawn = tuple[TrackSetup, list[CameraFrame], PosedScene, np.ndarray]
@@ -41,7 +41,7 @@ def confirm(drawn: Drawn, views: list[CameraFrame], searched: tuple[int, ...]) -
     setup, _, nowhere, _ = drawn
     look = Look(setup, views, nowhere, [])
     for number in searched:
-        look.search(number, ALL_TURNS)
+        look.search(number, (0, 1, 2, 3))
     assert look.hands.count("right") == len(searched)
     look.confirm({0})
     return look.hands

@@ -149,9 +149,10 @@ UNSAVED = "Object.keys(localStorage).filter((name) => name.startsWith('handloom/
 
 @contextmanager
 def asking_nothing(page: Any) -> Iterator[None]:
-    """Nothing that the page asks by itself tells it within the block that a login has ended: no dialog comes in
-    between a gesture and the picture it is meant for. What was held goes on afterwards."""
-    page.route("**/api/v1/**", lambda route: None if route.request.method == "GET" else route.continue_())
+    """No answer tells the page within the block that a login has ended: no dialog comes in between a gesture and the
+    picture it is meant for. What was asked before is answered first; what was held goes on afterwards."""
+    page.route("**/api/v1/**", lambda route: None)
+    page.wait_for_timeout(500)
     yield
     page.unroute("**/api/v1/**")
 

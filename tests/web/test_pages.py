@@ -411,6 +411,7 @@ def test_a_deleted_recording_comes_back(studio, recording, open_page):
     assert studio.get(f"/sequences/{recording['id']}")["name"] == recording["name"]
 
 
+@pytest.mark.slow
 def test_a_page_whose_thing_was_deleted_does_not_ask_for_it_again(studio, track, recording, open_page):
     """It is left at once; asked again, what is gone would be answered by 404, with a notice or without."""
     from playwright.sync_api import expect

@@ -142,6 +142,7 @@ def test_every_layer_is_switched_counted_and_explained(studio, track, open_page,
         assert not bar.evaluate(is_cut), f"a layer's name is cut off at {size}"
 
 
+@pytest.mark.slow
 def test_the_energy_of_a_frame_is_drawn_by_iteration_and_a_click_goes_to_another_frame(
     studio, track, open_page, screenshots
 ):
@@ -167,6 +168,7 @@ def test_the_energy_of_a_frame_is_drawn_by_iteration_and_a_click_goes_to_another
     assert not np.array_equal(_labels_ink(figure), logarithmic), "another scale is another picture"
 
 
+@pytest.mark.slow
 def test_keys_go_on_working_after_a_layer_is_ticked_and_after_a_click_into_the_3d_view(studio, track, open_page):
     from playwright.sync_api import expect
 

@@ -49,6 +49,7 @@ def test_a_recording_is_tracked_and_with_physics_it_is_refused_in_one_line(
     assert list(load_track(out).status) == ["ok"] * 3
 
 
+@pytest.mark.slow
 def test_kernels_are_compiled_and_the_measurement_with_physics_is_left_out(variables: dict[str, str]) -> None:
     assert handloom(variables, "warm-up").returncode == 0
     measured = handloom(variables, "bench", "tracking", "--case", "two_hands_object_physics", "--json")

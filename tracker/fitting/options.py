@@ -185,13 +185,14 @@ class TrackOptions:
     def from_json(cls, values: dict[str, Any]) -> TrackOptions:
         """Options from plain values; what is not given keeps its default."""
         known = {f.name: f for f in fields(cls)}
+        kinds = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
         for name, value in values.items():
             if name not in known:
                 raise TrackingError(f"There is no option {name!r}; there are {', '.join(known)}.")
             wanted = type(known[name].default)
             allowed = (int, float) if wanted is float else (wanted,)
             if not isinstance(value, allowed) or (wanted is not bool and isinstance(value, bool)):
-                raise TrackingError(f"{name} is {value!r}; needed a {wanted.__name__}.")
+                raise TrackingError(f"{name} is {value!r}; needed {kinds[wanted]}.")
         return cls(**values)
 
     def frame_range(self, frame_count: int) -> range:

@@ -411,6 +411,16 @@ def test_a_deleted_recording_comes_back(studio, recording, open_page):
     assert studio.get(f"/sequences/{recording['id']}")["name"] == recording["name"]
 
 
+def test_the_page_of_a_thing_that_is_not_there_leads_back_to_its_list(open_page):
+    page, gone = open_page(), "00000000-0000-4000-8000-000000000000"
+    rooms = ("recordings", "tracks", "scans", "scans/moving", "models", "jobs", "projects", "calibrations")
+    for room in rooms:
+        for part in ("", "/labels", "/annotate", "/check") if room == "recordings" else ("",):
+            page.goto(f"/{room}/{gone}{part}")
+            page.get_by_role("alert").get_by_role("link").click()
+            page.wait_for_url(f"**/{room}")
+
+
 @pytest.mark.slow
 def test_a_page_whose_thing_was_deleted_does_not_ask_for_it_again(studio, track, recording, open_page):
     """It is left at once; asked again, what is gone would be answered by 404, with a notice or without."""

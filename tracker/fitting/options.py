@@ -9,14 +9,14 @@ from tracker.errors import TrackingError
 from tracker.model.max_faces import MAX_FACES
 
 TERM_LABELS = {
-    "LO": "depth",
-    "LO+C": "depth, collision",
-    "LO+S": "depth, fingertips",
-    "LO+SC": "depth, fingertips, collision",
-    "LO+P": "depth, physics",
-    "LO+CP": "depth, collision, physics",
-    "LO+SP": "depth, fingertips, physics",
-    "LO+SCP": "depth, fingertips, collision, physics",
+    "LO": "images",
+    "LO+C": "images, collision",
+    "LO+S": "images, fingertips",
+    "LO+SC": "images, fingertips, collision",
+    "LO+P": "images, physics",
+    "LO+CP": "images, collision, physics",
+    "LO+SP": "images, fingertips, physics",
+    "LO+SCP": "images, fingertips, collision, physics",
 }
 """Sets of terms that can be asked for, in the paper's letters, and what they are made of, for people."""
 

@@ -22,7 +22,15 @@ export default function LabelsPage() {
   const snapshots = useSnapshots(recordingId);
   useTitle(recording && `Labels of ${recording.name}`);
 
-  if (error && !recording) return <Failure what="This recording could not be loaded" error={error} onRetry={() => void refetch()} />;
+  if (error && !recording) {
+    return (
+      <Failure what="This recording could not be loaded" error={error} onRetry={() => void refetch()}>
+        <Button variant="default" component={Link} to="/recordings">
+          To the recordings
+        </Button>
+      </Failure>
+    );
+  }
   if (!recording) return <PageSkeleton />;
 
   const compare = query.get("compare");

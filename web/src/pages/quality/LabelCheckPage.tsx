@@ -1,4 +1,4 @@
-import { Group, SegmentedControl, Text, Title } from "@mantine/core";
+import { Button, Group, SegmentedControl, Text, Title } from "@mantine/core";
 import { Link, useParams, useSearchParams } from "react-router";
 import { useFlagPages } from "../../api/flags";
 import { useRecording } from "../../api/recordings";
@@ -34,7 +34,13 @@ export default function LabelCheckPage() {
 
   const error = recording.error ?? pages.error ?? null;
   if (error && (!recording.data || !pages.data)) {
-    return <Failure what="The label check could not be loaded" error={error} safe="Labels are as they were." onRetry={() => void Promise.all([recording.refetch(), pages.refetch()])} />;
+    return (
+      <Failure what="The label check could not be loaded" error={error} safe="Labels are as they were." onRetry={() => void Promise.all([recording.refetch(), pages.refetch()])}>
+        <Button variant="default" component={Link} to="/recordings">
+          To the recordings
+        </Button>
+      </Failure>
+    );
   }
   const first = pages.data?.pages[0];
   const shot = recording.data;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from contextlib import suppress
 from pathlib import Path
 
 MAX_PATH = 1024
@@ -54,8 +55,10 @@ def _find_part_fault(part: str) -> str:
 
 
 def is_inside(path: Path, folder: Path) -> bool:
-    """Whether path, with every symbolic link followed, lies in the folder."""
+    """Whether path, with every symbolic link followed, lies in the folder; one that leads round does not."""
     try:
+        with suppress(FileNotFoundError, NotADirectoryError):
+            path.stat()  # `resolve` says nothing of a link that leads round from Python 3.13 on
         return path.resolve().is_relative_to(folder.resolve())
     except (OSError, RuntimeError, ValueError):
         return False

@@ -18,11 +18,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-MOST_PARAMETERS, MOST_COMPLEXITY = 10, 15
+MOST_PARAMETERS, MOST_COMPLEXITY, FEW_BRANCHES = 10, 15, 3
 BRANCHES = (
     *(ast.If, ast.IfExp, ast.For, ast.AsyncFor, ast.While, ast.ExceptHandler),
     *(ast.comprehension, ast.match_case),
 )
+LISTS = ("functions", "kernels", "unmirrored")
 CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]*$")
 
 
@@ -38,6 +39,7 @@ class Room:
         constants: Names in capitals that its modules assign at their top level.
         functions: Place, parameters and complexity of each function that is no kernel.
         kernels: The same of compiled ones.
+        unmirrored: Modules that branch and have no test file of their name.
     """
 
     name: str
@@ -47,6 +49,7 @@ class Room:
     constants: int = 0
     functions: list[tuple[str, int, int]] = field(default_factory=list)
     kernels: list[tuple[str, int, int]] = field(default_factory=list)
+    unmirrored: list[str] = field(default_factory=list)
 
 
 def measure(root: Path) -> list[Room]:
@@ -66,6 +69,9 @@ def measure(root: Path) -> list[Room]:
 
 def add_module(room: Room, path: Path, root: Path) -> None:
     tree = ast.parse(path.read_text())
+    mirror = root / "tests" / path.relative_to(root).with_name(f"test_{path.name}")
+    if path.name != "__init__.py" and count_branches(tree) >= FEW_BRANCHES and not mirror.exists():
+        room.unmirrored.append(str(path.relative_to(root)))
     room.modules += 1
     room.lines += count_lines(path)
     for node in tree.body:
@@ -102,6 +108,11 @@ def complexity(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
     return count
 
 
+def count_branches(tree: ast.AST) -> int:
+    """Places where a file branches; with fewer than three it decides too little for a test file of its own."""
+    return sum(isinstance(node, BRANCHES) for node in ast.walk(tree))
+
+
 def is_kernel(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
     return any("njit" in ast.dump(one) or "kernel" in ast.dump(one) for one in node.decorator_list)
 
@@ -121,6 +132,12 @@ def show(rooms: list[Room], docs: dict[str, int]) -> str:
         f"above {MOST_PARAMETERS} parameters or a complexity of {MOST_COMPLEXITY}, kernels apart: {len(above)}",
     ]
     rows += [f"  {place}: {parameters} parameters, complexity {tangled}" for place, parameters, tangled in above]
+    missing = [one for room in rooms for one in room.unmirrored]
+    rows += [
+        "",
+        f"modules with {FEW_BRANCHES} branches or more and no test file of their name: {len(missing)}",
+    ]
+    rows += [f"  {one}" for one in missing]
     return "\n".join([*rows, "", f"docs: {docs['pages']} pages, {docs['words']} words"])
 
 
@@ -131,8 +148,8 @@ def add_up(top: str, rooms: list[Room]) -> Room:
         if room.name.split("/")[0] == top:
             for name, value in asdict(room).items():
                 whole[name].append(value)
-    sums = {name: sum(values) for name, values in whole.items() if name not in ("name", "functions", "kernels")}
-    joined = {name: [one for each in whole[name] for one in each] for name in ("functions", "kernels")}
+    sums = {name: sum(values) for name, values in whole.items() if name not in ("name", *LISTS)}
+    joined = {name: [one for each in whole[name] for one in each] for name in LISTS}
     return Room(f"{top}, all", **sums, **joined)
 
 

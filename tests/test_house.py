@@ -73,6 +73,22 @@ def test_a_room_adds_up_its_modules_and_keeps_kernels_apart(tmp_path: Path) -> N
     assert [one[0].split()[1] for one in room.kernels] == ["kernel"]
 
 
+def test_a_module_that_branches_wants_a_test_file_of_its_name_and_one_that_only_holds_things_does_not(tmp_path) -> None:
+    branches = (
+        "def sign(x):\n    if x < 0:\n        return -1\n    return 1 if x else 0\n\nS = [sign(x) for x in (1, 2)]\n"
+    )
+    room = Room("tracker/fitting")
+    for name, text in (("tested", branches), ("bare", branches), ("holder", "def one():\n    return 1\n")):
+        path = tmp_path / "tracker" / "fitting" / f"{name}.py"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        test = tmp_path / "tests" / "tracker" / "fitting" / "test_tested.py"
+        test.parent.mkdir(parents=True, exist_ok=True)
+        test.touch()
+        add_module(room, path, tmp_path)
+    assert room.unmirrored == ["tracker/fitting/bare.py"]
+
+
 def test_every_room_is_there_with_its_tests(rooms) -> None:
     named = {room.name: room for room in rooms}
     assert named["tracker/terms"].test_lines > 0 and named["server/jobs"].kernels == []

@@ -52,3 +52,10 @@ def make_form(files: dict[str, bytes], name: str = "Rig", **options: Any) -> dic
     """What a request sends."""
     data = {"name": name, "options": json.dumps({**OPTIONS, **options})}
     return {"files": [("files", (path, data)) for path, data in files.items()], "data": data}
+
+
+def write_images(folder: Path, count: int, size: tuple[int, int] = (32, 24)) -> None:
+    """A folder of small grey pictures, `size` wide and high, each of another grey."""
+    folder.mkdir(parents=True)
+    for number in range(count):
+        cv2.imwrite(str(folder / f"{number}.png"), np.full(size[::-1], number, np.uint8))

@@ -7,7 +7,6 @@ import json
 import pytest
 
 from server.cli.main import main
-from server.cli.simulated_annotators import Acknowledged, Ledger, find_faults
 
 SMALL = ["bench", "server", "--json", "--frames", "120", "--joints", "2100", "--pause", "0.1"]
 
@@ -36,31 +35,6 @@ def test_the_same_on_postgresql(capsys, postgres_url: str) -> None:
         code, result = measure(capsys, "--annotators", "6", "--seconds", "5", "--kill-every", "1.5", *database)
         connection.execute("DROP DATABASE annotators WITH (FORCE)")
     assert code == 0 and result["faults"] == [] and result["restarts"] >= 1 and result["gestures"] > 0
-
-
-def test_what_was_acknowledged_and_is_not_there_is_found(monkeypatch) -> None:
-    """The check itself must be able to fail."""
-    import httpx
-
-    place = "/sequences/s/annotations/cam0/3/right"
-    history = [
-        {"revision": 3, "operation_id": "b", "points": [[2.0, 2.0, 2]]},
-        {"revision": 1, "operation_id": "a", "points": [[1.0, 1.0, 2]]},
-    ]
-    monkeypatch.setattr(httpx.Client, "get", lambda *_: httpx.Response(200, json={"items": history}))
-    ledger = Ledger(
-        acknowledged=[
-            Acknowledged(place, "a", 1, [[1.0, 1.0, 2]]),
-            Acknowledged(place, "b", 3, [[9.0, 9.0, 2]]),
-            Acknowledged(place, "c", 2, [[5.0, 5.0, 2]]),
-        ],
-        sent={"a": place, "b": place, "c": place},
-    )
-    assert find_faults("http://127.0.0.1:1", ledger) == [
-        f"{place}: revisions [1, 3]",
-        f"{place}: b was acknowledged as 3 and is lost",
-        f"{place}: c was acknowledged as 2 and is lost",
-    ]
 
 
 @pytest.mark.parametrize("option", [("--annotators", "0"), ("--frames", "5"), ("--pause", "0")])

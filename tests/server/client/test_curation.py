@@ -9,11 +9,9 @@ import pytest
 
 from server.client import Studio as Remote
 from server.client import StudioRefusal
-from tests.server.client.test_client import lose_first_answers, remote
+from tests.server.client.conftest import lose_first_answers
 from tests.server.conftest import GeneratedHand, Studio
 from tests.server.curation import add_registered
-
-__all__ = ["remote"]
 
 
 def test_scans_go_in_and_training_sets_and_models_come_out(

@@ -6,22 +6,21 @@ import asyncio
 import contextlib
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
 from server.compute import Compute
-from server.compute.process import NICENESS, ComputeProcess, ComputeStoppedError, ComputeTooLongError
+from server.compute.process import NICENESS, ComputeStoppedError
 from server.database import Database
 from server.settings import Settings
 from server.storage import Storage
 from tests.server.compute import work
+from tests.server.compute.processes import find_children, is_alive, wait_until
 
 OF_NO_ERROR = {"__notes__"}
 
@@ -60,27 +59,6 @@ def running(sqlite_template, tmp_path_factory):
 
 def ask(compute, function, *arguments):
     return asyncio.run(compute.run(function, *arguments))
-
-
-def wait_until(holds, seconds=20.0):
-    deadline = time.monotonic() + seconds
-    while not holds():
-        assert time.monotonic() < deadline, "waited in vain"
-        time.sleep(0.02)
-
-
-def find_children(parent):
-    """Ids of the processes of this parent that are alive, and their commands."""
-    table = subprocess.run(
-        ["ps", "-ww", "-eo", "pid=,ppid=,stat=,args="], capture_output=True, text=True, check=True
-    ).stdout
-    rows = [line.split(None, 3) for line in table.splitlines()]
-    return {int(pid): command for pid, ppid, state, command in rows if int(ppid) == parent and state[0] != "Z"}
-
-
-def is_alive(pid):
-    state = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True).stdout
-    return bool(state) and state[0] != "Z"
 
 
 @pytest.fixture
@@ -184,50 +162,6 @@ def test_a_question_that_kills_it_twice_is_refused_and_others_are_answered(start
     assert ask(started, work.tell_process)[0] != os.getpid()
 
 
-def test_a_question_that_takes_too_long_is_ended_with_the_time_that_it_had(sqlite_settings, tmp_path):
-    with contextlib.closing(ComputeProcess(sqlite_settings)) as process:
-        first, _ = process.ask(work.tell_process, ())
-        began = time.monotonic()
-        with pytest.raises(ComputeTooLongError, match=r"took longer than 1 s and was stopped") as told:
-            process.ask(work.sleep, (60.0, tmp_path / "mark"), limit_seconds=1.0)
-        assert time.monotonic() - began < 30.0 and told.value.status_code == 503
-        wait_until(lambda: not is_alive(first))
-        assert process.ask(work.tell_process, ())[0] != first
-
-
-def stop(pid):
-    """Make a process stand still; back when it does."""
-    os.kill(pid, signal.SIGSTOP)
-    os.waitid(os.P_PID, pid, os.WSTOPPED)
-
-
-def test_a_process_that_stands_still_is_ended_too(sqlite_settings):
-    with contextlib.closing(ComputeProcess(sqlite_settings)) as process:
-        first, _ = process.ask(work.tell_process, ())
-        stop(first)
-        with pytest.raises(ComputeTooLongError):
-            process.ask(work.tell_process, (), limit_seconds=1.0)
-        wait_until(lambda: not is_alive(first))
-        assert process.ask(work.tell_process, ())[0] != first
-
-
-def test_the_studio_stops_though_the_process_stands_still(sqlite_settings):
-    with contextlib.closing(ComputeProcess(sqlite_settings)) as process:
-        first, _ = process.ask(work.tell_process, ())
-        stop(first)
-    wait_until(lambda: not is_alive(first))
-
-
-def test_what_else_it_was_at_is_computed_in_the_next_one(sqlite_settings, tmp_path):
-    with contextlib.closing(ComputeProcess(sqlite_settings)) as process, ThreadPoolExecutor(1) as other:
-        process.ask(work.tell_process, ())
-        waiting = other.submit(process.ask, work.sleep, (2.5, tmp_path / "other"))
-        wait_until((tmp_path / "other").exists)
-        with pytest.raises(ComputeTooLongError):
-            process.ask(work.sleep, (60.0, tmp_path / "mark"), limit_seconds=1.0)
-        assert waiting.result(timeout=60) == "slept"
-
-
 def test_a_route_in_a_thread_gets_the_same_answers(running):
     assert running.ask(work.tell_process) == ask(running, work.tell_process)
 
@@ -247,6 +181,7 @@ from server.database import Database
 from server.settings import Settings
 from server.storage import open_storage
 from tests.server.compute import work
+from tests.server.compute.processes import find_children, is_alive, wait_until
 
 settings = Settings()
 compute = Compute(settings, Database(settings.sqlalchemy_url), open_storage(settings))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import json
+import struct
 
 import numpy as np
 import pytest
@@ -72,6 +74,11 @@ def test_a_motion_is_written_as_an_animated_gltf(client):
     frames = [{"joints": {"neck": [0.0, 0.1 * t, 0.0]}} for t in range(5)]
     written = client.post(f"{NEUTRAL}/export", json={"format": "glb", "frames": frames, "fps": 10.0})
     assert written.content[:4] == b"glTF" and 'filename="neutral_body.glb"' in written.headers["content-disposition"]
+    (length,) = struct.unpack("<I", written.content[12:16])
+    document = json.loads(written.content[20 : 20 + length])
+    times = {sampler["input"] for animation in document["animations"] for sampler in animation["samplers"]}
+    ends = [document["accessors"][number]["max"][0] for number in times]
+    assert ends and ends == pytest.approx([0.4] * len(ends)), "five frames at 10 a second"
 
 
 @pytest.mark.parametrize("kind", ["npz", "pkl"])

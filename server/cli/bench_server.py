@@ -20,7 +20,7 @@ from typing import Any
 import httpx
 
 from server.cli.guarded import FAILED, CommandError, add_json, answer, run_guarded
-from server.cli.simulated_annotators import JOINTS, annotate_together, find_faults
+from server.cli.simulated_annotators import JOINTS, SHARED_FRAMES, annotate_together, find_faults
 
 CAMERA = "cam0"
 WIDTH, HEIGHT = 64, 48
@@ -57,6 +57,11 @@ def run(args: argparse.Namespace) -> int:
     for name, least in (("annotators", 1), ("seconds", 0.1), ("frames", 100), ("joints", 0), ("pause", 0.001)):
         if getattr(args, name) < least:
             raise CommandError(f"--{name} {getattr(args, name)}: needed at least {least}.")
+    if args.frames < (least := args.annotators + SHARED_FRAMES):
+        raise CommandError(
+            f"--frames {args.frames}: needed at least {least}, one for each of {args.annotators} annotators and "
+            f"{SHARED_FRAMES} that they share."
+        )
     with tempfile.TemporaryDirectory(prefix="handloom-bench-") as folder:
         result = bench(Path(folder), args)
     answer(args, result, show(result))

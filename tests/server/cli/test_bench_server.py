@@ -37,7 +37,9 @@ def test_the_same_on_postgresql(capsys, postgres_url: str) -> None:
     assert code == 0 and result["faults"] == [] and result["restarts"] >= 1 and result["gestures"] > 0
 
 
-@pytest.mark.parametrize("option", [("--annotators", "0"), ("--frames", "5"), ("--pause", "0")])
+@pytest.mark.parametrize(
+    "option", [("--annotators", "0"), ("--frames", "5"), ("--pause", "0"), ("--annotators", "116")]
+)
 def test_options_that_make_no_sense_are_refused(capsys, option: tuple[str, str]) -> None:
     assert main([*SMALL, *option]) == 2
-    assert "needed at least" in capsys.readouterr().err
+    assert "needed at least" in capsys.readouterr().err, "120 frames are one for each of 115, and 5 shared ones"

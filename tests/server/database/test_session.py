@@ -16,7 +16,7 @@ from sqlalchemy.orm import Session
 
 from server.access.models import Account
 from server.database import Database
-from server.database.session import READERS, WRITERS, Admission, SessionDep
+from server.database.session import READERS, Admission, SessionDep
 from tests.server.rows import make_person
 
 
@@ -83,30 +83,33 @@ def test_more_requests_at_once_than_sessions_are_all_done(client: TestClient, da
     assert count_stored(database) == before + 12
 
 
-def run_at_once(admission: Admission, act: str, times: int) -> int:
-    """Most that were at work at the same moment."""
-    lock, at_work, most = threading.Lock(), 0, 0
+def run_at_once(admission: Admission, act: str, expected: int) -> int:
+    """Most that were at work at the same moment; the first `expected` wait for each other."""
+    lock, meeting = threading.Lock(), threading.Barrier(expected, timeout=20)
+    at_work, most, begun = 0, 0, 0
 
     def work(session: Session) -> None:
-        nonlocal at_work, most
+        nonlocal at_work, most, begun
         with lock:
-            at_work += 1
-            most = max(most, at_work)
+            at_work, begun = at_work + 1, begun + 1
+            most, is_first = max(most, at_work), begun <= expected
+        if is_first:
+            meeting.wait()
         count(session)
-        time.sleep(0.02)
+        time.sleep(0.01)
         with lock:
             at_work -= 1
 
     async def run() -> None:
-        await asyncio.gather(*(getattr(admission, act)(work) for _ in range(times)))
+        await asyncio.gather(*(getattr(admission, act)(work) for _ in range(3 * expected)))
 
     asyncio.run(run())
     return most
 
 
 def test_as_many_read_at_once_as_there_are_readers_and_one_writes_on_sqlite(admission: Admission) -> None:
-    assert run_at_once(admission, "read", 3 * READERS) == READERS == admission.readers.total_tokens
-    assert run_at_once(admission, "write", 2 * WRITERS) == 1 == admission.writers.total_tokens
+    assert run_at_once(admission, "read", READERS) == READERS == admission.readers.total_tokens
+    assert run_at_once(admission, "write", 1) == 1 == admission.writers.total_tokens
 
 
 def test_work_is_committed_with_what_it_gives_and_taken_back_when_it_raises(

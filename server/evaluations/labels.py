@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 from server.annotations.models import AnnotationRow
 from server.annotations.service import load_annotations
 from server.annotations.snapshot_models import SnapshotRow
-from server.errors import NotFoundError
+from server.errors import InvalidError, NotFoundError
 from server.storage import Storage
 from tracker import Annotations
 from tracker import load_annotations as read_annotations
@@ -55,11 +55,19 @@ def find_current_labels(session: Session, sequence_id: uuid.UUID) -> LabelsId:
 
 
 def find_snapshots(session: Session, ids: list[uuid.UUID]) -> dict[uuid.UUID, LabelsId]:
-    """Snapshots by the recording they are of."""
-    rows = session.scalars(select(SnapshotRow).where(SnapshotRow.id.in_(ids))).all() if ids else []
+    """Snapshots by the recording they are of, one of each."""
+    query = select(SnapshotRow).where(SnapshotRow.id.in_(ids)).order_by(SnapshotRow.version)
+    rows = session.scalars(query).all() if ids else []
     if missing := set(ids) - {row.id for row in rows}:
         raise NotFoundError(f"There is no snapshot {min(missing)}. Choose one of the recording's snapshots, or none.")
-    return {row.sequence_id: LabelsId(row.sequence_id, f"snapshot-{row.id}", None, row) for row in rows}
+    chosen: dict[uuid.UUID, SnapshotRow] = {}
+    for row in rows:
+        if (other := chosen.setdefault(row.sequence_id, row)) is not row:
+            raise InvalidError(
+                f"The snapshots {other.name!r} and {row.name!r} are of one recording, which one of them judges. Leave "
+                "the other one out."
+            )
+    return {key: LabelsId(key, f"snapshot-{row.id}", None, row) for key, row in chosen.items()}
 
 
 def read_labels(session: Session, storage: Storage, which: LabelsId) -> Labels:

@@ -15,7 +15,7 @@ from server.annotations.models import AnnotationRow
 from server.annotations.service import export_annotations
 from server.annotations.snapshots import create_snapshot
 from server.database import Database
-from server.errors import NotFoundError
+from server.errors import InvalidError, NotFoundError
 from server.evaluations.labels import find_current_labels, find_snapshots, read_labels
 from server.storage import Storage
 from tests.server.exchange.labels import make_points
@@ -94,3 +94,22 @@ def test_a_snapshot_that_there_is_not_is_named(database: Database) -> None:
         assert find_snapshots(session, []) == {}
         with pytest.raises(NotFoundError, match=f"There is no snapshot {unknown}. Choose one of the recording's"):
             find_snapshots(session, [unknown])
+
+
+def test_a_recording_is_judged_by_one_snapshot_and_not_by_whichever_comes_last(
+    database: Database, tmp_path: Path
+) -> None:
+    storage, recording = Storage(tmp_path / "files"), make_recording()
+    keep(database, recording)
+    with database.writing() as session:
+        first, _ = create_snapshot(session, storage, recording, "first", LOCAL_ACCOUNT_ID)
+        session.add(make_annotation(recording, 0, make_points()))
+        session.flush()
+        second, _ = create_snapshot(session, storage, recording, "second", LOCAL_ACCOUNT_ID)
+    with database.reading() as session:
+        for ids in ([first.id, second.id], [second.id, first.id]):
+            with pytest.raises(
+                InvalidError, match=r"'first' and 'second' are of one recording.* Leave the other one out"
+            ):
+                find_snapshots(session, ids)
+        assert find_snapshots(session, [second.id])[recording.id].key == f"snapshot-{second.id}"

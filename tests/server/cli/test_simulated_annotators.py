@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import random
 import time
+import uuid
 from typing import Any
 
 import httpx
@@ -49,6 +50,24 @@ class BadConnection(httpx.AsyncBaseTransport):
         return httpx.Response(502) if self.saves % 5 == 0 else answer
 
 
+class Overtaken(httpx.AsyncBaseTransport):
+    """Before the first save arrives, somebody else stores this hand there."""
+
+    points = [[5.0, 6.0, 1]] * 21
+
+    def __init__(self) -> None:
+        self.real = httpx.AsyncHTTPTransport()
+        self.is_over = False
+
+    async def handle_async_request(self, request: httpx.Request) -> httpx.Response:
+        if request.method == "PUT" and not self.is_over:
+            self.is_over = True
+            body = {"points": self.points, "operation_id": str(uuid.uuid4())}
+            theirs = httpx.Request("PUT", request.url, json=body, headers={"If-None-Match": "*"})
+            assert (await self.real.handle_async_request(theirs)).status_code == 200
+        return await self.real.handle_async_request(request)
+
+
 def find_address(remote: Remote) -> str:
     return str(remote.link._client.base_url).partition("/api/")[0]
 
@@ -86,6 +105,25 @@ def test_two_on_one_hand_over_a_bad_connection_send_again_merge_and_lose_nothing
     asyncio.run(work())
     assert ledger.resent > 0 and ledger.conflicts > 0 and ledger.acknowledged
     assert find_faults(address, ledger) == []
+
+
+def test_who_comes_second_puts_the_one_joint_into_the_others_hand(remote: Remote, add_recording) -> None:
+    sequence = add_recording()["id"]
+    base, address, ledger = f"/sequences/{sequence}/annotations/cam0", find_address(remote), Ledger()
+
+    async def work() -> None:
+        async with httpx.AsyncClient(base_url=f"{address}/api/v1", transport=Overtaken()) as client:
+            person = SimulatedAnnotator(client, base, [1], [1], 0.005, ledger, random.Random(3))
+            ends = time.monotonic() + 60
+            while not ledger.acknowledged:
+                assert time.monotonic() < ends, "waited in vain"
+                await person.work(time.monotonic() + 0.1)
+
+    asyncio.run(work())
+    assert ledger.conflicts == 1 and ledger.acknowledged[0].revision == 2
+    first = ledger.acknowledged[0].points
+    assert sum(point != theirs for point, theirs in zip(first, Overtaken.points, strict=True)) == 1
+    assert find_faults(address, ledger) == [], "what is in the history is what was acknowledged"
 
 
 def test_a_refusal_that_no_merging_mends_ends_the_work_with_its_words(remote: Remote, add_recording) -> None:

@@ -26,7 +26,7 @@ def write_anipose(cameras: Sequence[Camera], offsets_s: Sequence[float] = (), er
         turn = np.asarray(cv2.Rodrigues(np.ascontiguousarray(T[:3, :3]))[0]).ravel()
         lines += [
             f"[cam_{number}]",
-            f"name = {json.dumps(camera.id)}",
+            f"name = {_text(camera.id)}",
             f"size = [ {camera.width}, {camera.height},]",
             f"matrix = [ {' '.join(f'{_list(row)},' for row in camera.K)}]",
             f"distortions = {_list(camera.distortion if camera.distortion.size else np.zeros(5))}",
@@ -37,8 +37,13 @@ def write_anipose(cameras: Sequence[Camera], offsets_s: Sequence[float] = (), er
     lines += ["[metadata]", "adjusted = true", f"error = {_real(error_px)}", 'unit = "m"']
     if offsets_s:
         lines += ["", "[metadata.time_offsets_s]"]
-        lines += [f"{json.dumps(camera.id)} = {_real(s)}" for camera, s in zip(cameras, offsets_s, strict=True)]
-    return ("\n".join(lines) + "\n").encode()
+        lines += [f"{_text(camera.id)} = {_real(s)}" for camera, s in zip(cameras, offsets_s, strict=True)]
+    return ("\n".join(lines) + "\n").encode(errors="replace")
+
+
+def _text(value: str) -> str:
+    """As JSON has it, but no pairs of surrogates, which TOML refuses, and no bare DEL."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _list(values: np.ndarray) -> str:

@@ -13,11 +13,10 @@ from tracker.capture.camera import Camera
 def write_opencv(cameras: Sequence[Camera]) -> bytes:
     """The file; `FileStorage` wants names of letters, digits and underscores, the real ones stand beside them."""
     lines = ["%YAML:1.0", "---"]
-    for number, camera in enumerate(cameras):
-        name = re.sub(r"[^A-Za-z0-9_]", "_", camera.id)
+    for key, camera in zip(_choose_keys([camera.id for camera in cameras]), cameras, strict=True):
         T = camera.T_camera_world
         lines += [
-            f"{name if name[:1].isalpha() else f'camera_{number}_{name}'}:",
+            f"{key}:",
             f'   name: "{re.sub(chr(92) * 2 + "|" + chr(34), "_", camera.id)}"',
             f"   image_width: {camera.width}",
             f"   image_height: {camera.height}",
@@ -29,6 +28,14 @@ def write_opencv(cameras: Sequence[Camera]) -> bytes:
             *_matrix("T", T[:3, 3:]),
         ]
     return ("\n".join(lines) + "\n").encode()
+
+
+def _choose_keys(names: Sequence[str]) -> list[str]:
+    """What `FileStorage` accepts, one for each; names that would become the same are all numbered."""
+    plain = [re.sub(r"[^A-Za-z0-9_]", "_", name) for name in names]
+    numbered = [f"camera_{number}_{name}" for number, name in enumerate(plain)]
+    keys = [name if name[:1].isalpha() else other for name, other in zip(plain, numbered, strict=True)]
+    return keys if len(set(keys)) == len(keys) else numbered
 
 
 def _matrix(name: str, values: np.ndarray) -> list[str]:

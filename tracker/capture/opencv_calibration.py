@@ -120,7 +120,7 @@ def _parse_yaml(text: str, file: str) -> dict[str, Any]:
     stack: list[tuple[int, dict[str, Any]]] = [(-1, root)]
     lines = iter(enumerate(text.splitlines(), 1))
     for number, line in lines:
-        body = line.split("#", 1)[0].rstrip()
+        body = _drop_comment(line).rstrip()
         if not body.strip() or body.startswith(("%", "---", "...")):
             continue
         key, colon, rest = body.strip().partition(":")
@@ -133,7 +133,7 @@ def _parse_yaml(text: str, file: str) -> dict[str, Any]:
                 step = next(lines, None)
                 if step is None:
                     raise CalibrationError(f"{file}, line {number}: the list does not end.")
-                parts.append(step[1].split("#", 1)[0].strip())
+                parts.append(_drop_comment(step[1]).strip())
                 still_open += parts[-1].count("[") - parts[-1].count("]")
             rest = " ".join(parts)
         indent = len(body) - len(body.lstrip())
@@ -162,4 +162,9 @@ def _parse_value(text: str) -> Any:
             return kind(text)
         except ValueError:
             continue
-    return text.strip("\"'")
+    return text[1:-1] if len(text) > 1 and text[0] == text[-1] and text[0] in "\"'" else text.strip("\"'")
+
+
+def _drop_comment(line: str) -> str:
+    """A line without what follows `#`, unless that stands in quotes."""
+    return re.sub(r"""("[^"]*"|'[^']*')|#.*""", lambda found: found[1] or "", line)

@@ -42,8 +42,9 @@ class Truth:
 
     def __post_init__(self) -> None:
         moments, joints, objects = len(self.frame), len(self.joint_names), len(self.object_names)
+        assert len(self.source_frame) == moments
         assert self.joints_3d.shape == (moments, joints, 3)
-        assert self.joints_2d.shape[0] == moments and self.joints_2d.shape[2:] == (joints, 2)
+        assert self.joints_2d.shape[:1] == (moments,) and self.joints_2d.shape[2:] == (joints, 2)
         assert self.visibility.shape == self.joints_2d.shape[:3]
         assert self.T_world_object.shape == (moments, objects, 4, 4)
 
@@ -65,8 +66,9 @@ def load_truth(path: Path) -> Truth:
             raise SequenceError(f"{path}: no {', '.join(missing)} in it; a truth file holds {', '.join(needed)}.")
         values = {name: archive[name] for name in needed}
     for name in ("joint_names", "object_names"):
-        values[name] = tuple(str(item) for item in values[name])
+        values[name] = tuple(str(item) for item in np.ravel(values[name]))
     try:
+        assert values["frame"].ndim == values["source_frame"].ndim == 1
         return Truth(**values)
     except AssertionError as error:
         shapes = ", ".join(f"{name} {np.shape(value)}" for name, value in values.items())

@@ -204,5 +204,5 @@ class Importer(Protocol):
 def default_name(files: ListedFiles, options: ImportOptions) -> str:
     """The name that was given, or that of the folder."""
     name = options.name or files.root.name
-    printable = "".join(c for c in name if c.isprintable()).strip()[:200]
+    printable = "".join(c for c in name if c.isprintable()).strip()[:200].rstrip()
     return printable or "recording"

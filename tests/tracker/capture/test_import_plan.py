@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tracker.capture.image_files import ImageFiles
@@ -24,6 +24,8 @@ def test_the_name_is_the_one_that_was_told_or_the_folders_without_control_signs(
     assert default_name(FOLDER, ImportOptions(name=told)) == name
 
 
+@example("a" * 199 + " b")
+@settings(max_examples=40)
 @given(st.text(max_size=400))
 def test_any_name_becomes_one_that_can_be_shown(told: str) -> None:
     name = default_name(FOLDER, ImportOptions(name=told))

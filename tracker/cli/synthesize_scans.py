@@ -105,7 +105,7 @@ def parse_subjects(text: str) -> tuple[int, ...]:
     numbers: list[int] = []
     for word in text.split(","):
         first, dash, last = word.strip().partition("-")
-        if not first.isdecimal() or (dash and not last.isdecimal()):
+        if not first.isdecimal() or (dash and not (last.isdecimal() and int(first) <= int(last))):
             raise TrackerError(f"--subjects {text!r}: needed train, test, all, or numbers such as 1,4,20-25.")
         numbers += range(int(first), min(int(last or first), 10_000) + 1)
         if len(numbers) > len(everybody) or not set(numbers) <= set(everybody):

@@ -71,11 +71,13 @@ def _register(
         for path, name in scans
     ]
     line = ProgressLine(f"round {number}: registering {len(jobs)} scans")
-    verdicts: Counter[str] = Counter()
-    for done, result in enumerate(run_jobs(jobs, args.processes, again=False), 1):
-        verdicts[result["verdict"]] += 1
-        line.show(done / len(jobs), f"{result['scan']}: {result['verdict']}")
-    return dict(verdicts)
+    results: list[dict[str, Any]] = []
+    for result in run_jobs(jobs, args.processes, again=False):
+        results.append(result)
+        line.show(len(results) / len(jobs), f"{result['scan']}: {result['verdict']}")
+    if not out.exists():  # nothing was registered, now or earlier
+        raise TrackerError("; ".join(str(result["error"]) for result in results[:5]))
+    return dict(Counter(result["verdict"] for result in results))
 
 
 def _train(folder: Path, model: Path | None, accepted: set[str] | None, number: int, args) -> dict[str, Any]:

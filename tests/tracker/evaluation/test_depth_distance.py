@@ -44,8 +44,8 @@ def test_what_lies_behind_the_wrist_does_not_count(known, setup: TrackSetup) -> 
     posed = setup.scene.pose_at(known.poses[2])
     joints = posed.landmarks(0)
     forward = (joints[9] - joints[0]) / np.linalg.norm(joints[9] - joints[0])
-    counts = [len(measure(known, setup, step * forward, 10**6)) for step in (-0.02, 0.0, 0.03, 0.06)]
-    assert counts[0] >= counts[1] > counts[2] > counts[3], "the hand of the image is more and more behind the wrist"
+    counts = [len(measure(known, setup, step * forward, 10**6)) for step in (0.0, 0.03, 0.06)]
+    assert counts[0] > counts[1] > counts[2], "the hand of the image is more and more behind the wrist"
 
 
 @pytest.mark.parametrize("move", [(0.0, 0.0, 50.0), (50.0, 0.0, 0.0)])

@@ -10,6 +10,7 @@ import pytest
 
 from tests.tracker.capture.conftest import draw_color, write_recording
 from tracker.capture.sequence import Sequence, load_sequence
+from tracker.evaluation.error_color import ANCHORS
 from tracker.evaluation.worst_picture import GREY, MARKED, SIZE, draw_worst_picture, encode_jpeg
 from tracker.model.joints import HAND_JOINTS
 
@@ -67,6 +68,13 @@ def test_marks_that_do_not_count_are_grey_without_a_cross(sequence: Sequence) ->
     assert count(left_out, GREY) > count(counted, GREY)
     moved = np.linalg.norm(counted.astype(int) - left_out, axis=2)
     assert (moved > 30).sum() > 500, "the crosses and their lines are gone"
+
+
+@pytest.mark.parametrize(("off", "anchor"), [(5.0, 1), (10.0, 2), (20.0, 4), (200.0, 4)])
+def test_the_track_has_the_colour_of_its_error_up_to_20_px(sequence: Sequence, off: float, anchor: int) -> None:
+    picture = draw(sequence, tracked=PLACES + np.array([off, 0.0]))
+    shown = [count(picture, tuple(int(part) for part in color)) for color in ANCHORS]
+    assert shown[anchor] > 200 and shown[anchor] > 5 * max(shown[:anchor] + shown[anchor + 1 :])
 
 
 def test_a_track_that_flew_off_does_not_shrink_the_hand_further_than_to_a_third(sequence: Sequence) -> None:

@@ -63,10 +63,11 @@ def test_ids_are_whole_numbers_from_one_and_each_image_is_there_once(make_set: M
 
 
 def test_where_a_joint_came_from_follows_it_into_another_order(make_set: MakeSet) -> None:
-    backwards = LEFT | {"keypoints": list(HAND_JOINTS)[::-1]}
-    sources = [{"kind": "track", "label": f"Track {joint}"} for joint in range(21)][::-1]
-    annotation = document()["annotations"][0] | {"keypoints": MARKS[::-1].ravel().tolist(), "joint_sources": sources}
-    item = only(read(make_set, categories=[backwards], annotations=[annotation]))
+    order = [(5 * place + 3) % 21 for place in range(21)]
+    mixed = LEFT | {"keypoints": [HAND_JOINTS[joint] for joint in order]}
+    sources = [{"kind": "track", "label": f"Track {joint}"} for joint in order]
+    annotation = document()["annotations"][0] | {"keypoints": MARKS[order].ravel().tolist(), "joint_sources": sources}
+    item = only(read(make_set, categories=[mixed], annotations=[annotation]))
     assert np.array_equal(item.points, MARKS)
     assert item.sources == tuple(JointSource("track", f"Track {joint}") for joint in range(21))
 

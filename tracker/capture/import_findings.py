@@ -52,5 +52,5 @@ class Findings:
 
 
 def show_first(names: Collection[str], most: int, joint: str = ", ") -> str:
-    """The first names, and dots when there are more."""
-    return joint.join([*list(names)[:most], *(["..."] if len(names) > most else [])])
+    """The first names, and how many more there are."""
+    return joint.join([*list(names)[:most], *([f"and {len(names) - most} more"] if len(names) > most else [])])

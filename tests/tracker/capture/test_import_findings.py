@@ -44,7 +44,7 @@ def test_missing_frames_are_an_oddity_only_where_somebody_allowed_them(is_allowe
         ((), []),
         (("a",), ["1 other file is left out: a."]),
         (("a", "b", "c"), ["3 other files are left out: a, b, c."]),
-        (("a", "b", "c", "d"), ["4 other files are left out: a, b, c, ...."]),
+        (("a", "b", "c", "d"), ["4 other files are left out: a, b, c, and 1 more."]),
     ],
 )
 def test_files_that_are_left_out_are_counted_and_three_named(names: tuple[str, ...], said: list[str]) -> None:
@@ -53,8 +53,8 @@ def test_files_that_are_left_out_are_counted_and_three_named(names: tuple[str, .
     assert found.warnings == said and found.problems == []
 
 
-def test_names_are_shown_up_to_a_number_and_dots_say_that_there_are_more() -> None:
-    assert show_first(["a", "b"], 2) == "a, b" and show_first(["a", "b", "c"], 2, "; ") == "a; b; ..."
+def test_names_are_shown_up_to_a_number_and_the_others_are_counted() -> None:
+    assert show_first(["a", "b"], 2) == "a, b" and show_first(["a", "b", "c"], 2, "; ") == "a; b; and 1 more"
     assert show_first([], 3) == ""
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 
 from tests.tracker.scenes import drawn_hand, drawn_tube
-from tracker.terms.nearby_pixels import find_nearby_pixels
 from tracker.terms.uncovered import Uncovered
 
 
@@ -59,11 +58,3 @@ def test_what_lies_beyond_the_palm_pulls_nothing():
         assert not drawn.scene.is_palm[residual.ids[:, corner][residual.barycentric[:, corner] > 0]].any()
     bones = drawn.scene.arrays.weight_bones[:, 0]
     assert drawn.scene.is_palm.any() and not drawn.scene.is_palm[bones == 5].any()
-
-
-def test_pixels_near_by_come_nearest_first_and_all_of_them():
-    nearby = find_nearby_pixels(5)
-    distances = np.hypot(*nearby.T)
-    assert np.all(np.diff(distances) >= 0.0)
-    inside = [(r, c) for r in range(-5, 6) for c in range(-5, 6) if r * r + c * c <= 25]
-    assert sorted(map(tuple, nearby.tolist())) == sorted(inside)

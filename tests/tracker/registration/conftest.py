@@ -10,8 +10,13 @@ import pytest
 from tracker.capture.scan import Scan
 from tracker.model.blend_limits import blend_limits
 from tracker.model.untrained_hand import untrained_hand
+from tracker.registration import surface_search
+from tracker.registration.anatomy import make_anatomical_prior
+from tracker.registration.model_fit import ModelFit
 from tracker.registration.register import Registrar
+from tracker.registration.scan_points import ScanPoints
 from tracker.registration.start_poses import FOLDED, STRAIGHT, curl_finger
+from tracker.registration.vertex_fit import fit_to_vertices
 
 
 @dataclass(frozen=True)
@@ -51,3 +56,28 @@ def registrar() -> Registrar:
 @pytest.fixture(scope="session")
 def own_scan() -> OwnScan:
     return scan_model()
+
+
+@pytest.fixture(scope="session")
+def fit() -> ModelFit:
+    """Of the untrained hand, held by anatomy."""
+    hand = untrained_hand()
+    return ModelFit(hand, make_anatomical_prior(hand))
+
+
+@pytest.fixture(scope="session")
+def near(fit, own_scan):
+    """A state some millimetres off, and 400 points away from the rim, where the cost is smooth."""
+    rng = np.random.default_rng(0)
+    state = fit_to_vertices(fit, fit.neutral(), own_scan.vertices)
+    state = state.retract(fit.model, 0.02 * rng.normal(size=fit.model.num_parameters) * fit.scales)
+    points = ScanPoints(own_scan.scan.points[:2000], own_scan.scan.normals[:2000])
+    found = fit.search.match(state.posed(fit.model).vertices, points.points, points.normals, 0.03)
+    ids = np.flatnonzero(~found.on_rim & (found.faces >= 0))[:400]
+    return state, ScanPoints(points.points[ids], points.normals[ids])
+
+
+@pytest.fixture
+def flat_triangles(monkeypatch):
+    """Where no triangle bulges the derivatives are exact; how they bulge is held otherwise."""
+    monkeypatch.setattr(surface_search, "find_bulges", lambda vertices, faces: np.zeros((len(faces), 3, 3)))

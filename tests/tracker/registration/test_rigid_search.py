@@ -6,20 +6,12 @@ from scipy.spatial.transform import Rotation
 
 from tracker.geometry.vertex_normals import find_unit_normals
 from tracker.model.blend_limits import blend_limits
-from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.anatomy import make_anatomical_prior
-from tracker.registration.model_fit import ModelFit
 from tracker.registration.nearest_grid import build_nearest_grid
 from tracker.registration.rigid_search import StiffHand, place_stiffly
 from tracker.registration.start_poses import make_start_pose
 
 STRAIGHT, FIST = 0, 3
 """Numbers in START_POSES."""
-
-
-@pytest.fixture(scope="module")
-def fit():
-    return ModelFit(untrained_hand(), make_anatomical_prior(untrained_hand()))
 
 
 def make_stiff(fit, number: int) -> StiffHand:

@@ -4,17 +4,9 @@ import numpy as np
 import pytest
 
 from tracker.model.blend_limits import blend_limits
-from tracker.model.untrained_hand import untrained_hand
-from tracker.registration.anatomy import make_anatomical_prior
 from tracker.registration.hand_state import HandState
-from tracker.registration.model_fit import ModelFit
 from tracker.registration.start_poses import make_start_pose
 from tracker.registration.vertex_fit import fit_to_vertices
-
-
-@pytest.fixture(scope="module")
-def fit():
-    return ModelFit(untrained_hand(), make_anatomical_prior(untrained_hand()))
 
 
 @pytest.mark.parametrize("number", [0, 3, 7])

@@ -34,7 +34,7 @@ def add_model_rows(JtJ, Jtr, J, corners, shares, directions, residuals, weights)
         JtJ: (P, P).
         Jtr: (P,).
         J: (V, 3, P) derivative of the vertices.
-        corners: (N, 3) vertices of a row; -1 first leaves it out.
+        corners: (N, 3) vertices of a row.
         shares: (N, 3) their weights b.
         directions: (N, 3) u.
         residuals: (N,) u · (Σ b v - p).

@@ -1,13 +1,9 @@
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from tests.tracker.training.fingers import PARENTS, crude_regressor, make_fingers, make_tube, make_weights
-from tracker.model.skinning import keep_heaviest
-from tracker.training.joints import fit_joints
 from tracker.training.learn import Data, begin, improve_joints, improve_surface
 from tracker.training.options import TrainingOptions
-from tracker.training.pose_fit import Hands, Poses
-from tracker.training.rig import Rig, place
+from tracker.training.rig import place
 
 
 def learn(fingers, rounds, **options):
@@ -66,20 +62,3 @@ def test_weights_are_a_partition_over_at_most_four_bones():
     assert (rows >= 0.0).all()
     np.testing.assert_allclose(rows.sum(1), 1.0, atol=1e-12)
     assert (rows != 0).sum(1).max() < 40
-
-
-def test_where_a_hinge_tells_nothing_joints_stay_where_they_were_expected():
-    """Bent about the y axis only, a joint may lie anywhere along y; across it, it is found."""
-    fingers = make_fingers(people=1, poses=12, with_bulges=False)
-    template, joints = fingers.templates[0], fingers.joints[0]
-    owners, turns = np.zeros(12, dtype=int), np.zeros((12, 4, 3))
-    turns[:, 1:, 1] = 0.1 * np.arange(12)[:, None] + 0.05 * np.arange(1, 4)
-    rotations = Rotation.from_rotvec(turns.reshape(-1, 3)).as_matrix().reshape(12, 4, 3, 3)
-    rig = Rig(PARENTS, keep_heaviest(fingers.weights), np.zeros((*template.shape, 0)))
-    targets = np.stack([place(rig, template, joints, R, np.zeros(3)).vertices for R in rotations])
-    expected = joints + np.array([[0, 0, 0], [0.002, 0.003, 0.002], [0.002, -0.003, 0.001], [0.001, 0.002, -0.002]])
-    start = Poses(rotations, np.zeros((12, 3)), np.zeros(12))
-    hands = Hands(targets, owners, template[None], expected[None], rig)
-    _, found = fit_joints(start, hands, expected[None], 1e-3, 30)
-    np.testing.assert_allclose(found[0, 1:, [0, 2]], joints[1:, [0, 2]].T, atol=0.1e-3)
-    np.testing.assert_allclose(found[0, 1:, 1], expected[1:, 1], atol=0.1e-3)

@@ -60,3 +60,10 @@ def test_a_hand_at_rest_counts_no_more_than_one_half_a_radian_away():
     rotations[1, 1] = [[c, -s, 0], [s, c, 0], [0, 0, 1]]
     weights = weigh_by_pose(Poses(rotations, np.zeros((2, 3)), np.zeros(2)), np.zeros(2, dtype=np.int64))
     assert weights == pytest.approx([0.5, 0.5])
+
+
+def test_first_templates_are_made_of_hands_at_rest():
+    fingers = make_fingers(people=2, poses=10)
+    weights = weigh_by_pose(Poses(fingers.rotations, fingers.translations, np.zeros(20)), fingers.owners)
+    assert weights.reshape(2, 10).sum(1) == pytest.approx([1.0, 1.0])
+    assert (weights.reshape(2, 10).argmax(1) == 0).all() and weights[0] > 0.3

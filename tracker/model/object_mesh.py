@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components
+from scipy.spatial import KDTree
 
 from tracker.geometry.triangles import is_watertight
 
@@ -39,9 +40,8 @@ def clean_mesh(vertices: Array, faces: Faces) -> CleanMesh:
     A piece with holes is turned so that most of it looks away from its middle.
     """
     size = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
-    keys = np.round((vertices - vertices.min(axis=0)) / max(MERGE_SHARE * size, 1e-300))
-    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    merged = inverse.ravel()[faces]
+    first, inverse = _merge(vertices, MERGE_SHARE * size)
+    merged = inverse[faces]
     vertices = vertices[first]
     merged = merged[_has_area(vertices, merged)]
     _, kept = np.unique(np.sort(merged, axis=1), axis=0, return_index=True)
@@ -50,6 +50,22 @@ def clean_mesh(vertices: Array, faces: Faces) -> CleanMesh:
     faces = merged.reshape(-1, 3).astype(np.int64)
     vertices = vertices[used]
     return CleanMesh(vertices, _turn_outwards(vertices, faces), _count_open_edges(faces))
+
+
+def _merge(vertices: Array, distance: float) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Ids (M,) of vertices that stand for all, and which of them each vertex (V,) is.
+
+    Most that are one are so to the last digits, and share a cell of a grid; the others lie on both sides of its lines.
+    """
+    cells = np.round((vertices - vertices.min(axis=0)) / max(distance, 1e-300))
+    _, first, inverse = np.unique(cells, axis=0, return_index=True, return_inverse=True)
+    pairs = KDTree(vertices[first]).query_pairs(distance, output_type="ndarray")
+    graph = coo_matrix((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(first), len(first)))
+    groups = connected_components(graph, directed=False)[1]
+    _, kept, places = np.unique(groups, return_index=True, return_inverse=True)
+    order = np.argsort(kept, kind="stable")
+    rank = np.argsort(order, kind="stable")
+    return first[kept[order]], rank[places.ravel()][inverse.ravel()]
 
 
 def _has_area(vertices: Array, faces: Faces) -> npt.NDArray[np.bool_]:

@@ -182,11 +182,12 @@ class TrackSetup:
             static = document.get("static_scene")
             static_scene = None if static is None else StaticScene.from_json(static)
             called = document.get("detector")  # tracks of before it was kept have the file alone
+            told = {} if called is None else {name: str(called[name]) for name in ("name", "sha256")}
             marks = {str(n): np.array(p, dtype=np.float64).reshape(21, 3) for n, p in document["marks"].items()}
         models = tuple(load_npz_model(folder / "models" / f"{name}.npz") for name in names)
         detector = load_detector(folder / FINGERTIPS) if (folder / FINGERTIPS).exists() else None
-        if detector is not None and called is not None:
-            detector = replace(detector, name=str(called["name"]), sha256=str(called["sha256"]))
+        if detector is not None:
+            detector = replace(detector, **told)
         return cls(names, models, camera, options, marks, detector, static_scene, views)
 
 

@@ -13,7 +13,6 @@ from tracker.model.scene import Scene
 from tracker.observation import Preprocessing
 from tracker.search.find_object import find_object
 from tracker.search.start_object import start_object
-from tracker.search.start_rotations import propose_rotations, sample_surface, spread_rotations
 
 PLACE = np.array([0.10, 0.02, 0.45])
 
@@ -92,25 +91,3 @@ def test_an_object_seen_later_starts_from_a_guess(tmp_path):
     views = [(away.frame, CAMERA), (there.frame, CAMERA)]
     pose = start_object(model, RecordedObject("box", "b"), views, Preprocessing(), [(away.hand, away.hand_pose)])
     assert surface_error(model, pose, true) < 2e-3  # m
-
-
-def test_a_sphere_needs_one_rotation_and_a_lopsided_thing_many(tmp_path):
-    counts = {}
-    for name in ("ball", "box", "cone", "bracket"):
-        model = load_mesh(tmp_path, name)
-        rotations = propose_rotations(sample_surface(model.vertices, model.faces), spread_rotations(48))
-        counts[name] = len(rotations)
-        np.testing.assert_allclose(np.linalg.det(rotations), 1.0)
-    assert counts["ball"] == 1
-    assert counts["cone"] < counts["box"] <= counts["bracket"]
-
-
-def test_rotations_are_spread_so_that_none_is_far_from_any():
-    rotations = spread_rotations(48)
-    rng = np.random.default_rng(0)
-    q, _ = np.linalg.qr(rng.normal(size=(500, 3, 3)))
-    q *= np.linalg.det(q)[:, None, None]
-    traces = np.einsum("nij,mij->nm", q, rotations)
-    nearest = np.degrees(np.arccos(np.clip((traces.max(axis=1) - 1.0) / 2.0, -1.0, 1.0)))
-    assert nearest.max() < 70.0
-    assert nearest.mean() < 38.0

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,7 +12,6 @@ from tracker.model.body_hands import body_hand
 from tracker.model.mano_files import BODY_JOINTS
 from tracker.synthesis.bodies.body_poses import RANGES_DEG, a_pose, draw_hand, draw_pose, is_entangled
 from tracker.synthesis.bodies.hand_poses import MIRRORED
-from tracker.synthesis.bodies.moving import _interpolate
 from tracker.synthesis.bodies.person import make_person
 
 PERSON = make_person(2)
@@ -56,39 +53,6 @@ MIRROR = np.array([-1.0, 1.0, 1.0])
 def test_a_left_hand_is_drawn_as_the_mirror_image_of_a_right_one(seed) -> None:
     right, left = (draw_hand(side, np.random.default_rng(seed)) for side in ("right", "left"))
     assert np.array_equal(left, right * MIRRORED) and right.shape == (15, 3)
-
-
-@settings(max_examples=15, deadline=None)
-@given(seeds, st.floats(0.5, 2.0))
-def test_a_person_who_is_moved_and_turned_keeps_every_distance(seed, metres) -> None:
-    rng = np.random.default_rng(seed)
-    pose = a_pose()
-    still, _ = PERSON.posed(pose, np.zeros(3))
-    pose[0] = Rotation.from_quat(rng.standard_normal(4)).as_rotvec()
-    moved, _ = PERSON.posed(pose, metres * rng.standard_normal(3))
-    few = rng.integers(0, len(still), 30)
-    lengths = [np.linalg.norm(v[few][:, None] - v[few], axis=2) for v in (still, moved)]
-    assert np.allclose(*lengths, atol=1e-9)
-
-
-@settings(max_examples=20, deadline=None)
-@given(seeds, st.lists(st.integers(2, 20), min_size=1, max_size=3))
-def test_a_motion_is_at_each_key_in_time_rests_there_and_never_turns_farther_than_to_the_next(seed, spans) -> None:
-    rng = np.random.default_rng(seed)
-    times = [0, *np.cumsum(spans).tolist()]
-    keys = rng.uniform(-1.0, 1.0, (len(times), 2, 3))
-    frames = times[-1] + 1
-    moved = _interpolate(keys, times, frames)
-    turns = Rotation.from_rotvec(moved.reshape(-1, 3))
-    wanted = Rotation.from_rotvec(keys.reshape(-1, 3))
-    at_keys = Rotation.from_rotvec(moved[times].reshape(-1, 3))
-    assert (at_keys.inv() * wanted).magnitude().max() < 1e-6
-    for pair, (begin, end) in enumerate(pairwise(times)):
-        whole = (wanted[2 * pair].inv() * wanted[2 * pair + 2]).magnitude()
-        steps = [(turns[2 * t].inv() * turns[2 * t + 2]).magnitude() for t in range(begin, end)]
-        assert np.isclose(sum(steps), whole, atol=1e-6), "the shortest way"
-        if len(steps) > 4 and whole > 0.1:
-            assert max(steps[0], steps[-1]) < 0.7 * max(steps), "slow at both ends"
 
 
 def test_fingers_of_both_hands_are_where_the_model_has_them() -> None:

@@ -11,7 +11,6 @@ from scipy.spatial import KDTree
 from tracker.registration.surface_search import SurfaceSearch
 from tracker.synthesis.bodies.body_poses import a_pose, is_entangled
 from tracker.synthesis.bodies.generate import BODY_SCANNER, BodyScanOptions, generate_body
-from tracker.synthesis.bodies.moving import MovingOptions, make_motion
 from tracker.synthesis.bodies.person import hand_vertices, make_person
 
 SCANNER = replace(BODY_SCANNER, num_points=8000, views=6, pixels=400)
@@ -45,28 +44,9 @@ def test_hands_that_are_missing_give_no_points(scanned) -> None:
         assert tree.query(scanned.true_vertices[tips])[0].min() > 0.01 and len(ids) == 782
 
 
-def test_people_differ_and_their_surface_is_outside_the_shape_space() -> None:
-    person = make_person(3)
-    directions = person.model.shape_directions.reshape(-1, person.model.num_shape)
-    apart = (person.rest - person.model.template).ravel()
-    left = apart - directions @ np.linalg.lstsq(directions, apart, rcond=None)[0]
-    assert 1e-3 < np.sqrt(np.mean(np.sum(left.reshape(-1, 3) ** 2, axis=1))) < 3e-3
-    assert np.abs(make_person(4).rest - person.rest).max() > 0.01
-
-
 def test_an_arm_in_the_trunk_is_noticed() -> None:
     person = make_person(2)
     pose = a_pose()
     assert not is_entangled(person, pose)
     pose[16, 2] = np.radians(-105.0)
     assert is_entangled(person, pose)
-
-
-def test_a_motion_begins_still_moves_smoothly_and_loses_hands_for_a_fifth_of_it() -> None:
-    moving = make_motion(2, 60, options=MovingOptions(still=8))
-    assert np.abs(np.diff(moving.poses[:8], axis=0)).max() < 1e-9
-    vertices = np.array([moving.person.posed(moving.poses[t], moving.translations[t])[1] for t in range(60)])
-    assert np.abs(np.diff(vertices, axis=0)).max() < 0.12, "m a frame: 7 m/s"
-    assert not moving.is_missing[:8].any() and (np.abs(moving.is_missing.mean(axis=0) - 0.25) < 0.12).all()
-    seen = moving.scan(0, SCANNER)
-    assert np.array_equal(seen.scan.points, moving.scan(0, SCANNER).scan.points)

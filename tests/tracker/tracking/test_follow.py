@@ -39,39 +39,41 @@ def test_each_frame_is_told_with_its_result_and_whoever_is_told_may_end_the_run(
     np.testing.assert_array_equal([result.pose for _, result in told], whole.pose[:2])
 
 
-def test_a_frame_alone_is_what_it_is_in_a_run_that_reads_ahead(recorded, run, tools) -> None:
-    setup, start, _, whole = run
-    before = start.pose.copy()
-    state, result = follow_frame(recorded.sequence, setup, tools, start, recover=True)
-    np.testing.assert_array_equal(result.pose, whole.pose[0])
-    np.testing.assert_array_equal(start.pose, before)
-    with read_ahead(recorded.sequence, setup, 2) as ahead:
-        _, again = follow_frame(recorded.sequence, setup, tools, state, True, ahead)
-    np.testing.assert_array_equal(again.pose, whole.pose[1])
-
-
-def test_the_state_after_a_frame_waits_for_the_next_and_knows_the_two_last_poses(recorded, run, tools) -> None:
-    setup, start, _, whole = run
+@pytest.fixture(scope="module")
+def followed(recorded, run, tools):
+    """The states after the first two frames, each followed alone."""
+    setup, start = run[:2]
     first, _ = follow_frame(recorded.sequence, setup, tools, start, recover=True)
     second, _ = follow_frame(recorded.sequence, setup, tools, first, recover=True)
-    assert (start.next_frame, first.next_frame, second.next_frame) == (0, 1, 2)
-    assert not second.is_lost and second.gone_hands(setup) == ()
-    np.testing.assert_array_equal(second.pose, whole.pose[1])
+    return first, second
+
+
+def test_a_frame_alone_is_what_it_is_in_a_run_that_reads_ahead(recorded, run, tools, followed) -> None:
+    setup, _, _, whole = run
+    np.testing.assert_array_equal([state.pose for state in followed], whole.pose[:2])
+    before = followed[0].pose.copy()
+    with read_ahead(recorded.sequence, setup, 2) as ahead:
+        _, again = follow_frame(recorded.sequence, setup, tools, followed[0], True, ahead)
+    np.testing.assert_array_equal(again.pose, whole.pose[1])
+    np.testing.assert_array_equal(followed[0].pose, before)
+
+
+def test_the_state_after_a_frame_waits_for_the_next_and_knows_the_two_last_poses(run, followed) -> None:
+    first, second = followed
+    assert (first.next_frame, second.next_frame) == (1, 2)
+    assert not second.is_lost and second.gone_hands(run[0]) == ()
     np.testing.assert_array_equal(second.earlier_pose, first.pose)
 
 
-def test_a_hand_that_is_far_from_where_it_was_left_is_lost_unless_it_is_looked_for(recorded, run, tools) -> None:
-    setup, start, _, whole = run
+def test_a_hand_that_is_far_from_where_it_was_left_is_lost_where_nobody_looks_for_it(recorded, run, tools) -> None:
+    setup, start = run[:2]
     aside = setup.scene.retract(start.pose, np.r_[0.15, 0.0, 0.0, np.zeros(setup.scene.num_dofs - 3)])
     astray = replace(start, next_frame=1, pose=aside, earlier_pose=aside, detected={})
-    blind = replace(setup, options=replace(setup.options, use_detector=False, first_frame=0))
+    blind = replace(setup, options=replace(setup.options, use_detector=False, iterations=2))
     state, result = follow_frame(recorded.sequence, blind, tools, astray, recover=False)
     assert result.status == "lost" and result.hand_status == ("lost",)
     assert state.is_lost and state.gone_hands(setup) == (0,)
-    found, result = follow_frame(recorded.sequence, setup, tools, astray, recover=True)
-    assert result.status in ("ok", "recovered") and not found.is_lost
-    apart = setup.scene.pose_at(found.pose).landmarks(0) - setup.scene.pose_at(whole.pose[1]).landmarks(0)
-    assert np.linalg.norm(apart, axis=1).mean() < 0.005
+    np.testing.assert_array_equal(state.pose, result.pose)
 
 
 def test_a_frame_tells_what_its_time_went_to(run) -> None:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from server.quality.hand import EDGES, find_bone_lengths
 from server.quality.labels import Label
 from server.quality.surroundings import Surroundings
+from tracker import Camera
 
 FOCAL_PX, FAR_M = 500.0, 0.5
 WIDTH, HEIGHT = 640, 480
@@ -47,3 +48,21 @@ def label(
         around=Surroundings(around, none, none),
         is_independent=np.full(21, is_independent),
     )
+
+
+HAND = draw_hand()
+
+
+def cameras(count: int = 3) -> dict[str, Camera]:
+    """In a row, 10 cm apart, all looking straight ahead."""
+    found = {}
+    for number in range(count):
+        T = np.eye(4)
+        T[0, 3] = 0.1 * number
+        found[f"cam{number}"] = Camera(f"cam{number}", WIDTH, HEIGHT, K, np.zeros(0), T)
+    return found
+
+
+def seen(number: int) -> npt.NDArray[np.float64]:
+    """(21, 2) px of the hand in one of them."""
+    return HAND - [K[0, 0] * 0.1 * number / FAR_M, 0.0]

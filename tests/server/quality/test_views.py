@@ -5,24 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from server.quality.views import measure_size, triangulate_views
-from tests.server.quality.drawn_hands import FAR_M, HEIGHT, WIDTH, K, draw_hand
-from tracker import Camera
-
-HAND = draw_hand()
-
-
-def cameras(count: int = 3) -> dict[str, Camera]:
-    """In a row, 10 cm apart, all looking straight ahead."""
-    found = {}
-    for number in range(count):
-        T = np.eye(4)
-        T[0, 3] = 0.1 * number
-        found[f"cam{number}"] = Camera(f"cam{number}", WIDTH, HEIGHT, K, np.zeros(0), T)
-    return found
-
-
-def seen(number: int) -> np.ndarray:
-    return HAND - [K[0, 0] * 0.1 * number / FAR_M, 0.0]
+from tests.server.quality.drawn_hands import FAR_M, HAND, K, cameras, seen
 
 
 def test_joints_are_where_the_views_meet() -> None:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import uuid
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from fastapi.testclient import TestClient
 
 from server.hand_models.storing import UNTRAINED_ID, resolve_model
-from server.registrations.model_files import write_mano
 from tests.server.packed_arrays import unpack_arrays
 from tracker import load_blend_model, load_mano, mirror_blend, untrained_hand
 
@@ -45,20 +43,3 @@ def test_a_model_that_is_not_there_or_is_no_blend_model_is_not_found(client: Tes
         for what in ("geometry", "model.npz", "mano/right"):
             assert client.get(f"/api/v1/hand-models/{id_}/{what}").status_code == 404
     assert client.get(f"{UNTRAINED}/mano/both").status_code == 422
-
-
-def test_a_model_with_manos_own_vertices_is_mirrored_as_mano_is(tmp_path: Path) -> None:
-    hand, count = untrained_hand("right"), 778
-    own = replace(
-        hand,
-        template=hand.template[:count],
-        faces=hand.faces[(hand.faces < count).all(axis=1)],
-        shape_directions=hand.shape_directions[:count],
-        pose_directions=hand.pose_directions[:count],
-        skinning_weights=hand.skinning_weights[:count],
-        joint_regressor=hand.joint_regressor[:, :count],
-        tips=np.minimum(hand.tips, count - 1),
-    )
-    path = tmp_path / "MANO_LEFT.pkl"
-    path.write_bytes(write_mano(own, "left"))
-    np.testing.assert_allclose(load_mano(path).template, own.template * [-1.0, 1.0, 1.0], atol=1e-12)

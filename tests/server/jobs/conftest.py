@@ -1,13 +1,16 @@
-"""A recording's row to hang jobs on."""
+"""A recording's row to hang jobs on, and what a worker has to do them."""
 
 from __future__ import annotations
 
 import uuid
+from pathlib import Path
 
 import pytest
 
 from server.database import Database
+from server.jobs.run import WorkerContext
 from server.sequences.models import SequenceRow
+from server.storage import Storage
 
 
 @pytest.fixture
@@ -18,3 +21,9 @@ def sequence_id(database: Database) -> uuid.UUID:
     with database.writing() as session:
         session.add(row)
     return row.id
+
+
+@pytest.fixture
+def context(database: Database, tmp_path: Path) -> WorkerContext:
+    """What a worker would have, with files of its own."""
+    return WorkerContext(database, Storage(tmp_path / "studio"), uuid.uuid4())

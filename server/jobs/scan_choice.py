@@ -13,6 +13,7 @@ from server.jobs.loop_schemas import LoopCreate
 from server.jobs.register_schemas import RegisterCreate
 from server.registrations.models import RegistrationRow
 from server.scans.models import ScanRow
+from tracker import say_count
 
 AT_ONCE = 500
 
@@ -40,13 +41,10 @@ def choose_scans(session: Session, asked: RegisterCreate, model_id: uuid.UUID) -
         return list(session.scalars(query))
     wanted = list(dict.fromkeys(asked.scan_ids))
     there: set[uuid.UUID] = set()
-    chosen: list[uuid.UUID] = []
     for first in range(0, len(wanted), AT_ONCE):
         some = wanted[first : first + AT_ONCE]
         there |= set(session.scalars(select(ScanRow.id).where(ScanRow.id.in_(some), ScanRow.deleted_at.is_(None))))
-        chosen += session.scalars(query.where(ScanRow.id.in_(some)))
     if missing := [id_ for id_ in wanted if id_ not in there]:
-        raise NotFoundError(
-            f"There is no scan {missing[0]}" + (f", nor {len(missing) - 1} others." if len(missing) > 1 else ".")
-        )
-    return chosen
+        more = f", nor {say_count(len(missing) - 1, 'other')}" if len(missing) > 1 else ""
+        raise NotFoundError(f"There is no scan {missing[0]}{more}.")
+    return [id_ for id_ in session.scalars(query) if id_ in there]

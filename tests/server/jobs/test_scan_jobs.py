@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import uuid
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +18,6 @@ from server.jobs import create_jobs, service
 from server.jobs.files import JobFiles
 from server.jobs.loop_schemas import LoopCreate
 from server.jobs.register_schemas import RegisterCreate
-from server.jobs.scan_workflow import plan_loop
 from server.jobs.tracking import TrackingJob
 from server.jobs.train_schemas import TrainCreate, TrainingParams
 from server.registrations.models import RegistrationRow
@@ -158,15 +156,6 @@ def test_jobs_that_make_no_sense_are_refused(studio: Studio, generated_hand: Gen
     listed = rob.get("/jobs", kind="loop", search="round")["items"]
     assert [item["id"] for item in listed] == [made["id"]]
     assert LoopCreate.model_validate({"name": "x"}).rounds == 1 and service.KINDS
-
-
-def test_the_bar_of_a_loop_is_filled_without_gaps() -> None:
-    for rounds in (1, 3):
-        for first in (True, False):
-            spans = plan_loop(rounds, first)
-            assert len(spans) == 2 * rounds + first
-            assert spans[0][0] == 0.0 and spans[-1][1] == 1.0
-            assert all(a[1] == b[0] for a, b in pairwise(spans))
 
 
 def test_recordings_are_tracked_with_a_model_of_the_studio_and_its_mirror_image(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import uuid
 from types import SimpleNamespace
 
@@ -98,17 +99,20 @@ def hand() -> BlendModel:
     return untrained_hand("right")
 
 
-def add_model(context: WorkerContext, model: BlendModel, name: str) -> uuid.UUID:
-    id_ = uuid.uuid4()
-    digest = write_model(context.storage, id_, model)
-    row = HandModelRow(id=id_, name=name, kind="trained", side="right", digest=digest, facts=describe_model(model))
+@pytest.fixture
+def models(context: WorkerContext, hand: BlendModel) -> list[uuid.UUID]:
+    """Two stored models that are alike."""
+    ids = [uuid.uuid4() for _ in range(2)]
+    digest, facts = write_model(context.storage, ids[0], hand), describe_model(hand)
+    shutil.copytree(context.storage.folder("models", ids[0]), context.storage.folder("models", ids[1]))
     with context.database.writing() as session:
-        session.add(row)
-    return id_
+        for id_, name in zip(ids, "ab", strict=True):
+            session.add(HandModelRow(id=id_, name=name, kind="trained", side="right", digest=digest, facts=facts))
+    return ids
 
 
-def test_a_model_is_opened_once_and_the_one_used_longest_ago_makes_room(context: WorkerContext, hand) -> None:
-    ids, cache = [add_model(context, hand, name) for name in "ab"], ModelCache(context, most=1)
+def test_a_model_is_opened_once_and_the_one_used_longest_ago_makes_room(context: WorkerContext, models) -> None:
+    ids, cache = models, ModelCache(context, most=1)
     row, model = cache.get(ids[0])
     assert (row.name, cache.get(ids[0])[1] is model) == ("a", True)
     cache.get(ids[1])

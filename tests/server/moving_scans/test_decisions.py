@@ -3,105 +3,21 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import func, select
-from sqlalchemy.orm import Session
 
 from server.access.models import LOCAL_ACCOUNT_ID
 from server.errors import ConflictError, InvalidError, NotFoundError
-from server.moving_scans.accepted import describe_stretches, find_accepted, number_registrations
 from server.moving_scans.adding import order_naturally
-from server.moving_scans.body_sets import create_body_set, get_body_set, read_members
-from server.moving_scans.decision_schemas import BodySetMake, StretchDecisionMake
-from server.moving_scans.decisions import decide, find_standing, list_decisions, undo
-from server.moving_scans.models import FrameRegistrationRow, MovingRegistrationRow, MovingScanRow, StretchDecisionRow
-from server.moving_scans.storing import name_frame
-from tests.server.conftest import Studio
+from server.moving_scans.decisions import find_standing, list_decisions, undo
+from server.moving_scans.models import StretchDecisionRow
+from tests.server.moving_scans.bench import FRAMES, Bench, bench
 
-FRAMES = 8
-
-
-class Bench:
-    """A moving scan of eight frames with two registrations; the second lacks frames 0 and 3."""
-
-    def __init__(self, session: Session) -> None:
-        self.session = session
-        self.scan = MovingScanRow(
-            name="Ada waves",
-            subject="Ada",
-            fps=30.0,
-            frames=[],
-            frame_count=FRAMES,
-            usable_count=FRAMES,
-            digest="d" * 64,
-            byte_count=1,
-            metres_per_unit=1.0,
-            is_unit_guessed=False,
-            box_m=[],
-            notes=[],
-        )
-        session.add(self.scan)
-        session.flush()
-        self.registrations = [self._register(range(FRAMES)), self._register([1, 2, 4, 5, 6, 7])]
-
-    def _register(self, frames) -> MovingRegistrationRow:
-        row = MovingRegistrationRow(
-            id=(id_ := uuid.uuid4()),
-            moving_scan_id=self.scan.id,
-            job_id=uuid.uuid4(),
-            template_id=id_,
-            prior="mixture",
-            holds_hands=True,
-            has_velocity=True,
-            population="neutral",
-            first_frame=min(frames),
-            last_frame=FRAMES - 1,
-        )
-        self.session.add(row)
-        self.session.flush()
-        self.session.add_all(
-            FrameRegistrationRow(
-                id=name_frame(id_, frame),
-                registration_id=id_,
-                frame=frame,
-                digest=f"{frame:064d}",
-                verdict="good",
-                reasons=[],
-                scan_to_mesh_mm={},
-                has_left=True,
-                has_right=True,
-                seconds=1.0,
-            )
-            for frame in frames
-        )
-        self.session.flush()
-        return row
-
-    def decide(self, which: int, decision: str, first: int, last: int, operation: uuid.UUID | None = None):
-        made = StretchDecisionMake(
-            decision=decision,  # type: ignore[arg-type]
-            first_frame=first,
-            last_frame=last,
-            operation_id=operation or uuid.uuid4(),
-        )
-        return decide(self.session, self.registrations[which], LOCAL_ACCOUNT_ID, made)
-
-    def accepted(self) -> dict[int, int]:
-        """Frame to the number of the registration that counts."""
-        ids = [row.id for row in self.registrations]
-        return {each.frame: ids.index(each.registration_id) for each in find_accepted(self.session, self.scan.id)}
-
-
-@pytest.fixture
-def bench(studio: Studio) -> Iterator[Bench]:
-    with studio.database.writing() as session:
-        yield Bench(session)
-        session.rollback()
+__all__ = ["bench"]
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -170,42 +86,6 @@ def test_frames_that_are_not_registered_cannot_be_decided_about(bench: Bench, wh
     with pytest.raises(InvalidError, match="Choose"):
         bench.decide(which, "accept", first, last)
     assert bench.accepted() == {}
-
-
-def test_stretches_are_frames_in_a_row_of_one_registration_and_one_decision(bench: Bench) -> None:
-    bench.decide(0, "accept", 0, 7)
-    bench.decide(1, "accept", 4, 6)
-    stretches = describe_stretches(bench.session, find_accepted(bench.session, bench.scan.id))
-    assert [(each.first_frame, each.last_frame, each.frame_count) for each in stretches] == [
-        (0, 3, 4),
-        (4, 6, 3),
-        (7, 7, 1),
-    ]
-    numbers = number_registrations(bench.session, {bench.scan.id})
-    assert sorted(numbers.values()) == [1, 2]
-    assert [each.registration_number for each in stretches] == [
-        numbers[bench.registrations[which].id] for which in (0, 1, 0)
-    ]
-
-
-def test_a_set_is_kept_once_and_stays_as_it_was_whatever_is_decided_later(bench: Bench) -> None:
-    with pytest.raises(InvalidError, match="No frame of “Ada waves” is accepted"):
-        create_body_set(
-            bench.session, bench.scan, BodySetMake(moving_scan_id=bench.scan.id, name="all"), LOCAL_ACCOUNT_ID
-        )
-    bench.decide(0, "accept", 2, 4)
-    kept, is_new = create_body_set(
-        bench.session, bench.scan, BodySetMake(moving_scan_id=bench.scan.id, name="all"), LOCAL_ACCOUNT_ID
-    )
-    again, is_new_again = create_body_set(
-        bench.session, bench.scan, BodySetMake(moving_scan_id=bench.scan.id, name="other"), LOCAL_ACCOUNT_ID
-    )
-    assert is_new and not is_new_again and again.id == kept.id and kept.frame_count == 3
-    bench.decide(0, "reject", 0, 7)
-    members = read_members(bench.session, get_body_set(bench.session, kept.id))
-    assert [(each.frame, each.digest) for each in members] == [(frame, f"{frame:064d}") for frame in (2, 3, 4)]
-    with pytest.raises(NotFoundError, match="no set of accepted frames"):
-        get_body_set(bench.session, uuid.uuid4())
 
 
 @given(st.lists(st.integers(0, 10**9), min_size=1, max_size=12, unique=True), st.sampled_from(["frame", "a/b-", ""]))

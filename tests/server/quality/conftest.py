@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from server.database import utc_now
+from server.database import Database, utc_now
 from server.jobs.detections import AREA
 from server.jobs.service import create_job
+from server.storage import Storage
+from tests.server.conftest import MakeRecording
+from tests.server.quality.desk import SIZE, Desk
 from tracker import Annotation, Annotations
 from tracker.detection import RecordedHands
 
@@ -40,3 +44,10 @@ def see(marks: Mapping[tuple[str, int, str], np.ndarray], frames: range) -> Reco
     ]
     cameras = tuple(sorted({camera for camera, _, _ in marks}))
     return RecordedHands(cameras, frames, Annotations(tuple(items)), {item.key: 0.9 for item in items})
+
+
+@pytest.fixture
+def desk(database: Database, make_recording: MakeRecording, tmp_path: Path) -> Desk:
+    """A recording of four frames in one colour camera, without labels."""
+    folder = make_recording("waving", 4, "jpg", depth=False, size=SIZE)
+    return Desk.open(database, Storage(tmp_path / "studio"), folder)

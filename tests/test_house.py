@@ -112,3 +112,14 @@ def test_no_function_is_above_the_limits(rooms) -> None:
 def test_every_room_has_two_lines_of_tests_for_five_of_its_own(rooms) -> None:
     thin = {room.name: room.test_lines / room.lines for room in rooms if room.test_lines < 0.4 * room.lines}
     assert thin == {}
+
+
+def test_every_module_that_branches_has_a_test_file_of_its_name_but_those_that_others_run_whole(rooms) -> None:
+    run_elsewhere = {
+        "server/jobs/calibrate_workflow.py": "tests/server/calibrations/test_jobs.py",
+        "server/jobs/track_workflow.py": "tests/server/jobs/test_worker.py",
+        "server/moving_scans/body_set_routes.py": "tests/server/moving_scans/test_curation.py",
+        "tracker/training/warm_up.py": "tests/server/cli/test_without_pybullet.py",
+    }
+    assert sorted(one for room in rooms for one in room.unmirrored) == sorted(run_elsewhere)
+    assert [test for test in run_elsewhere.values() if not (ROOT / test).exists()] == []

@@ -144,6 +144,7 @@ def test_a_phone_curates_by_taps_alone(studio, fresh, open_page, screenshots):
     assert page.evaluate("document.scrollingElement.scrollWidth <= innerWidth")
 
 
+@pytest.mark.slow
 def test_the_next_hand_is_on_the_screen_within_150_ms_of_the_key_or_twice_what_drawing_takes(
     studio, fresh, open_page, record_property, screenshots
 ):
@@ -306,6 +307,7 @@ def test_the_agreement_page_says_what_there_is_to_do(studio, fresh, open_page, s
     screenshots.take(page, "agreement")
 
 
+@pytest.mark.slow
 def test_pages_with_hands_on_them_have_no_serious_fault(studio, fresh, open_page):
     page = open_page()
     for address, sign in (

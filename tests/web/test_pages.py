@@ -233,6 +233,7 @@ def test_rows_on_a_phone_are_no_higher_than_their_words_and_cut_none(studio, tra
     assert checked.evaluate("(card) => card.scrollWidth <= card.clientWidth"), "what is missing runs out of the card"
 
 
+@pytest.mark.slow
 def test_a_track_is_looked_at_by_fingers(studio, track, open_page, picture_of, screenshots):
     from playwright.sync_api import expect
 

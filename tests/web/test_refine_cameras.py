@@ -35,6 +35,7 @@ def find_places(studio, knocked) -> list[Any]:
     return [camera["T_world_camera"] for camera in studio.get(f"/sequences/{knocked['id']}")["cameras"]]
 
 
+@pytest.mark.slow
 def test_a_person_looks_takes_the_cameras_and_puts_those_of_before_back(studio, knocked, open_page, screenshots):
     from playwright.sync_api import expect
 

@@ -239,6 +239,7 @@ def test_work_is_given_done_submitted_returned_and_accepted(
     expect(page.get_by_test_id("next-click")).to_contain_text("finished")
 
 
+@pytest.mark.slow
 def test_a_reviewer_looks_through_the_work_comments_and_accepts_by_touch(
     join, open_as, recording, synthesized, project, picture_of, screenshots
 ) -> None:

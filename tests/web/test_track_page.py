@@ -266,6 +266,7 @@ def _share_of_color(canvas, rgb: tuple[int, int, int]) -> float:
     return float(((np.minimum(off, 180 - off) <= 3) & (saturation > 110) & (value > 150)).mean())
 
 
+@pytest.mark.slow
 def test_an_image_that_is_still_of_another_frame_says_so_and_carries_its_own_skeleton(
     recorded, track, open_page, picture_of, screenshots
 ):

@@ -69,6 +69,7 @@ def find_spread(scan, rotations, registrar) -> tuple[float, float]:
     return max(means) - min(means), 1e3 * float(apart)
 
 
+@pytest.mark.slow
 def test_a_turned_scan_gives_the_turned_registration(registrar):
     spread, apart = find_spread(scan_model(2, 6000, (), "left").scan, ROTATIONS[:2], registrar)
     assert spread < 0.01 and apart < 0.2

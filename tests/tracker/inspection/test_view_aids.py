@@ -40,6 +40,7 @@ def test_the_skin_of_a_fingertip_is_called_by_its_finger_and_both_hands_alike(fi
 
 
 def test_there_is_a_world_where_there_are_hands_and_objects_whether_the_run_had_one_or_not():
+    pytest.importorskip("pybullet")
     aids = ViewAids(replace(ALL, options=TrackOptions(terms="LO")), np.eye(4))
     assert aids.world is not None and aids.world is aids.world
     assert aids.tools.world is None and aids.tools is aids.tools

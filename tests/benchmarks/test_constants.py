@@ -15,7 +15,7 @@ from benchmarks.constants.reached import choose_reached, find_names_at_import, r
 from benchmarks.constants.table import Outcome, write_table
 from tracker.fitting.quality import Quality
 
-USUAL = Outcome(80, 5, 1, 20.0, ("a", "b"))
+USUAL = Outcome(80, 104, 5, 1, 20.0, ("a", "b"))
 
 
 @pytest.fixture
@@ -86,12 +86,16 @@ def test_numbers_that_kernels_take_in_and_that_are_read_at_import_count_as_read_
 
 def test_the_table_tells_unchanged_changed_failed_and_unread_numbers_apart() -> None:
     same, other, broken, unread = (Number("tracker.a.b", name, 2, False) for name in ("SAME", "OTHER", "BROKEN", "NO"))
-    found = {(one, factor): Outcome(80, 5, 1, 30.0, ("a", "b")) for one in (same, other, broken) for factor in (0.5, 2)}
-    found[other, 2] = Outcome(77, 6, 1, 20.0, ("a", "c"))
+    found = {
+        (one, factor): Outcome(80, 104, 5, 1, 30.0, ("a", "b")) for one in (same, other, broken) for factor in (0.5, 2)
+    }
+    found[other, 2] = Outcome(77, 104, 6, 1, 20.0, ("a", "c"))
     found[broken, 0.5] = Outcome(failed="ValueError")
-    assert write_table([same, other, broken, unread], USUAL, found).splitlines()[2:] == [
-        "| a.b.SAME | 2 | yes | same | | | 1.50 | same | | | 1.50 |",
-        "| a.b.OTHER | 2 | yes | same | | | 1.50 | -3 | +1 | +0 | 1.00 |",
-        "| a.b.BROKEN | 2 | yes | fails | | |  | same | | | 1.50 |",
-        "| a.b.NO | 2 | no | | | | | | | | |",
+    kernel = Number("tracker.a.b", "KERNEL", 0.5, True)
+    assert write_table([same, other, broken, unread, kernel], USUAL, found).splitlines()[2:] == [
+        "| a.b.SAME | 2 | same | | | 1.50 | same | | | 1.50 |",
+        "| a.b.OTHER | 2 | same | | | 1.50 | -3 | +1 | +0 | 1.00 |",
+        "| a.b.BROKEN | 2 | fails | | |  | same | | | 1.50 |",
+        "| a.b.NO | 2 | not read | | | | | | | |",
+        "| a.b.KERNEL | 0.5 | kernel | | | | | | | |",
     ]

@@ -73,7 +73,8 @@ test-rooms: setup
 test-browser: setup
 	$(BIN)/python -m pytest tests/web -rs -m "browser and not slow" --numprocesses auto --maxprocesses 2 --dist loadfile
 
-# What takes minutes: a loop of two rounds whose worker is killed, the demo, scans that become a model in the browser.
+# What takes minutes: a loop of two rounds whose worker is killed, the demo, scans that become a model in the browser,
+# every request of the API right and wrong, every page by axe.
 proofs: setup
 	@status=0; $(MAKE) --no-print-directory proofs-rooms || status=1; $(MAKE) --no-print-directory proofs-browser || status=1; exit $$status
 

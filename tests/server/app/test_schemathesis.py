@@ -31,6 +31,8 @@ from tests.server.api_document import read_document
 from tests.server.app.full_studio import LEFT_OUT, Known, Sender, fill
 from tests.server.conftest import BASE_URL, GeneratedHand
 
+pytestmark = pytest.mark.slow
+
 FILE = "handloom.sqlite3"
 
 EXAMPLES = {GenerationMode.POSITIVE: 4, GenerationMode.NEGATIVE: 2}
